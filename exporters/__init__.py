@@ -1,0 +1,1 @@
+"""A scene as a file: one module a format, chosen by suffix in `exporters.formats`."""
