@@ -62,6 +62,27 @@ def _same_length(record: object, length: int, names: Iterable[str]) -> None:
             raise ValueError(f"{type(record).__name__}.{name} has {found} entries, expected {length}")
 
 
+def _not_negative(record: object, names: Iterable[str]) -> None:
+    for name in names:
+        array = getattr(record, name)
+        if len(array) and array.min() < 0:
+            raise ValueError(f"{type(record).__name__}.{name} holds {array.min()}, expected 0 or more")
+
+
+def _among(record: object, name: str, words: tuple[str, ...]) -> None:
+    strange = sorted(set(getattr(record, name).tolist()) - set(words))
+    if strange:
+        raise ValueError(f"{type(record).__name__}.{name} holds {strange}, expected {', '.join(words)}")
+
+
+def _unique(name: str, ids: list[int]) -> None:
+    seen: set[int] = set()
+    for number in ids:
+        if number in seen:
+            raise ValueError(f"{name}: the id {number} stands twice")
+        seen.add(number)
+
+
 @dataclass(frozen=True, eq=False)
 class Camera:
     """A pinhole camera with square pixels: `pixel ~ matrix @ (x, y, z)` in the camera frame.
@@ -177,8 +198,7 @@ class LineGraph:
                 raise ValueError(f"LineGraph.edges name segment {self.edges.max()} of {len(self.segments)}")
             if not (self.edges[:, 0] < self.edges[:, 1]).all():
                 raise ValueError("LineGraph.edges must name the smaller segment first")
-            if not set(self.kind.tolist()) <= set(EDGE_KINDS):
-                raise ValueError(f"LineGraph.kind holds {sorted(set(self.kind.tolist()) - set(EDGE_KINDS))}")
+            _among(self, "kind", EDGE_KINDS)
 
     @property
     def axis(self) -> Int:
@@ -250,8 +270,9 @@ class Lines:
         _freeze(self, "is_boundary", np.bool_, (None,))
         _freeze(self, "confidence", np.str_, (None,))
         _same_length(self, len(self.id), ["axis", "segment", "ends", "is_boundary", "component", "confidence"])
-        if len(np.unique(self.id)) != len(self.id):
-            raise ValueError("Lines.id holds the same number twice")
+        _not_negative(self, ["id", "component"])
+        _among(self, "confidence", CONFIDENCES)
+        _unique("Lines", self.id.tolist())
         if len(self.axis) and not (self.axis.min() >= 0 and self.axis.max() <= 2):
             raise ValueError("Lines.axis holds a number outside 0, 1, 2")
 
@@ -278,6 +299,7 @@ class Intersections:
             _freeze(self, name, np.bool_, (None,))
         _freeze(self, "weight", np.float64, (None,))
         _same_length(self, len(self.lines), ["kind", "pixel", "real", "in_tree", "weight"])
+        _among(self, "kind", EDGE_KINDS)
 
     def __len__(self) -> int:
         return len(self.lines)
@@ -312,6 +334,12 @@ class Plane:
     offset: float  # world, in the scene's unit
     lines: tuple[int, ...]  # ids of the lines in it
     faces: tuple[Face, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.axis not in (0, 1, 2):
+            raise ValueError(f"Plane {self.id} has axis {self.axis}, expected 0, 1 or 2")
+        if not np.isfinite(self.offset):
+            raise ValueError(f"Plane {self.id} has offset {self.offset}, expected a finite number")
 
 
 @dataclass(frozen=True)
@@ -349,6 +377,10 @@ class Scene:
         ]:
             if not ids <= known:
                 raise ValueError(f"{name} names line {min(ids - known)}, which the scene does not have")
+        _unique("Scene.planes", [plane.id for plane in self.planes])
+        _unique("Scene.faces", [face.id for plane in self.planes for face in plane.faces])
+        if self.metres_per_unit is not None and not 0 < self.metres_per_unit < np.inf:
+            raise ValueError(f"Scene.metres_per_unit is {self.metres_per_unit}, expected a positive number")
 
     @property
     def faces(self) -> list[tuple[Plane, Face]]:

@@ -1,0 +1,63 @@
+# `make` says what can be made. Each target prepares the clone by itself: a virtual environment in .venv with the
+# versions of constraints.txt, made again when they or pyproject.toml change. Needed: Python 3.11 or newer.
+
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+DEMO := demo/street
+FORMATS := step dxf glb usdz usda json png
+ARGS :=
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint check clean
+
+help:
+	@echo 'make demo    reconstruct the sample photo of a street: CAD files and a picture in demo/'
+	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap")'
+	@echo 'make lint    ruff and mypy'
+	@echo 'make check   lint and test, what every change must pass'
+	@echo 'make clean   remove what was made, except .venv'
+	@echo
+	@echo 'Each prepares .venv on its first run: about 1.6 GB, a minute or two.'
+
+demo: $(READY)
+	@mkdir -p $(dir $(DEMO))
+	$(BIN)/linecad convert samples/street.jpg --camera samples/street.json $(FORMATS:%=-o $(DEMO).%)
+	@echo 'Made:' && ls -lh $(FORMATS:%=$(DEMO).%)
+
+test: $(READY)
+	$(BIN)/python -m pytest $(ARGS)
+
+lint: $(READY)
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+
+check: lint test
+
+clean:
+	rm -rf demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find linecad exporters solver tests samples -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# PYTHON names the interpreter to use; otherwise the first one that is new enough is taken.
+$(READY): pyproject.toml constraints.txt
+	@if ! $(BIN)/python -c 'import pip' 2>/dev/null; then \
+	    for python in $(PYTHON) python3 python3.14 python3.13 python3.12 python3.11 none; do \
+	        "$$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && break; \
+	    done; \
+	    if [ "$$python" = none ]; then \
+	        echo 'No Python 3.11 or newer was found; install one, or name it: make PYTHON=/path/to/python3' >&2; exit 1; \
+	    fi; \
+	    if ! "$$python" -c 'import ensurepip, venv' 2>/dev/null; then \
+	        echo "$$python cannot make virtual environments; on Debian and Ubuntu: apt-get install python3-venv" >&2; exit 1; \
+	    fi; \
+	    echo "Making $(VENV) with $$("$$python" --version)"; \
+	    rm -rf $(VENV) && "$$python" -m venv $(VENV); \
+	fi
+	@echo 'Installing linecad and the libraries of constraints.txt (a minute or two)'
+	@$(BIN)/python -m pip install -qq --disable-pip-version-check -c constraints.txt -e '.[dev]'
+	@if ! said=$$($(BIN)/python -c 'import cv2, OCP.STEPControl, pxr.Usd, pyscipopt' 2>&1); then \
+	    printf '%s\n' "$$said" | tail -n 1 >&2; \
+	    echo 'A library of the system is missing; on Debian and Ubuntu: apt-get install libgl1 libexpat1' >&2; exit 1; \
+	fi
+	@touch $@

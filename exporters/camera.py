@@ -1,0 +1,56 @@
+"""The photo's camera in the terms of glTF and USD, which look along -z with y up and count pixels from the corner."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from exporters.model import Model
+from linecad.scene import Camera, Float, Scene
+
+_MARGIN = 2.0  # the clipping planes lie this factor nearer and farther than anything in the model
+_NEAREST_SHARE = 1e-6  # of the far plane, for a model that reaches to the camera or behind it
+
+
+@dataclass(frozen=True)
+class PaddedFrame:
+    """The smallest frame of even size about the principal point that holds the photo, in px.
+
+    A glTF camera always looks through the middle of its picture. Where the principal point is elsewhere, the photo
+    is a part of a larger picture: `left` and `top` say how far its corner lies inside.
+    """
+
+    width: int
+    height: int
+    left: float
+    top: float
+
+
+def camera_to_world(scene: Scene) -> Float:
+    """(4, 4) the pose of a camera that looks along -z with y up, in the scene's frame, as M @ column."""
+    pose = np.eye(4)
+    pose[:3, :3] = scene.rotation.T @ np.diag([1.0, -1.0, -1.0])
+    return pose
+
+
+def principal_point(camera: Camera) -> tuple[float, float]:
+    """px from the corner of the photo: half a pixel more than the scene says, which counts from pixel centres."""
+    return float(camera.matrix[0, 2]) + 0.5, float(camera.matrix[1, 2]) + 0.5
+
+
+def padded_frame(camera: Camera) -> PaddedFrame:
+    """The frame about the principal point that holds the whole photo."""
+    cx, cy = principal_point(camera)
+    width = 2 * math.ceil(max(cx, camera.width - cx))
+    height = 2 * math.ceil(max(cy, camera.height - cy))
+    return PaddedFrame(width, height, width / 2 - cx, height / 2 - cy)
+
+
+def clipping_range(model: Model, rotation: Float) -> tuple[float, float]:
+    """Distances in m of a near and a far plane with everything in front of the camera between them."""
+    depth = model.points @ rotation[2]
+    distance = np.linalg.norm(model.points, axis=1)
+    far = _MARGIN * float(distance.max(initial=0.0)) or 1.0
+    seen = depth[depth > 0]
+    near = float(seen.min()) / _MARGIN if len(seen) else far
+    return max(min(near, far / _MARGIN), far * _NEAREST_SHARE), far

@@ -1,0 +1,145 @@
+"""DXF R2010, in metres: https://help.autodesk.com/view/OARX/2018/ENU/?guid=GUID-235B22E0-A567-4CF6-92D3-38A2306D73F3
+
+Lines are LINE entities on one layer a group. A face is there twice: as 3DFACE triangles with their inner edges
+hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because many programs ignore 3DFACE. What a
+line or face is stands in the extended data of each entity, under the application name LINECAD. DXF has no place for a
+camera with a principal point; its numbers are custom properties of the document.
+"""
+
+import contextlib
+import io
+from collections.abc import Iterator
+from pathlib import Path
+
+from ezdxf import new, options, units  # type: ignore[attr-defined]  # public, but re-exported without saying so
+from ezdxf.document import Drawing
+from ezdxf.entities.dxfgfx import DXFGraphic
+
+from exporters.camera import principal_point
+from exporters.faces import triangulate
+from exporters.model import FlatFace, LineGroup, Model, build_model
+from linecad.scene import AXES, Scene
+
+_APPLICATION = "LINECAD"
+_FACES, _OUTLINES = "FACES", "FACE_OUTLINES"  # layer names; ASCII, because FreeCAD replaces other characters
+
+# AutoCAD colour index: x red, y green, z blue, the paler one where the line is no boundary.
+_COLOUR = {(0, True): 1, (0, False): 11, (1, True): 3, (1, False): 91, (2, True): 5, (2, False): 171}
+_FACE_COLOUR, _OUTLINE_COLOUR = 254, 8
+_LINEWEIGHT = {True: 35, False: 13}  # hundredths of a millimetre on paper, by boundary
+
+_STRING, _INT16, _INT32 = 1000, 1070, 1071  # group codes of extended data
+_LARGEST_INT32 = 2**31 - 1
+_HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the edge between equal corners 2 and 3
+_VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
+
+
+def write(scene: Scene, path: Path) -> None:
+    """Write the scene as DXF to `path`; OSError where that fails."""
+    with _fixed_metadata():
+        document = _build_document(scene)
+        text = io.StringIO()
+        document.write(text)
+    path.write_bytes(document.encode(text.getvalue()))
+
+
+@contextlib.contextmanager
+def _fixed_metadata() -> Iterator[None]:
+    """Without the times and random identifiers that ezdxf puts into a document when it is made and when written."""
+    before = options.write_fixed_meta_data_for_testing
+    options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        options.write_fixed_meta_data_for_testing = before
+
+
+def _build_document(scene: Scene) -> Drawing:
+    model = build_model(scene)
+    document = new("R2010", units=units.M)
+    document.header["$MEASUREMENT"] = 1  # metric
+    document.appids.add(_APPLICATION)
+    _add_layers(document)
+    for group in model.groups:
+        _add_lines(document, group)
+    for face in model.faces:
+        _add_face(document, face)
+    _add_properties(document, scene, model)
+    _set_view(document, model)
+    return document
+
+
+def _add_layers(document: Drawing) -> None:
+    for (axis, is_boundary), colour in _COLOUR.items():
+        name = _line_layer(axis, is_boundary)
+        document.layers.add(name, color=colour, lineweight=_LINEWEIGHT[is_boundary])
+    document.layers.add(_FACES, color=_FACE_COLOUR)
+    document.layers.add(_OUTLINES, color=_OUTLINE_COLOUR)
+
+
+def _line_layer(axis: int, is_boundary: bool) -> str:
+    return f"LINES_{AXES[axis].upper()}_{'BOUNDARY' if is_boundary else 'NONBOUNDARY'}"
+
+
+def _add_lines(document: Drawing, group: LineGroup) -> None:
+    space = document.modelspace()
+    layer = _line_layer(group.axis, group.is_boundary)
+    for number, (start, end) in zip(group.ids.tolist(), group.ends.tolist(), strict=True):
+        line = space.add_line(start, end, dxfattribs={"layer": layer})
+        _describe(line, "line", number, (_INT16, int(group.is_boundary)), (_STRING, AXES[group.axis]))
+
+
+def _add_face(document: Drawing, face: FlatFace) -> None:
+    space = document.modelspace()
+    corners = face.vertices.tolist()
+    outer_edges = _ring_edges(face)
+    for triangle in triangulate(face).tolist():
+        entity = space.add_3dface([corners[index] for index in triangle], dxfattribs={"layer": _FACES})
+        edges = zip(triangle, triangle[1:] + triangle[:1], strict=True)
+        hidden = [flag for edge, flag in zip(edges, _HIDDEN_EDGE, strict=True) if frozenset(edge) not in outer_edges]
+        entity.dxf.invisible_edges = sum(hidden)
+        _describe(entity, "face", face.id, (_STRING, face.name))
+    for number, ring in enumerate(face.rings):
+        outline = space.add_polyline3d(ring.tolist(), close=True, dxfattribs={"layer": _OUTLINES})
+        _describe(outline, "face", face.id, (_INT16, number), (_STRING, face.name))
+
+
+def _ring_edges(face: FlatFace) -> set[frozenset[int]]:
+    """The edges of the rings as pairs of indices into the face's vertices."""
+    edges: set[frozenset[int]] = set()
+    start = 0
+    for ring in face.rings:
+        indices = range(start, start + len(ring))
+        edges |= {frozenset((index, start + (index + 1 - start) % len(ring))) for index in indices}
+        start += len(ring)
+    return edges
+
+
+def _describe(entity: DXFGraphic, kind: str, number: int, *more: tuple[int, str | int]) -> None:
+    """Attach what the entity shows: its kind, the scene's id (as text where 32 bits do not hold it), and more."""
+    identity = (_INT32, number) if number <= _LARGEST_INT32 else (_STRING, str(number))
+    entity.set_xdata(_APPLICATION, [(_STRING, kind), identity, *more])
+
+
+def _add_properties(document: Drawing, scene: Scene, model: Model) -> None:
+    cx, cy = principal_point(scene.camera)
+    properties = {
+        "linecad unit": model.unit_note,
+        "linecad photo": model.photo,
+        "linecad camera": f"{scene.camera.width} x {scene.camera.height} px, focal length {scene.camera.focal!r} px, "
+        f"principal point {cx!r} {cy!r} px from the top left corner",
+        "linecad camera from world": " ".join(repr(value) for value in scene.rotation.ravel().tolist()),
+    }
+    for name, value in properties.items():
+        document.header.custom_vars.append(name, value)
+
+
+def _set_view(document: Drawing, model: Model) -> None:
+    low, high = model.points.min(axis=0), model.points.max(axis=0)
+    space = document.modelspace()
+    # The header's extents are what readers look at, the layout's what ezdxf copies into them.
+    document.header["$EXTMIN"] = space.dxf.extmin = tuple(low.tolist())
+    document.header["$EXTMAX"] = space.dxf.extmax = tuple(high.tolist())
+    middle = (low + high) / 2
+    height = float((high - low).max()) * _VIEW_MARGIN or 1.0
+    document.set_modelspace_vport(height=height, center=(float(middle[0]), float(middle[1])))

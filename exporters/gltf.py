@@ -1,0 +1,177 @@
+"""Binary glTF 2.0 (GLB), in metres, y up: https://registry.khronos.org/glTF/specs/2.0/glTF-2.0.html
+
+trimesh packs the geometry. Its document is completed here, because trimesh gives all lines one white lit material,
+leaves out the targets of buffer views that the format's validator asks for, and writes cameras with another aspect
+ratio than theirs.
+
+A glTF camera looks through the middle of its picture. So ours spans the smallest frame about the principal point that
+holds the photo, and its extras `linecad_...` tell that frame and the camera matrix; pixels count from the corner.
+
+Line ids stand in the extras of each group of lines, and as vertex attribute _LINEID where all ids of the group are
+small enough for a float32, the only kind of number that holds them there.
+"""
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+from trimesh.exchange.gltf import export_glb
+from trimesh.path import Path3D
+from trimesh.path.entities import Line
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
+
+from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point
+from exporters.colours import FACE, RGB, line_colour, linear
+from exporters.faces import triangulate
+from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from linecad.scene import AXES, Scene
+
+_ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
+_FACE_MATERIAL = "face"
+_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)
+_LARGEST_EXACT_FLOAT32 = 2**24  # all integers up to here have their own float32
+_VERTEX_TARGET, _INDEX_TARGET = 34962, 34963  # bufferView.target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
+_LINE_MODE = 1  # primitive.mode of pairs of points
+_UNLIT = "KHR_materials_unlit"
+
+_Tree = dict[str, Any]  # the JSON document of a glTF file
+
+
+def write(scene: Scene, path: Path) -> None:
+    """Write the scene as GLB to `path`; OSError where that fails."""
+    model = build_model(scene)
+
+    def complete(tree: _Tree) -> None:
+        tree["asset"]["generator"] = "linecad"
+        tree["asset"]["extras"] = {"linecad_unit": model.unit_note, "linecad_photo": model.photo}
+        _set_materials(tree, model)
+        _set_targets(tree)
+        _add_camera(tree, scene, model)
+        _add_planes(tree, scene)
+
+    path.write_bytes(export_glb(_build_scene(model), include_normals=True, tree_postprocessor=complete))
+
+
+def _build_scene(model: Model) -> trimesh.Scene:
+    graph = trimesh.Scene(base_frame="world")
+    graph.graph.update(frame_from="world", frame_to=_ROOT)
+    if model.groups:
+        graph.graph.update(frame_from=_ROOT, frame_to=_LINES)
+    if model.faces:
+        graph.graph.update(frame_from=_ROOT, frame_to=_FACES)
+    for group in model.groups:
+        graph.add_geometry(_path(group), node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
+    material = PBRMaterial(name=_FACE_MATERIAL, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
+    for face in model.faces:
+        mesh = _mesh(face, material)
+        graph.add_geometry(mesh, node_name=face.name, geom_name=face.name, parent_node_name=_FACES)
+    return graph
+
+
+def _path(group: LineGroup) -> Path3D:
+    path = Path3D(
+        entities=[Line([2 * number, 2 * number + 1]) for number in range(len(group.ids))],
+        vertices=group.ends.reshape(-1, 3) @ _Y_UP.T,
+        process=False,  # merged points would be shared by lines, which have their own ids
+        metadata={"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()},
+    )
+    if group.ids.max() <= _LARGEST_EXACT_FLOAT32:
+        path.vertex_attributes["_LINEID"] = np.repeat(group.ids, 2).astype(np.float32)
+    return path
+
+
+def _mesh(face: FlatFace, material: PBRMaterial) -> trimesh.Trimesh:
+    return trimesh.Trimesh(
+        face.vertices @ _Y_UP.T,
+        triangulate(face),
+        process=False,
+        visual=TextureVisuals(material=material),
+        vertex_normals=np.tile(_Y_UP @ face.normal, (len(face.vertices), 1)),
+        metadata={"face_id": face.id, "plane_id": face.plane, "axis": AXES[face.axis], "offset": face.offset},
+    )
+
+
+def _set_materials(tree: _Tree, model: Model) -> None:
+    """One material for the faces; one a group of lines, unlit, because a line has no normal for light to fall on."""
+    faces = [material for material in tree["materials"] if material.get("name") == _FACE_MATERIAL]
+    for material in faces:
+        material["pbrMetallicRoughness"]["baseColorFactor"] = [*linear(FACE), 1.0]  # trimesh would round it to bytes
+    materials = {group.name: _unlit(group.name, line_colour(group.axis, group.is_boundary)) for group in model.groups}
+    tree["materials"] = [*faces, *materials.values()]
+    for mesh in tree["meshes"]:
+        for primitive in mesh["primitives"]:
+            if primitive["mode"] == _LINE_MODE:
+                primitive["material"] = tree["materials"].index(materials[mesh["name"]])
+            else:
+                primitive["material"] = 0
+    if materials:
+        tree["extensionsUsed"] = [_UNLIT]
+
+
+def _unlit(name: str, colour: RGB) -> _Tree:
+    return {
+        "name": name,
+        "extensions": {_UNLIT: {}},
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [*linear(colour), 1.0],
+            "metallicFactor": 0.0,
+            "roughnessFactor": 1.0,
+        },
+    }
+
+
+def _set_targets(tree: _Tree) -> None:
+    views, accessors = tree["bufferViews"], tree["accessors"]
+    for mesh in tree["meshes"]:
+        for primitive in mesh["primitives"]:
+            for accessor in primitive["attributes"].values():
+                views[accessors[accessor]["bufferView"]]["target"] = _VERTEX_TARGET
+            if "indices" in primitive:
+                views[accessors[primitive["indices"]]["bufferView"]]["target"] = _INDEX_TARGET
+
+
+def _add_camera(tree: _Tree, scene: Scene, model: Model) -> None:
+    camera, frame = scene.camera, padded_frame(scene.camera)
+    cx, cy = principal_point(camera)
+    near, far = clipping_range(model, scene.rotation)
+    extras = {
+        "linecad_width": camera.width,
+        "linecad_height": camera.height,
+        "linecad_fx": camera.focal,
+        "linecad_fy": camera.focal,
+        "linecad_cx": cx,
+        "linecad_cy": cy,
+        "linecad_padded_width": frame.width,
+        "linecad_padded_height": frame.height,
+        "linecad_pad_left": frame.left,
+        "linecad_pad_top": frame.top,
+    }
+    perspective = {
+        "yfov": 2.0 * math.atan(frame.height / (2.0 * camera.focal)),
+        "aspectRatio": frame.width / frame.height,
+        "znear": near,
+        "zfar": far,
+    }
+    tree["cameras"] = [{"type": "perspective", "name": _CAMERA, "perspective": perspective, "extras": extras}]
+    pose = camera_to_world(scene)
+    pose[:3, :3] = _Y_UP @ pose[:3, :3]
+    matrix = pose.T.ravel().tolist()  # glTF stores columns
+    tree["nodes"].append({"name": _CAMERA, "camera": 0, "matrix": matrix, "extras": extras})
+    _node(tree, _ROOT)["children"].append(len(tree["nodes"]) - 1)
+
+
+def _add_planes(tree: _Tree, scene: Scene) -> None:
+    scale = metres_per_unit(scene)
+    planes = [
+        {"id": plane.id, "axis": AXES[plane.axis], "offset": plane.offset * scale, "lines": list(plane.lines)}
+        for plane in scene.planes
+    ]
+    tree["scenes"][tree["scene"]]["extras"] = {"linecad_planes": planes}
+
+
+def _node(tree: _Tree, name: str) -> _Tree:
+    node: _Tree = next(node for node in tree["nodes"] if node.get("name") == name)
+    return node

@@ -1,0 +1,129 @@
+"""What every format writes of a scene: lines in groups by axis and kind, flat faces with holes, all in metres.
+
+The frame is the scene's: right-handed, z up, origin at the camera. So every coordinate is small enough for the
+float32 of glTF and USD.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from linecad.scene import AXES, Face, Float, Int, Plane, Scene
+
+SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
+
+KNOWN_UNIT = "lengths are in metres"
+FREE_UNIT = "the scale of the photo is not known: 1 unit of the scene is written as 1 metre"
+
+
+@dataclass(frozen=True, eq=False)
+class LineGroup:
+    """The lines of one axis that are all boundaries, or all not, in ascending id."""
+
+    axis: int  # 0, 1, 2
+    is_boundary: bool
+    ids: Int  # (N,)
+    ends: Float  # (N, 2, 3) m
+
+    @property
+    def name(self) -> str:
+        """The group's name in every format, such as `lines_x_boundary`."""
+        return f"lines_{AXES[self.axis]}_{'boundary' if self.is_boundary else 'nonboundary'}"
+
+
+@dataclass(frozen=True, eq=False)
+class FlatFace:
+    """A face with its rings turned towards the camera: the outline counter-clockwise from there, holes clockwise."""
+
+    id: int
+    plane: int  # id of its plane
+    axis: int  # 0, 1, 2: the plane's normal
+    offset: float  # m
+    normal: Float  # (3,) unit, from the plane towards the camera
+    in_plane: tuple[int, int]  # the two axes (u, v) in the plane for which u x v is the normal
+    rings: tuple[Float, ...]  # outline first, then holes; each (V, 3) m, not closed
+
+    @property
+    def name(self) -> str:
+        """The face's name in every format, such as `face_0007`."""
+        return f"face_{self.id:04d}"
+
+    @cached_property
+    def vertices(self) -> Float:
+        """(V, 3) m, the points of all rings in their order."""
+        return np.concatenate(self.rings)
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """The geometry of a scene as the formats write it."""
+
+    groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ...; none is empty
+    faces: tuple[FlatFace, ...]  # in ascending id
+    photo: str  # name of the photo without its folder: one line of valid Unicode
+    unit_note: str  # one ASCII phrase that says what a unit is
+
+    @cached_property
+    def points(self) -> Float:
+        """(M, 3) m, every line end and every vertex; M is 0 only for an empty scene."""
+        ends = [group.ends.reshape(-1, 3) for group in self.groups]
+        return np.concatenate([np.zeros((0, 3)), *ends, *(face.vertices for face in self.faces)])
+
+
+def build_model(scene: Scene) -> Model:
+    """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out."""
+    scale = metres_per_unit(scene)
+    return Model(
+        groups=_line_groups(scene, scale),
+        faces=tuple(_flat_face(plane, face, scale) for plane, face in scene.faces),
+        photo=photo_name(scene),
+        unit_note=FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT,
+    )
+
+
+def metres_per_unit(scene: Scene) -> float:
+    """The factor from the scene's unit to metres; 1 where no length is known."""
+    return 1.0 if scene.metres_per_unit is None else scene.metres_per_unit
+
+
+def photo_name(scene: Scene) -> str:
+    """The photo's name without folder, line ends and bytes that are no UTF-8, which would break a file quoting it."""
+    return " ".join(Path(scene.photo).name.encode(errors="replace").decode().split())
+
+
+def _line_groups(scene: Scene, scale: float) -> tuple[LineGroup, ...]:
+    lines = scene.lines
+    order = np.argsort(lines.id)
+    ends = lines.ends * scale
+    long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST_LINE
+    groups = []
+    for axis in range(3):
+        for is_boundary in (True, False):
+            chosen = order[(long_enough & (lines.axis == axis) & (lines.is_boundary == is_boundary))[order]]
+            if len(chosen):
+                groups.append(LineGroup(axis, is_boundary, lines.id[chosen], ends[chosen]))
+    return tuple(groups)
+
+
+def _flat_face(plane: Plane, face: Face, scale: float) -> FlatFace:
+    # The camera is the world's origin: it lies on the side of the plane that the offset points away from.
+    side = -1.0 if plane.offset > 0 else 1.0
+    normal = np.zeros(3)
+    normal[plane.axis] = side
+    u, v = (plane.axis + 1) % 3, (plane.axis + 2) % 3
+    in_plane = (u, v) if side > 0 else (v, u)
+    outline = _turned(face.outline * scale, in_plane, counter_clockwise=True)
+    holes = [_turned(hole * scale, in_plane, counter_clockwise=False) for hole in face.holes]
+    return FlatFace(face.id, plane.id, plane.axis, plane.offset * scale, normal, in_plane, (outline, *holes))
+
+
+def _turned(ring: Float, in_plane: tuple[int, int], counter_clockwise: bool) -> Float:
+    return ring if (signed_area(ring[:, in_plane]) > 0) == counter_clockwise else ring[::-1]
+
+
+def signed_area(ring: Float) -> float:
+    """The area of a ring (V, 2), positive where it runs counter-clockwise."""
+    x, y = (ring - ring[0]).T  # about its first point, so that distance from the origin costs no digits
+    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

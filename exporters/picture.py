@@ -1,0 +1,201 @@
+"""PNG: the photo with its lines coloured by axis and its crossings, beside three views of the lines in space."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from exporters.canvas import Canvas, drawable, text_width
+from exporters.colours import line_colour
+from exporters.model import photo_name
+from exporters.picture_views import VIEWS, draw_view
+from linecad.scene import AXES, Float, Scene
+
+_WIDTH = 2400  # px
+_MARGIN, _GAP = 44, 24  # px
+_PHOTO_WIDTH, _PHOTO_HEIGHT = 1560, 1500  # px, at most, with the views beside it
+_VIEW_HEIGHT, _VIEW_HEIGHT_BELOW = 300, 560  # px, at least with the views beside the photo; always with them below
+_PANORAMA = 1.9  # from this ratio of width to height on, the views stand below the photo
+_LONGEST_PANORAMA = 40  # px of height that the thinnest strip of a photo still gets
+
+_PAPER, _INK, _QUIET = (0.965, 0.965, 0.97), (0.13, 0.13, 0.15), (0.40, 0.40, 0.43)
+_NO_PHOTO = (0.86, 0.86, 0.87)
+_REAL, _FAKE, _CASING = (1.0, 0.84, 0.12), (0.80, 0.05, 0.62), (1.0, 1.0, 1.0)
+_TITLE, _TEXT = 42, 27  # px of text
+
+_COLOUR_KEPT = 0.50  # of the photo's colours, so that those of the lines stand out
+_BRIGHTENED = 0.30  # share of white laid over the photo
+_FACE_OPACITY = 0.20
+_LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 3, False: 1}  # px, by boundary
+_FEW_LINES = 600  # from there on they are drawn thin
+_MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.5  # px, of crossings
+_FEW_MARKS = 400  # crossings; from there on they are drawn smaller, so that they do not cover the photo
+_NEAREST_SHARE = 0.02  # of the middle depth: parts of faces nearer to the camera are cut off
+
+
+class _Box(NamedTuple):
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
+    """Write the picture to `path`; OSError where that fails. `photo` is RGB, of the size of the camera, or None."""
+    shape, views, height = _layout(scene.camera.width / scene.camera.height)
+    canvas = Canvas(_WIDTH, height, _PAPER)
+    _draw_title(canvas, scene)
+    _draw_photo(canvas.window(*shape), scene, photo)
+    for box, (name, right, up) in zip(views, VIEWS, strict=True):
+        draw_view(canvas.window(*box), scene, name, right, up)
+    _draw_legend(canvas, scene)
+    canvas.image().save(path, format="PNG")
+
+
+def _layout(aspect: float) -> tuple[_Box, list[_Box], int]:
+    """Where the photo and the views stand, and the height of the picture."""
+    top, inner = _MARGIN + 122, _WIDTH - 2 * _MARGIN
+    if aspect >= _PANORAMA:
+        photo = _Box(_MARGIN, top, inner, max(round(inner / aspect), _LONGEST_PANORAMA))
+        width, height = (inner - 2 * _GAP) // 3, _VIEW_HEIGHT_BELOW
+        below = photo.top + photo.height + _GAP
+        views = [_Box(_MARGIN + number * (width + _GAP), below, width, height) for number in range(3)]
+        return photo, views, below + height + 96
+    width = round(min(_PHOTO_WIDTH, _PHOTO_HEIGHT * aspect))
+    photo = _Box(_MARGIN, top, max(width, 1), round(width / aspect))
+    height = max(_VIEW_HEIGHT, (photo.height - 2 * _GAP) // 3)
+    left = _MARGIN + photo.width + _GAP
+    views = [_Box(left, top + number * (height + _GAP), _WIDTH - _MARGIN - left, height) for number in range(3)]
+    return photo, views, top + max(photo.height, 3 * height + 2 * _GAP) + 96
+
+
+def _draw_title(canvas: Canvas, scene: Scene) -> None:
+    lines, real = scene.lines, int(scene.intersections.real.sum())
+    title = (
+        f"{drawable(photo_name(scene))}: {_count(len(lines), 'line')} "
+        f"({_count(int(lines.is_boundary.sum()), 'boundary', 'boundaries')}), {_count(len(scene.planes), 'plane')}, "
+        f"{_count(len(scene.faces), 'face')}"
+    )
+    canvas.text(_MARGIN, _MARGIN + 38, title, _TITLE, _INK)
+    solve, share = scene.solve, f"{100 * scene.solve.gap:.3g} %"
+    facts = [
+        ", ".join(f"{int((lines.axis == axis).sum())} along {AXES[axis]}" for axis in range(3)),
+        f"{_count(len(scene.intersections), 'crossing')}: {real} real, {len(scene.intersections) - real} fake",
+        f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}, {solve.seconds:.1f} s",
+        f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
+    ]
+    canvas.text(_MARGIN, _MARGIN + 88, "   ·   ".join(map(drawable, facts)), _TEXT, _QUIET)
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) -> None:
+    if photo is None:
+        panel.fill(_NO_PHOTO)
+    else:
+        smaller = panel.width < scene.camera.width
+        size, how = (panel.width, panel.height), cv2.INTER_AREA if smaller else cv2.INTER_CUBIC
+        panel.pixels[:] = _faded(np.asarray(cv2.resize(photo, size, interpolation=how), np.float32))
+    scale = np.array([panel.width / scene.camera.width, panel.height / scene.camera.height])
+
+    def shown(pixels: Float) -> Float:
+        result: Float = (pixels + 0.5) * scale - 0.5
+        return result
+
+    _tint_faces(panel, scene, scale)
+    _draw_segments(panel, scene, shown(scene.lines.segment))
+    _draw_crossings(panel, scene, shown(scene.intersections.pixel))
+    if photo is None:
+        panel.text(panel.width / 2, 24, "photo not given", _TEXT, _QUIET, "ma")
+
+
+def _faded(photo: NDArray[np.float32]) -> NDArray[np.uint8]:
+    grey = photo @ np.array([0.299, 0.587, 0.114], np.float32)
+    faded = grey[..., None] * (1 - _COLOUR_KEPT) + photo * _COLOUR_KEPT
+    return np.asarray(np.round(faded * (1 - _BRIGHTENED) + 255 * _BRIGHTENED), np.uint8)
+
+
+def _tint_faces(panel: Canvas, scene: Scene, scale: Float) -> None:
+    """Each face in the colour of the axis that its plane stands across."""
+    depth = scene.lines.ends.reshape(-1, 3) @ scene.rotation[2]
+    nearest = _NEAREST_SHARE * float(np.median(depth[depth > 0])) if (depth > 0).any() else _NEAREST_SHARE
+    for axis in range(3):
+        polygons = []
+        for plane, face in scene.faces:
+            if plane.axis == axis:
+                rings = [_before(ring @ scene.rotation.T, nearest) for ring in (face.outline, *face.holes)]
+                rays = [ring @ scene.camera.matrix.T for ring in rings if len(ring)]
+                polygons.append([(ray[:, :2] / ray[:, 2:] + 0.5) * scale - 0.5 for ray in rays])
+        panel.tint([rings for rings in polygons if rings], line_colour(axis, True), _FACE_OPACITY)
+
+
+def _before(ring: Float, nearest: float) -> Float:
+    """The part of a ring (V, 3) in the camera frame that lies at least `nearest` deep (Sutherland and Hodgman)."""
+    kept: list[Float] = []
+    for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        if start[2] >= nearest:
+            kept.append(start)
+        if (start[2] >= nearest) != (end[2] >= nearest):
+            kept.append(start + (nearest - start[2]) / (end[2] - start[2]) * (end - start))
+    return np.array(kept).reshape(-1, 3)
+
+
+def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
+    """Boundaries over the others, with a light casing that keeps them apart from the photo."""
+    lines = scene.lines
+    for wanted in (False, True):
+        chosen = np.flatnonzero(lines.is_boundary == wanted).tolist()
+        width = (_LINE_WIDTH if len(lines) <= _FEW_LINES else _THIN_LINE_WIDTH)[wanted]
+        for number in chosen:
+            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + 3)
+        for number in chosen:
+            colour = line_colour(int(lines.axis[number]), True)
+            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), colour, width)
+
+
+def _draw_crossings(panel: Canvas, scene: Scene, centres: Float) -> None:
+    """Real ones over the others."""
+    count = max(len(centres), _FEW_MARKS)
+    radius = max(_MARK_RADIUS * (_FEW_MARKS / count) ** 0.5, _SMALLEST_MARK)
+    real = scene.intersections.real
+    for centre in centres[~real].tolist():
+        _draw_fake(panel, centre, radius)
+    for centre in centres[real].tolist():
+        _draw_real(panel, centre, radius)
+
+
+def _draw_real(panel: Canvas, centre: list[float], radius: float) -> None:
+    panel.disc(centre, radius + 1.5, _INK)
+    panel.disc(centre, radius, _REAL)
+
+
+def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
+    panel.cross(centre, radius + 2, _CASING, 5)
+    panel.cross(centre, radius + 2, _FAKE, 3)
+
+
+def _draw_legend(canvas: Canvas, scene: Scene) -> None:
+    x, y = float(_MARGIN), canvas.height - 48
+    for axis in range(3):
+        for is_boundary in (True, False):
+            width = _LINE_WIDTH[is_boundary]
+            canvas.line((x, y), (x + 50, y), line_colour(axis, True), width)
+            x = _label(canvas, x + 62, y, f"{AXES[axis]} {'boundary' if is_boundary else 'other'}")
+    _draw_real(canvas, [x + 8, y], _MARK_RADIUS)
+    x = _label(canvas, x + 26, y, "real crossing")
+    _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)
+    x = _label(canvas, x + 26, y, "fake crossing")
+    others = int((scene.lines.component != 0).sum())
+    if others:
+        text = f"{_count(others, 'line')} of smaller components not in the views"
+        canvas.text(_WIDTH - _MARGIN, y, text, _TEXT, _QUIET, "rm")
+
+
+def _label(canvas: Canvas, x: float, y: float, text: str) -> float:
+    """Write a label of the legend; where the next entry starts."""
+    canvas.text(x, y, text, _TEXT, _INK, "lm")
+    return x + text_width(text, _TEXT) + 34

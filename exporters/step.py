@@ -1,0 +1,178 @@
+"""STEP AP214 (ISO 10303-21 and -214), in millimetres: https://www.steptools.com/stds/stp_aim/html/
+
+An assembly `linecad` of two assemblies and a part: `lines`, with one part of straight edges a group; `faces`, with one
+part a face, which has its holes; and `camera`, a point where it stood. build123d makes the shapes. OCCT's XCAF is used
+directly for the document, because build123d's own STEP export garbles names that are not ASCII, colours part and
+instance so that FreeCAD doubles the objects, and never writes the same file twice.
+"""
+
+import contextlib
+import io
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from build123d import Compound, Edge, Shape, Vertex, Wire
+from build123d import Face as ShapeFace
+from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Interface import Interface_Static
+from OCP.Message import Message, Message_Gravity
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.Standard import Standard_Failure
+from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
+from OCP.STEPControl import STEPControl_Controller, STEPControl_StepModelType
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.TopLoc import TopLoc_Location
+from OCP.XCAFApp import XCAFApp_Application
+from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+from OCP.XSControl import XSControl_WorkSession
+
+from exporters.colours import FACE, RGB, line_colour
+from exporters.faces import checked_polygon
+from exporters.model import FlatFace, LineGroup, Model, build_model
+from exporters.step_canonical import canonical
+from linecad.scene import Float, Scene
+
+_MILLIMETRES = 1000.0  # per metre
+_METRES_PER_DOCUMENT_UNIT = 0.001
+_TIMESTAMP = "1970-01-01T00:00:00"  # the real one would make each file another
+_CURVE, _SURFACE = XCAFDoc_ColorType.XCAFDoc_ColorCurv, XCAFDoc_ColorType.XCAFDoc_ColorSurf
+_OPTIONS = {"write.step.schema": "AP214IS", "write.step.unit": "MM", "write.step.product.name": "linecad"}
+
+
+def write(scene: Scene, path: Path) -> None:
+    """Write the scene as STEP to `path`; OSError where that fails."""
+    model = build_model(scene)
+    with _silence():
+        try:
+            data = _written(_build_document(model), model)
+        except Standard_Failure as error:
+            raise OSError(f"the STEP library failed with {type(error).__name__}") from error
+    path.write_text(canonical(data.decode()), encoding="utf-8", newline="\n")
+
+
+class _Assembly:
+    """An XCAF document that parts and assemblies are added to."""
+
+    def __init__(self) -> None:
+        self.document = TDocStd_Document(TCollection_ExtendedString("XmlOcaf"))
+        XCAFApp_Application.GetApplication_s().InitDocument(self.document)
+        XCAFDoc_DocumentTool.SetLengthUnit_s(self.document, _METRES_PER_DOCUMENT_UNIT)
+        self._shapes: XCAFDoc_ShapeTool = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
+        self._colours: XCAFDoc_ColorTool = XCAFDoc_DocumentTool.ColorTool_s(self.document.Main())
+        XCAFDoc_ShapeTool.SetAutoNaming_s(False)  # else OCCT calls every part after its kind of shape
+
+    def add_assembly(self, parent: TDF_Label | None, name: str) -> TDF_Label:
+        label = self._shapes.NewShape()
+        _set_name(label, name)
+        if parent is not None:
+            self._place(parent, label, name)
+        return label
+
+    def add_part(self, parent: TDF_Label, name: str, shape: Shape[Any]) -> TDF_Label:
+        label = self._shapes.AddShape(shape.wrapped, False)
+        _set_name(label, name)
+        self._place(parent, label, name)
+        return label
+
+    def paint(self, part: TDF_Label, colour: RGB, kind: XCAFDoc_ColorType) -> None:
+        """Colour the part alone; a second colour on its instance would double the object in FreeCAD."""
+        self._colours.SetColor(part, _quantity(colour), kind)
+
+    def finish(self) -> TDocStd_Document:
+        self._shapes.UpdateAssemblies()
+        return self.document
+
+    def _place(self, parent: TDF_Label, label: TDF_Label, name: str) -> None:
+        _set_name(self._shapes.AddComponent(parent, label, TopLoc_Location()), name)
+
+
+def _build_document(model: Model) -> TDocStd_Document:
+    assembly = _Assembly()
+    root = assembly.add_assembly(None, "linecad")
+    if model.groups:
+        lines = assembly.add_assembly(root, "lines")
+        for group in model.groups:
+            _add_lines(assembly, lines, group)
+    if model.faces:
+        faces = assembly.add_assembly(root, "faces")
+        for face in model.faces:
+            assembly.paint(assembly.add_part(faces, face.name, _face_shape(face)), FACE, _SURFACE)
+    # In a compound, because OCCT loses the name of a bare vertex.
+    assembly.add_part(root, "camera", Compound([Vertex(0.0, 0.0, 0.0)]))
+    return assembly.finish()
+
+
+def _add_lines(assembly: _Assembly, parent: TDF_Label, group: LineGroup) -> None:
+    """One part for the whole group: a part a line takes FreeCAD 17 s to open for 2,000 lines."""
+    edges = [Edge.make_line(start, end) for start, end in (group.ends * _MILLIMETRES).tolist()]
+    part = assembly.add_part(parent, group.name, Compound(edges))
+    assembly.paint(part, line_colour(group.axis, group.is_boundary), _CURVE)
+
+
+def _face_shape(face: FlatFace) -> ShapeFace:
+    checked_polygon(face)
+    outline, *holes = (_wire(ring) for ring in face.rings)
+    shape = ShapeFace(outline, holes)
+    normal = shape.normal_at()
+    return shape if (normal.X, normal.Y, normal.Z)[face.axis] * face.normal[face.axis] > 0 else -shape
+
+
+def _wire(ring: Float) -> Wire:
+    return Wire.make_polygon((ring * _MILLIMETRES).tolist(), close=True)
+
+
+def _written(document: TDocStd_Document, model: Model) -> bytes:
+    STEPControl_Controller.Init_s()
+    STEPCAFControl_Controller.Init_s()
+    for name, value in _OPTIONS.items():
+        if not Interface_Static.SetCVal_s(name, value):
+            raise OSError(f"the STEP library does not know {name} = {value}")
+    Interface_Static.SetIVal_s("write.surfacecurve.mode", 0)  # planes need no curves in their parameter space
+    writer = STEPCAFControl_Writer(XSControl_WorkSession(), False)
+    writer.SetColorMode(True)
+    writer.SetNameMode(True)
+    if not writer.Transfer(document, STEPControl_StepModelType.STEPControl_AsIs):
+        raise OSError("the STEP library could not convert it")
+    header = APIHeaderSection_MakeHeader(writer.Writer().Model())
+    header.SetDescriptionValue(1, _ascii(f"linecad reconstruction; {model.unit_note}"))
+    header.SetName(_ascii("linecad"))
+    header.SetTimeStamp(_ascii(_TIMESTAMP))
+    header.SetAuthorValue(1, _ascii(""))
+    header.SetOrganizationValue(1, _ascii(""))
+    header.SetOriginatingSystem(_ascii("linecad"))
+    header.SetPreprocessorVersion(_ascii("linecad"))
+    stream = io.BytesIO()
+    if writer.WriteStream(stream) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise OSError("the STEP library could not write it")
+    return stream.getvalue()
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Keep OCCT from printing its progress; a failure is told by its return values."""
+    printers = list(Message.DefaultMessenger_s().Printers())
+    levels = [printer.GetTraceLevel() for printer in printers]
+    for printer in printers:
+        printer.SetTraceLevel(Message_Gravity.Message_Fail)
+    try:
+        yield
+    finally:
+        for printer, level in zip(printers, levels, strict=True):
+            printer.SetTraceLevel(level)
+
+
+def _set_name(label: TDF_Label, name: str) -> None:
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name, True))  # True: the name is UTF-8
+
+
+def _quantity(colour: RGB) -> Quantity_Color:
+    return Quantity_Color(*colour, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+
+
+def _ascii(text: str) -> TCollection_HAsciiString:
+    return TCollection_HAsciiString(text)

@@ -1,0 +1,219 @@
+"""OpenUSD stages, in metres, z up, as text, crate or package: https://openusd.org/release/spec.html
+
+Lines are BasisCurves, one prim a group; faces are triangle meshes. USD's camera has aperture offsets, so it is the
+photo's camera exactly. The variant set `content` shows all, the lines alone or the faces alone.
+"""
+
+import io
+import tempfile
+import zipfile
+from pathlib import Path
+
+import numpy as np
+from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdShade, Vt
+
+from exporters.camera import camera_to_world, clipping_range, principal_point
+from exporters.colours import FACE, RGB, line_colour, linear
+from exporters.faces import triangulate
+from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from linecad.scene import AXES, Scene
+
+_ROOT = Sdf.Path("/Reconstruction")
+_LINES, _FACES, _MATERIALS = (_ROOT.AppendChild(name) for name in ("Lines", "Faces", "Materials"))
+_FACE_MATERIAL = _MATERIALS.AppendChild("face")
+_CONTENT = {"full": (True, True), "wireframe": (True, False), "faces": (False, True)}  # variant: lines, faces shown
+
+_APERTURE = 0.36  # width of the film in tenths of a unit, as USD counts them: 36 mm where the unit is a metre
+_WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of the curves over the middle depth of the model, by boundary
+_LARGEST_INT32 = 2**31 - 1
+_ALIGNMENT = 64  # bytes; a package's layers start at multiples of it, so that they can be mapped into memory
+_PADDING_ID = 0x1986  # of the zip extra field that makes up the alignment, as USD's own writer calls it
+_ZIP_LOCAL_HEADER = 30  # bytes before name and extra field
+_EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time of a zip entry; the real one would make each file another
+
+
+def write(scene: Scene, path: Path) -> None:
+    """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails."""
+    stage = _build_stage(scene)
+    if path.suffix == ".usdz":
+        with tempfile.TemporaryDirectory(prefix=".linecad-", dir=path.parent) as folder:
+            layer = Path(folder) / "scene.usdc"
+            _save(stage, layer)
+            path.write_bytes(_package(layer.name, layer.read_bytes()))
+    else:
+        _save(stage, path)
+
+
+def _save(stage: Usd.Stage, path: Path) -> None:
+    try:
+        saved = stage.GetRootLayer().Export(str(path))
+    except Tf.ErrorException as error:
+        raise OSError("the USD library could not write it") from error
+    if not saved:
+        raise OSError("the USD library could not write it")
+
+
+def _package(name: str, layer: bytes) -> bytes:
+    """A .usdz: a zip that holds the layer, not compressed and aligned."""
+    entry = zipfile.ZipInfo(name, _EPOCH)
+    missing = -(_ZIP_LOCAL_HEADER + len(name) + 4) % _ALIGNMENT  # 4: the extra field's own header
+    entry.extra = _PADDING_ID.to_bytes(2, "little") + missing.to_bytes(2, "little") + bytes(missing)
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr(entry, layer)
+    return packed.getvalue()
+
+
+def _build_stage(scene: Scene) -> Usd.Stage:
+    model = build_model(scene)
+    # In memory first: a stage that is made as a file leaves half of it where the disk is full.
+    stage = Usd.Stage.CreateInMemory()
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    UsdGeom.SetStageMetersPerUnit(stage, 1.0)
+    stage.GetRootLayer().documentation = f"linecad: reconstruction of {model.photo}; {model.unit_note}"
+    root = UsdGeom.Xform.Define(stage, _ROOT)
+    stage.SetDefaultPrim(root.GetPrim())
+    Usd.ModelAPI(root.GetPrim()).SetKind(Kind.Tokens.component)
+    for path in (_LINES, _FACES, _MATERIALS):
+        UsdGeom.Scope.Define(stage, path)
+    for group in model.groups:
+        _add_lines(stage, group, _width(model, scene, group.is_boundary))
+    if model.faces:
+        _add_material(stage, _FACE_MATERIAL, FACE, emits=False)
+    for face in model.faces:
+        _add_face(stage, face)
+    _add_planes(root.GetPrim(), scene)
+    _add_camera(stage, scene, model)
+    _add_variants(stage, root.GetPrim())
+    boxes = UsdGeom.BBoxCache(Usd.TimeCode.Default(), [UsdGeom.Tokens.default_])
+    hint = UsdGeom.ModelAPI.Apply(root.GetPrim())
+    hint.SetExtentsHint(hint.ComputeExtentsHint(boxes))
+    return stage
+
+
+def _width(model: Model, scene: Scene, is_boundary: bool) -> float:
+    """How thick curves are drawn, in m: thin as seen from the camera, whatever the scale of the scene."""
+    return _WIDTH_SHARE[is_boundary] * float(np.median(np.abs(model.points @ scene.rotation[2])))
+
+
+def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
+    curves = UsdGeom.BasisCurves.Define(stage, _LINES.AppendChild(group.name))
+    curves.CreateTypeAttr(UsdGeom.Tokens.linear)
+    curves.CreateWrapAttr(UsdGeom.Tokens.nonperiodic)
+    curves.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(group.ends.reshape(-1, 3).astype(np.float32)))
+    curves.CreateCurveVertexCountsAttr(Vt.IntArray(len(group.ids), 2))
+    curves.CreateWidthsAttr(Vt.FloatArray([width]))
+    curves.SetWidthsInterpolation(UsdGeom.Tokens.constant)
+    _set_extent(curves)
+    colour = line_colour(group.axis, group.is_boundary)
+    _set_display_colour(curves, colour)
+
+    whole, wide = (Sdf.ValueTypeNames.IntArray, np.int32), (Sdf.ValueTypeNames.Int64Array, np.int64)
+    kind, number = whole if group.ids.max() <= _LARGEST_INT32 else wide
+    array = Vt.IntArray if number is np.int32 else Vt.Int64Array
+    variables = UsdGeom.PrimvarsAPI(curves)
+    ids = variables.CreatePrimvar("linecad:id", kind, UsdGeom.Tokens.uniform)
+    ids.Set(array.FromNumpy(group.ids.astype(number)))
+    boundary = variables.CreatePrimvar("linecad:boundary", Sdf.ValueTypeNames.BoolArray, UsdGeom.Tokens.uniform)
+    boundary.Set(Vt.BoolArray(len(group.ids), group.is_boundary))
+    _set(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
+
+    material = _MATERIALS.AppendChild(group.name)
+    _add_material(stage, material, colour, emits=True)
+    _bind(stage, curves.GetPrim(), material)
+
+
+def _add_face(stage: Usd.Stage, face: FlatFace) -> None:
+    triangles = triangulate(face)
+    mesh = UsdGeom.Mesh.Define(stage, _FACES.AppendChild(face.name))
+    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(face.vertices.astype(np.float32)))
+    mesh.CreateFaceVertexCountsAttr(Vt.IntArray(len(triangles), 3))
+    mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(triangles.astype(np.int32).ravel()))
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)  # the default would round all corners off
+    mesh.CreateDoubleSidedAttr(True)
+    mesh.CreateOrientationAttr(UsdGeom.Tokens.rightHanded)
+    mesh.CreateNormalsAttr(Vt.Vec3fArray(len(face.vertices), Gf.Vec3f(*face.normal.tolist())))
+    mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
+    _set_extent(mesh)
+    _set_display_colour(mesh, FACE)
+    prim = mesh.GetPrim()
+    prim.SetDisplayName(face.name)
+    id_type = Sdf.ValueTypeNames.Int if face.id <= _LARGEST_INT32 else Sdf.ValueTypeNames.Int64
+    _set(prim, "linecad:faceId", id_type, face.id)
+    _set(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, AXES[face.axis])
+    _set(prim, "linecad:planeOffset", Sdf.ValueTypeNames.Double, face.offset)
+    _set(prim, "linecad:ringCounts", Sdf.ValueTypeNames.IntArray, Vt.IntArray([len(ring) for ring in face.rings]))
+    _bind(stage, prim, _FACE_MATERIAL)
+
+
+def _add_material(stage: Usd.Stage, path: Sdf.Path, colour: RGB, emits: bool) -> None:
+    """A preview surface; one that emits has its colour in any light, as lines should."""
+    material = UsdShade.Material.Define(stage, path)
+    shader = UsdShade.Shader.Define(stage, path.AppendChild("Surface"))
+    shader.CreateIdAttr("UsdPreviewSurface")
+    black, light = Gf.Vec3f(0.0), Gf.Vec3f(*linear(colour))
+    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(black if emits else light)
+    shader.CreateInput("emissiveColor", Sdf.ValueTypeNames.Color3f).Set(light if emits else black)
+    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(1.0)
+    shader.CreateInput("metallic", Sdf.ValueTypeNames.Float).Set(0.0)
+    material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
+
+
+def _bind(stage: Usd.Stage, prim: Usd.Prim, material: Sdf.Path) -> None:
+    UsdShade.MaterialBindingAPI.Apply(prim).Bind(UsdShade.Material.Get(stage, material))
+
+
+def _add_planes(root: Usd.Prim, scene: Scene) -> None:
+    """All planes, also those without a face, as three arrays on the root prim."""
+    scale = metres_per_unit(scene)
+    planes = scene.planes
+    _set(root, "linecad:planeIds", Sdf.ValueTypeNames.Int64Array, Vt.Int64Array([plane.id for plane in planes]))
+    axes = Vt.TokenArray([AXES[plane.axis] for plane in planes])
+    _set(root, "linecad:planeAxes", Sdf.ValueTypeNames.TokenArray, axes)
+    offsets = Vt.DoubleArray([plane.offset * scale for plane in planes])
+    _set(root, "linecad:planeOffsets", Sdf.ValueTypeNames.DoubleArray, offsets)
+
+
+def _add_camera(stage: Usd.Stage, scene: Scene, model: Model) -> None:
+    width, height, focal = scene.camera.width, scene.camera.height, scene.camera.focal
+    cx, cy = principal_point(scene.camera)
+    camera = UsdGeom.Camera.Define(stage, _ROOT.AppendChild("PhotoCamera"))
+    camera.CreateProjectionAttr(UsdGeom.Tokens.perspective)
+    camera.CreateFocalLengthAttr(_APERTURE * focal / width)
+    camera.CreateHorizontalApertureAttr(_APERTURE)
+    camera.CreateVerticalApertureAttr(_APERTURE * height / width)
+    camera.CreateHorizontalApertureOffsetAttr(_APERTURE * (0.5 - cx / width))
+    camera.CreateVerticalApertureOffsetAttr(_APERTURE * height / width * (cy / height - 0.5))
+    camera.CreateClippingRangeAttr(Gf.Vec2f(*clipping_range(model, scene.rotation)))
+    pose = Gf.Matrix4d(camera_to_world(scene).T.tolist())  # USD multiplies rows from the left
+    camera.AddTransformOp(UsdGeom.XformOp.PrecisionDouble).Set(pose)
+    prim = camera.GetPrim()
+    _set(prim, "linecad:imageWidth", Sdf.ValueTypeNames.Int, width)
+    _set(prim, "linecad:imageHeight", Sdf.ValueTypeNames.Int, height)
+    matrix = [focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0]
+    _set(prim, "linecad:K", Sdf.ValueTypeNames.DoubleArray, Vt.DoubleArray(matrix))
+
+
+def _add_variants(stage: Usd.Stage, root: Usd.Prim) -> None:
+    variants = root.GetVariantSets().AddVariantSet("content")
+    for name, shown in _CONTENT.items():
+        variants.AddVariant(name)
+        variants.SetVariantSelection(name)
+        with variants.GetVariantEditContext():
+            for path, visible in zip((_LINES, _FACES), shown, strict=True):
+                visibility = UsdGeom.Tokens.inherited if visible else UsdGeom.Tokens.invisible
+                UsdGeom.Imageable(stage.GetPrimAtPath(path)).CreateVisibilityAttr(visibility)
+    variants.SetVariantSelection("full")
+
+
+def _set_extent(shape: UsdGeom.Boundable) -> None:
+    extent = UsdGeom.Boundable.ComputeExtentFromPlugins(shape, Usd.TimeCode.Default())
+    shape.CreateExtentAttr(extent)
+
+
+def _set_display_colour(shape: UsdGeom.Gprim, colour: RGB) -> None:
+    shape.CreateDisplayColorPrimvar(UsdGeom.Tokens.constant).Set(Vt.Vec3fArray([Gf.Vec3f(*linear(colour))]))
+
+
+def _set(prim: Usd.Prim, name: str, kind: Sdf.ValueTypeName, value: object) -> None:
+    prim.CreateAttribute(name, kind, True).Set(value)

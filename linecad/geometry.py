@@ -1,0 +1,73 @@
+"""Rays, projection and image lines: the mathematics that several stages share.
+
+Frames are those of `linecad.scene`. `K` is the camera matrix in px, `R` takes world to camera, so that
+`pixel ~ K R P` and the world ray of a pixel is `d = R^-1 K^-1 pixel` (paper, equations 1 and 2).
+"""
+
+import numpy as np
+
+from linecad.scene import Float
+
+
+def homogeneous(points: Float) -> Float:
+    """(..., 2) points as (..., 3) with a one appended."""
+    return np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1)
+
+
+def world_rays(pixels: Float, K: Float, R: Float) -> Float:
+    """World rays (..., 3) of pixels (..., 2), scaled so that their camera depth is 1."""
+    rays: Float = homogeneous(pixels) @ np.linalg.inv(K).T @ R
+    return rays
+
+
+def project(points: Float, K: Float, R: Float) -> Float:
+    """Pixels (..., 2) of world points (..., 3); the points must lie before the camera."""
+    image = points @ (K @ R).T
+    pixels: Float = image[..., :2] / image[..., 2:]
+    return pixels
+
+
+def vanishing_points(K: Float, R: Float) -> Float:
+    """Homogeneous vanishing points (3, 3) of the axes x, y, z, one a row."""
+    points: Float = (K @ R).T
+    return points
+
+
+def directions_to(points: Float, vanishing: Float) -> Float:
+    """Unit image directions (..., 2) from points (..., 2) px towards homogeneous vanishing points (..., 3).
+
+    Written so that a vanishing point at infinity needs no special case. The sign is that of the homogeneous point.
+    """
+    towards = vanishing[..., :2] - points * vanishing[..., 2:]
+    length = np.linalg.norm(towards, axis=-1, keepdims=True)
+    directions: Float = towards / np.maximum(length, np.finfo(float).tiny)
+    return directions
+
+
+def angles_to(ends: Float, vanishing: Float) -> Float:
+    """Sine of the angle (V, N) between segments (N, 2, 2) and the lines from their middles to points (V, 3)."""
+    middle = ends.mean(axis=1)
+    along = ends[:, 1] - ends[:, 0]
+    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    towards = directions_to(middle[None], vanishing[:, None])
+    sines: Float = np.abs(towards[..., 0] * along[:, 1] - towards[..., 1] * along[:, 0])
+    return sines
+
+
+def plane_normals(ends: Float, K: Float) -> Float:
+    """Unit normals (N, 3), in the camera frame, of the planes through the camera centre and segments (N, 2, 2)."""
+    rays = homogeneous(ends) @ np.linalg.inv(K).T
+    normals = np.cross(rays[:, 0], rays[:, 1])
+    unit: Float = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    return unit
+
+
+def rotation_about(vector: Float) -> Float:
+    """Rotation matrix (3, 3) of a rotation vector (3,), rad (Rodrigues' formula)."""
+    angle = float(np.linalg.norm(vector))
+    if angle < 1e-15:
+        return np.eye(3)
+    x, y, z = vector / angle
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    rotation: Float = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return rotation

@@ -1,0 +1,108 @@
+"""Pixels to straight segments, and fragments of one line grouped along its vanishing point.
+
+The paper used MCMLSD, which finds whole lines first. OpenCV's detector gives fragments, so once the frame is known the
+fragments of one axis that lie on one image line through its vanishing point and nearly touch become one segment.
+"""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from linecad.geometry import angles_to, directions_to, vanishing_points
+from linecad.scene import Camera, Float, Int, ManhattanFrame, Segments
+
+# Lengths below are for a photo of this width and are scaled with the photo's own.
+REFERENCE_WIDTH = 3840.0  # px, the paper's photos
+
+SMALL_PHOTO_WIDTH = 1200  # px; below it the detector looks at an enlarged photo, for its noise floor is in pixels
+DETECTOR_SCALE = 0.8
+DETECTOR_SCALE_SMALL = 1.6
+MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
+MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
+
+LABEL_ANGLE = np.radians(3.0)  # largest angle between a segment and its vanishing point
+LABEL_ANGLE_SMALL = np.radians(5.0)  # the same for small photos, where segments are short
+GROUP_ACROSS = 2.5  # px at the reference width, between fragments of one line
+GROUP_ACROSS_FLOOR = 0.8  # px
+GROUP_ALONG = 31.0  # px at the reference width; longer gaps fuse lines of two planes
+GROUP_ALONG_FLOOR = 4.0  # px
+
+
+def find_segments(grey: NDArray[np.uint8]) -> Segments:
+    """All straight segments of a grey photo (H, W), not labelled yet, in the detector's order."""
+    small = grey.shape[1] < SMALL_PHOTO_WIDTH
+    detector = cv2.createLineSegmentDetector(
+        cv2.LSD_REFINE_ADV, scale=DETECTOR_SCALE_SMALL if small else DETECTOR_SCALE
+    )
+    found = detector.detect(grey)[0]
+    ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
+    scale = grey.shape[1] / REFERENCE_WIDTH
+    long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) >= max(MIN_FRAGMENT * scale, MIN_FRAGMENT_FLOOR)
+    ends = ends[long_enough]
+    return Segments(ends, np.full(len(ends), -1))
+
+
+def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
+    """The segments that point to one of the three vanishing points, labelled by it (the paper's D_i)."""
+    limit = LABEL_ANGLE_SMALL if camera.width < SMALL_PHOTO_WIDTH else LABEL_ANGLE
+    sines = angles_to(segments.ends, vanishing_points(camera.matrix, frame.rotation))
+    return Segments(segments.ends, np.where(sines.min(axis=0) < np.sin(limit), sines.argmin(axis=0), -1)).subset(
+        sines.min(axis=0) < np.sin(limit)
+    )
+
+
+def group_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
+    """Labelled fragments joined into whole segments that pass exactly through their vanishing points.
+
+    The longest fragment of a line leads: it gathers the fragments of its axis within GROUP_ACROSS of its image line
+    whose gaps along the line are at most GROUP_ALONG. The joined segment runs through the length-weighted mean.
+    """
+    scale = camera.width / REFERENCE_WIDTH
+    across = max(GROUP_ACROSS * scale, GROUP_ACROSS_FLOOR)
+    along = max(GROUP_ALONG * scale, GROUP_ALONG_FLOOR)
+    points = vanishing_points(camera.matrix, frame.rotation)
+    ends: list[Float] = []
+    axes: list[int] = []
+    for axis in range(3):
+        grouped = _group_axis(segments.ends[segments.axis == axis], points[axis], across, along)
+        ends += grouped
+        axes += [axis] * len(grouped)
+    return Segments(np.array(ends), np.array(axes, np.int64))
+
+
+def _group_axis(ends: Float, vanishing: Float, across: float, along: float) -> list[Float]:
+    """Fragments (N, 2, 2) of one axis as a list of joined segments (2, 2), the longest leader first."""
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    middle = ends.mean(axis=1)
+    direction = directions_to(middle, vanishing)
+    free = np.ones(len(ends), bool)
+    joined: list[Float] = []
+    for leader in np.argsort(-length, kind="stable"):
+        if not free[leader]:
+            continue
+        normal = np.array([-direction[leader, 1], direction[leader, 0]])
+        near = np.flatnonzero(free & (np.abs((middle - middle[leader]) @ normal) < across))
+        reach = (ends[near] - middle[leader]) @ direction[leader]
+        members = near[_touching(reach.min(axis=1), reach.max(axis=1), along, int(np.flatnonzero(near == leader)[0]))]
+        free[members] = False
+        joined.append(_join(ends[members], length[members], vanishing))
+    return joined
+
+
+def _touching(low: Float, high: Float, gap: float, leader: int) -> Int:
+    """Indices of the intervals that hang together with the leader's over gaps of at most `gap`."""
+    order = np.argsort(low, kind="stable")
+    furthest = np.maximum.accumulate(high[order])
+    new_run = np.r_[False, low[order][1:] > furthest[:-1] + gap]
+    run = np.cumsum(new_run)
+    together: Int = order[run == run[np.flatnonzero(order == leader)[0]]]
+    return together
+
+
+def _join(ends: Float, length: Float, vanishing: Float) -> Float:
+    """One segment (2, 2) through fragments (M, 2, 2), turned to pass exactly through the vanishing point."""
+    centre = np.average(ends.mean(axis=1), axis=0, weights=length)
+    direction = directions_to(centre, vanishing)
+    reach = (ends.reshape(-1, 2) - centre) @ direction
+    segment: Float = centre + np.array([[reach.min()], [reach.max()]]) * direction
+    return segment

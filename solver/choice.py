@@ -1,0 +1,96 @@
+"""A choice of real crossings with what belongs to it, its value, and the re-check that no solver is excused from."""
+
+from dataclasses import dataclass
+from typing import NoReturn
+
+import numpy as np
+
+from linecad.errors import SolverError
+from linecad.scene import Bool, Float, Int, LineGraph
+from solver.depths import end_ratios
+from solver.families import Families, find_two_sides
+from solver.problem import SolveOptions
+
+RECHECK_TOLERANCE = 1e-6  # log depth, what rounding may add to an edge's own tolerance
+
+
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """One point of the search space for a line graph of N lines and E edges."""
+
+    connected: Bool  # (E,)
+    is_boundary: Bool  # (N,)
+    planar_pairs: Int  # (P, 3) two parallel lines and the other axis of their plane, ascending
+    log_depth: Float  # (N,) of each segment's middle
+
+
+def boundaries(graph: LineGraph, connected: Bool) -> Bool:
+    """(N,) the lines that meet lines of both other axes: the smallest B that (19) allows for these crossings."""
+    found = np.zeros(len(graph.segments), bool)
+    for line in find_two_sides(graph):
+        lower, higher = line.sides
+        found[line.line] = connected[list(lower)].any() and connected[list(higher)].any()
+    return found
+
+
+def objective_of(graph: LineGraph, options: SolveOptions, choice: Choice) -> float:
+    """The paper's objective (21), without the terms of the families that are off."""
+    value = float(graph.weight[choice.connected].sum())
+    if "planarity" not in options.without:
+        value += options.mu_planarity * len(choice.planar_pairs)
+    if "boundary" not in options.without:
+        value += options.mu_boundary * int((~choice.is_boundary).sum())
+    return value
+
+
+def trivial_bound(graph: LineGraph, families: Families, options: SolveOptions) -> float:
+    """A value that no choice exceeds: every possible crossing real, every pair planar, no line a boundary."""
+    bound = float(graph.weight[graph.possible].sum()) + options.mu_planarity * len(families.pairs)
+    if "boundary" not in options.without:
+        bound += options.mu_boundary * len(graph.segments)
+    return bound
+
+
+def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice: Choice) -> None:
+    """Raise SolverError unless the choice keeps every promise of the model: depths, cycles, planes, boundaries.
+
+    Works from the graph and the choice alone, without the solver's model, so that a fault in the model or in its
+    numbers cannot pass as an answer.
+    """
+    connected = choice.connected
+    if (connected & ~graph.possible).any():
+        _fail(f"connects edge {int(np.argmax(connected & ~graph.possible))}, whose lines cannot meet")
+    i, j = graph.edges.T
+    off = np.abs(choice.log_depth[i] - choice.log_depth[j] - graph.log_ratio) - graph.tolerance
+    off = np.where(connected & graph.informative, off, -np.inf)
+    if (off > RECHECK_TOLERANCE).any():
+        _fail(f"leaves edge {int(np.argmax(off))} outside its tolerance by {off.max():.3g} in log depth")
+    near = choice.log_depth + np.log(end_ratios(graph).min(axis=1))
+    if len(near) and not (
+        near.min() >= -RECHECK_TOLERANCE and near.max() <= np.log(options.depth_range) + RECHECK_TOLERANCE
+    ):
+        _fail(f"puts line ends outside the depths 1 to {options.depth_range:g}")
+    for cycle in families.cycles:
+        if connected[list(cycle)].all():
+            _fail(f"connects all edges {cycle} of a cycle that must keep one open")
+    if "boundary" not in options.without and (boundaries(graph, connected) & ~choice.is_boundary).any():
+        _fail("does not mark a line as boundary that meets lines of both other axes")
+    _recheck_planes(families, choice)
+
+
+def _recheck_planes(families: Families, choice: Choice) -> None:
+    known = {pair.lines: pair for pair in families.pairs}
+    seen = set()
+    for first, second, plane in choice.planar_pairs.tolist():
+        pair = known.get((first, second))
+        if pair is None or plane not in pair.axes or pair.lines in seen:
+            _fail(f"names lines {first} and {second} as a planar pair, which they cannot be or are already")
+        seen.add(pair.lines)
+        for m in pair.shared:
+            both = int(choice.connected[m.first]) + int(choice.connected[m.second])
+            if both == (1 if m.axis == plane else 2):
+                _fail(f"breaks the plane of lines {first} and {second} at edges {m.first} and {m.second}")
+
+
+def _fail(what: str) -> NoReturn:
+    raise SolverError(f"the solver's answer {what}; this is a fault of linecad, please report it with the photo")

@@ -1,0 +1,117 @@
+"""What a solver is asked and how it answers: the options, the progress on the way, the checks of the input, `solve`."""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Literal, assert_never, get_args
+
+import numpy as np
+
+from linecad.errors import SolverError
+from linecad.scene import Formulation, LineGraph, Solution
+
+Family = Literal["cycles", "planarity", "boundary"]
+FAMILIES: tuple[Family, ...] = get_args(Family)
+FORMULATIONS: tuple[Formulation, ...] = get_args(Formulation)
+
+LARGEST_SEED = 2**31 - 1  # SCIP takes its seed as a C int
+
+
+@dataclass(frozen=True)
+class SolveOptions:
+    """How a line graph is solved; SolverError, in one line, for a value that cannot be used."""
+
+    formulation: Formulation = "paper"
+    without: frozenset[Family] = frozenset()  # families of constraints switched off, with their term of the objective
+    mu_planarity: float = 0.5  # the paper's mu_1, reward of a pair of parallel lines in one Manhattan plane
+    mu_boundary: float = 10.0  # the paper's mu_2, reward of a line that is not at the meeting of two planes
+    time_limit_s: float = 60.0  # s, for the whole of `solve`
+    gap: float = 0.0  # (bound - objective) / |objective| at which the solver may stop
+    seed: int = 0
+    depth_range: float = 100.0  # largest over smallest depth of the lines' near ends; bounds the paper's constant L
+    memory_limit_mb: float = 4096.0  # MB, of the solver itself
+    node_limit: int | None = None  # branch-and-bound nodes
+
+    def __post_init__(self) -> None:
+        if self.formulation not in FORMULATIONS:
+            raise SolverError(f"formulation {self.formulation!r} is unknown; use one of {', '.join(FORMULATIONS)}")
+        unknown = sorted(set(self.without) - set(FAMILIES))
+        if unknown:
+            raise SolverError(f"family {unknown[0]!r} is unknown; use {', '.join(FAMILIES)}")
+        object.__setattr__(self, "without", frozenset(self.without))
+        self._require("mu_planarity", self.mu_planarity >= 0, "zero or more")
+        self._require("mu_boundary", self.mu_boundary >= 0, "zero or more")
+        self._require("time_limit_s", self.time_limit_s > 0, "more than zero seconds")
+        self._require("gap", self.gap >= 0, "zero or more")
+        self._require("seed", 0 <= self.seed <= LARGEST_SEED, f"an integer from 0 to {LARGEST_SEED}")
+        self._require("depth_range", self.depth_range > 1, "more than 1")
+        self._require("memory_limit_mb", self.memory_limit_mb > 0, "more than zero megabytes")
+        self._require("node_limit", self.node_limit is None or self.node_limit > 0, "more than zero nodes, or none")
+
+    def _require(self, name: str, holds: bool, expected: str) -> None:
+        value = getattr(self, name)
+        if not holds or (value is not None and not math.isfinite(value)):
+            raise SolverError(f"{name} is {value}, expected {expected}")
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a solve has come; the objective never falls and the bound never rises from one report to the next."""
+
+    seconds: float  # s since the start of `solve`
+    objective: float  # of the best solution so far
+    bound: float  # no solution is better than this
+    gap: float  # (bound - objective) / max(|objective|, 1e-9)
+    nodes: int  # branch-and-bound nodes so far
+
+
+def relative_gap(objective: float, bound: float) -> float:
+    """The gap as `Solution` and `Progress` state it; a bound below the objective by rounding counts as zero."""
+    return max(0.0, bound - objective) / max(abs(objective), 1e-9)
+
+
+def solve(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progress], None] | None = None) -> Solution:
+    """The best choice of real crossings, with boundary flags, planar pairs and depths.
+
+    `on_progress` is called in the caller's thread, at most about five times a second and once at the end; what it
+    raises stops the solver and comes out of here. Ctrl-C ends the search with the best solution so far and the status
+    "interrupted". The same graph, options and seed give the same solution unless a limit of time or memory or a Ctrl-C
+    ends the search. Raises SolverError when there is no answer that passes the re-check, ValueError for a graph that
+    breaks the promises of LineGraph.
+    """
+    check_graph(graph)
+    match options.formulation:
+        case "paper":
+            from solver.paper import solve_paper
+
+            return solve_paper(graph, options, on_progress)
+        case _:
+            assert_never(options.formulation)
+
+
+def check_graph(graph: LineGraph) -> None:
+    """Raise ValueError unless axes, edges and numbers fit together; `solver.depths` checks the rays."""
+    axis = graph.axis
+    if (axis < 0).any():
+        raise ValueError(f"segment {int(np.argmin(axis))} of the line graph has no axis")
+    if len(graph.edges) == 0:
+        return
+    i, j = graph.edges.T
+    collinear = graph.kind == "collinear"
+    same = axis[i] == axis[j]
+    fits = np.where(
+        collinear, same & (graph.coordinate != axis[i]), ~same & (graph.coordinate == 3 - axis[i] - axis[j])
+    )
+    fits &= (graph.coordinate >= 0) & (graph.coordinate <= 2)
+    if not fits.all():
+        k = int(np.argmin(fits))
+        raise ValueError(
+            f"edge {k} ({i[k]}, {j[k]}) of kind {graph.kind[k]} joins axes {axis[i[k]]} and {axis[j[k]]} "
+            f"in coordinate {graph.coordinate[k]}"
+        )
+    if len(np.unique(graph.edges, axis=0)) != len(graph.edges):
+        raise ValueError("the line graph holds two edges between the same two segments")
+    if not (graph.weight > 0).all():
+        raise ValueError(f"edge {int(np.argmin(graph.weight))} has weight {graph.weight.min()}, expected more than 0")
+    if not (graph.tolerance >= 0).all():
+        raise ValueError(f"edge {int(np.argmin(graph.tolerance))} has tolerance {graph.tolerance.min()}")

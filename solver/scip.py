@@ -1,0 +1,232 @@
+"""SCIP run to an answer: parameters, limits, progress, Ctrl-C, and one total table of its statuses.
+
+SCIP works in a thread of its own without Python's lock; the calling thread waits, reports progress and takes Ctrl-C.
+SCIP's own handling of SIGINT is off, since it prints to stdout and would act on threads that have no part in it.
+"""
+
+import signal
+import threading
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Literal, assert_never, get_args
+
+from pyscipopt import Eventhdlr, Model
+from pyscipopt.scip import PY_SCIP_EVENTTYPE as SCIP_EVENTTYPE
+from pyscipopt.scip import PY_SCIP_STAGE as SCIP_STAGE
+
+from linecad.errors import SolverError
+from linecad.scene import Status
+from solver.problem import Progress, SolveOptions, relative_gap
+
+ScipStatus = Literal[
+    "unknown",
+    "userinterrupt",
+    "nodelimit",
+    "totalnodelimit",
+    "stallnodelimit",
+    "timelimit",
+    "memlimit",
+    "gaplimit",
+    "primallimit",
+    "duallimit",
+    "sollimit",
+    "bestsollimit",
+    "restartlimit",
+    "optimal",
+    "infeasible",
+    "unbounded",
+    "inforunbd",
+    "terminate",
+]
+SCIP_STATUSES: tuple[ScipStatus, ...] = get_args(ScipStatus)
+
+# SCIP's own 1e-6, times L of up to 1e2, would be a twentieth of the tightest tolerance of an edge. Below 1e-7 SoPlex
+# prints that it needs another arithmetic, since SCIP makes it a thousand times stricter where an LP is hard.
+FEASIBILITY_TOLERANCE = 1e-7
+TICK_S = 0.2  # between looks at progress and Ctrl-C
+LEAST_TIME_S = 0.01  # SCIP gets at least this, however long the model took to build
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """How SCIP ended; the solution itself is in the model, bound and nodes are in the reporter."""
+
+    status: Status
+    has_solution: bool
+
+
+def status_of(name: str) -> Status:
+    """The status of a solution for SCIP's name of its own status; SolverError where there can be no solution."""
+    for known in SCIP_STATUSES:
+        if known == name:
+            return _status_of(known)
+    raise SolverError(f"SCIP ended with the unknown status {name!r}; use the SCIP version that linecad asks for")
+
+
+def _status_of(name: ScipStatus) -> Status:
+    match name:
+        case "optimal":
+            return "optimal"
+        case "timelimit":
+            return "time limit"
+        case "gaplimit":
+            return "gap limit"
+        case "userinterrupt" | "terminate":
+            return "interrupted"
+        case "nodelimit" | "totalnodelimit" | "stallnodelimit":
+            return "node limit"
+        case "memlimit":
+            return "memory limit"
+        case "infeasible" | "unbounded" | "inforunbd":
+            raise SolverError(
+                f"SCIP calls the model {name}, which it never is; this is a fault of linecad, please report"
+            )
+        case "primallimit" | "duallimit" | "sollimit" | "bestsollimit" | "restartlimit":
+            raise SolverError(f"SCIP stopped at its {name}, which linecad does not set; remove it from SCIP's settings")
+        case "unknown":
+            raise SolverError("SCIP ended without a status; try another seed")
+        case _:
+            assert_never(name)
+
+
+@contextmanager
+def catch_interrupt() -> Iterator[threading.Event]:
+    """While this is open, Ctrl-C sets the event instead of raising; in the main thread, as Python allows no other."""
+    stop = threading.Event()
+    if threading.current_thread() is not threading.main_thread():
+        yield stop
+        return
+    previous = signal.signal(signal.SIGINT, lambda _number, _frame: stop.set())
+    try:
+        yield stop
+    finally:
+        signal.signal(signal.SIGINT, signal.SIG_DFL if previous is None else previous)
+
+
+class Reporter:
+    """Turns what SCIP knows into Progress that never gets worse, and passes it on when it has changed."""
+
+    def __init__(
+        self, began: float, objective: float, bound: float, on_progress: Callable[[Progress], None] | None
+    ) -> None:
+        """`began` is the `time.monotonic()` of the start, `objective` and `bound` what is known before the search."""
+        self.began = began
+        self.objective = objective
+        self.bound = bound
+        self.nodes = 0
+        self.on_progress = on_progress
+        self.told: tuple[float, float] | None = None
+
+    def note(self, objective: float, bound: float, nodes: int) -> None:
+        """Take over SCIP's numbers; where it knows none yet they are infinite, which never wins."""
+        self.objective = max(self.objective, objective)
+        self.bound = min(self.bound, bound)
+        self.nodes = max(self.nodes, nodes)
+
+    def report(self) -> None:
+        """Call the callback if the objective or the bound has changed."""
+        objective, bound = self.objective, max(self.objective, self.bound)
+        if self.told != (objective, bound):
+            self.finish(objective, bound)
+
+    def finish(self, objective: float, bound: float) -> None:
+        """Call the callback with these numbers."""
+        self.told = (objective, bound)
+        if self.on_progress is not None:
+            seconds = time.monotonic() - self.began
+            self.on_progress(Progress(seconds, objective, bound, relative_gap(objective, bound), self.nodes))
+
+
+class Watch(Eventhdlr):
+    """Tells a reporter objective, bound and nodes of one model whenever SCIP has found something."""
+
+    def __init__(self, model: Model, reporter: Reporter) -> None:
+        self.reporter = reporter
+        self.failure: Exception | None = None
+        model.includeEventhdlr(self, "linecad_watch", "notes progress")
+
+    def eventinit(self) -> None:
+        """Ask SCIP for the events."""
+        for kind in (SCIP_EVENTTYPE.BESTSOLFOUND, SCIP_EVENTTYPE.NODESOLVED, SCIP_EVENTTYPE.DUALBOUNDIMPROVED):
+            self.model.catchEvent(kind, self)
+
+    def eventexec(self, event: object) -> None:  # noqa: ARG002 - the signature that SCIP calls
+        """Note the numbers of the moment."""
+        try:
+            self.note(self.model)
+        except Exception as failure:  # PySCIPOpt would print it and go on; it is raised after the solve instead
+            self.failure = failure
+            self.model.interruptSolve()
+
+    def note(self, model: Model) -> None:
+        """Pass on what SCIP knows."""
+        self.reporter.note(model.getPrimalbound(), model.getDualbound(), model.getNTotalNodes())
+
+
+def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event) -> Outcome:
+    """Solve `model` within the limits of `options`, counted from the reporter's beginning; its progress is reported.
+
+    Raises what the progress callback raised, and SolverError when SCIP fails or ends without a meaning.
+    """
+    reporter = watch.reporter
+    _set_parameters(model, options, options.time_limit_s - (time.monotonic() - reporter.began))
+    reporter.report()
+    with ThreadPoolExecutor(max_workers=1) as pool:
+        running = pool.submit(model.optimizeNogil)
+        try:
+            while not running.done():
+                wait([running], timeout=TICK_S)
+                if stop.is_set():
+                    _interrupt(model)
+                reporter.report()
+        except BaseException:
+            _end(model, running)
+            raise
+    if watch.failure is not None:
+        raise watch.failure
+    try:
+        running.result()
+    except Exception as failure:  # PySCIPOpt has no narrower class for the return codes of SCIP
+        raise SolverError(f"SCIP failed: {failure}; try another seed") from failure
+    watch.note(model)
+    return Outcome(status_of(model.getStatus()), model.getNSols() > 0)
+
+
+def version() -> str:
+    """Name and version of the solver, as solutions state it."""
+    model = Model()
+    return f"SCIP {model.getMajorVersion()}.{model.getMinorVersion()}.{model.getTechVersion()}"
+
+
+def _end(model: Model, running: "Future[None]") -> None:
+    """Interrupt until SCIP has stopped."""
+    while not running.done():
+        _interrupt(model)
+        wait([running], timeout=TICK_S)
+
+
+def _interrupt(model: Model) -> None:
+    """Ask SCIP to stop, if it is in a stage in which it takes that from another thread; else the next tick will."""
+    if model.getStage() not in (SCIP_STAGE.PRESOLVING, SCIP_STAGE.SOLVING):
+        return
+    try:
+        model.interruptSolve()
+    except Exception:  # a bare one from PySCIPOpt: SCIP has left the stage since the line above
+        return
+
+
+def _set_parameters(model: Model, options: SolveOptions, seconds: float) -> None:
+    values: dict[str, bool | int | float] = {
+        "misc/catchctrlc": False,
+        "limits/time": max(seconds, LEAST_TIME_S),
+        "limits/gap": options.gap,
+        "limits/memory": options.memory_limit_mb,
+        "limits/totalnodes": -1 if options.node_limit is None else options.node_limit,
+        "randomization/randomseedshift": options.seed,
+        "numerics/feastol": FEASIBILITY_TOLERANCE,
+    }
+    for name, value in values.items():
+        model.setParam(name, value)

@@ -1,0 +1,88 @@
+"""What all tests share: the photographs for measuring, permissions that bind root too, and no skips in CI."""
+
+import ctypes
+import os
+import sys
+from collections.abc import Generator, Iterator
+from pathlib import Path
+from typing import TypeVar
+
+import pytest
+
+ROOT = Path(__file__).resolve().parent.parent
+NO_SKIPS = "LINECAD_NO_SKIPS"  # 1 where everything that a test may need is there, so that a skip is a failure
+DATA = "LINECAD_DATA"  # the folder with the photographs for measuring, when it is not ../shared/data
+
+Report = TypeVar("Report", pytest.TestReport, pytest.CollectReport)
+
+
+def refuse_skip(report: Report) -> Report:
+    """The report, turned into a failure when it is a skip and no skip is allowed."""
+    if os.environ.get(NO_SKIPS) == "1" and report.skipped and not hasattr(report, "wasxfail"):
+        reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else report.longrepr
+        report.outcome = "failed"
+        report.longrepr = f"{report.nodeid}: {reason} ({NO_SKIPS}=1 allows no skip)"
+    return report
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport() -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    return refuse_skip((yield))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
+    return refuse_skip((yield))
+
+
+@pytest.fixture(scope="session")
+def shared_data() -> Path:
+    """The folder with the photographs for measuring (castle, york_urban, ...)."""
+    folder = Path(os.environ.get(DATA, ROOT.parent / "shared" / "data"))
+    if not folder.is_dir():
+        pytest.skip(f"no photographs for measuring: {folder} is not a folder; set {DATA}")
+    return folder
+
+
+class CapabilityHeader(ctypes.Structure):
+    """Linux's struct __user_cap_header_struct."""
+
+    _fields_ = [("version", ctypes.c_uint32), ("process", ctypes.c_int)]
+
+
+class CapabilityWord(ctypes.Structure):
+    """Linux's struct __user_cap_data_struct: 32 capabilities."""
+
+    _fields_ = [("effective", ctypes.c_uint32), ("permitted", ctypes.c_uint32), ("inheritable", ctypes.c_uint32)]
+
+
+CAPABILITY_VERSION_3 = 0x20080522
+IGNORING_PERMISSIONS = 1 << 1 | 1 << 2  # CAP_DAC_OVERRIDE and CAP_DAC_READ_SEARCH
+
+
+@pytest.fixture
+def bound_by_permissions() -> Iterator[None]:
+    """File permissions bind the test even where root runs it, as CI does; nothing else changes."""
+    if not hasattr(os, "geteuid"):
+        pytest.skip("no permissions that a test could take away on this system")
+    if os.geteuid() != 0:
+        yield
+        return
+    if sys.platform != "linux":
+        pytest.skip("only on Linux can root be bound by permissions")
+    libc = ctypes.CDLL(None, use_errno=True)
+    header, words = CapabilityHeader(CAPABILITY_VERSION_3, 0), (CapabilityWord * 2)()
+
+    def call(function: str) -> None:
+        if getattr(libc, function)(ctypes.byref(header), words) != 0:
+            raise OSError(ctypes.get_errno(), f"{function}: {os.strerror(ctypes.get_errno())}")
+
+    call("capget")
+    before = words[0].effective
+    words[0].effective = before & ~IGNORING_PERMISSIONS
+    call("capset")
+    try:
+        yield
+    finally:
+        words[0].effective = before
+        call("capset")

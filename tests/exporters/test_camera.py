@@ -1,0 +1,51 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point
+from exporters.model import build_model
+from linecad.scene import Camera
+
+
+def camera(width, height, cx, cy):
+    return Camera(width, height, [[500, 0, cx], [0, 500, cy], [0, 0, 1]], "file")
+
+
+def test_pixels_count_from_the_corner():
+    assert principal_point(camera(640, 480, 319.5, 239.5)) == (320.0, 240.0)
+
+
+@pytest.mark.parametrize(
+    ("cx", "cy", "size", "left", "top"),
+    [(319.5, 239.5, (640, 480), 0, 0), (199.7, 299.5, (880, 600), 239.8, 0), (-20.5, 239.5, (1320, 480), 680, 0)],
+)
+def test_the_padded_frame_is_even_and_holds_the_photo_about_the_principal_point(cx, cy, size, left, top):
+    frame = padded_frame(camera(640, 480, cx, cy))
+    assert (frame.width, frame.height) == size
+    assert frame.left == pytest.approx(left)
+    assert frame.top == pytest.approx(top)
+    assert frame.left + cx + 0.5 == pytest.approx(frame.width / 2)
+    assert frame.width % 2 == frame.height % 2 == 0
+
+
+def test_the_pose_turns_what_is_seen_before_a_camera_that_looks_along_minus_z(scene, line_ends):
+    pose = camera_to_world(scene)
+    assert np.linalg.det(pose[:3, :3]) == pytest.approx(1)
+    seen = np.concatenate(list(line_ends.values())) @ np.linalg.inv(pose)[:3, :3].T
+    assert (seen[:, 2] < 0).all()
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1.0, 1e4])
+def test_the_clipping_planes_enclose_the_model(scene, factor):
+    small = build_model(replace(scene, metres_per_unit=factor))
+    near, far = clipping_range(small, scene.rotation)
+    depth = small.points @ scene.rotation[2]
+    distance = np.linalg.norm(small.points, axis=1)
+    assert 0 < near < depth.min()
+    assert far > distance.max()
+
+
+def test_a_model_behind_the_camera_still_has_clipping_planes(scene, model):
+    near, far = clipping_range(model, -scene.rotation)
+    assert 0 < near < far

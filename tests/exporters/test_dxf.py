@@ -1,0 +1,128 @@
+from collections import defaultdict
+
+import ezdxf
+import numpy as np
+import pytest
+
+from exporters.faces import triangulate
+from exporters.formats import export
+from exporters.model import FREE_UNIT, KNOWN_UNIT
+
+
+@pytest.fixture(scope="module")
+def path(scene, tmp_path_factory):
+    path = tmp_path_factory.mktemp("dxf") / "a.dxf"
+    export(scene, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def document(path):
+    return ezdxf.readfile(path, errors="strict")
+
+
+def values(entity, code):
+    return [tag.value for tag in entity.get_xdata("LINECAD") if tag.code == code]
+
+
+def test_the_auditor_finds_nothing_to_say(path):
+    auditor = ezdxf.readfile(path, errors="strict").audit()
+    assert not auditor.errors
+    assert not auditor.fixes
+
+
+def test_it_is_in_metres(document):
+    assert document.dxfversion == "AC1024"
+    assert document.header["$INSUNITS"] == 6
+    assert document.header["$MEASUREMENT"] == 1
+
+
+def test_every_line_stands_on_the_layer_of_its_group_with_its_id(document, scene, line_ends):
+    entities = {values(entity, 1071)[0]: entity for entity in document.modelspace().query("LINE")}
+    assert set(entities) == set(line_ends)
+    for number, axis, is_boundary in zip(
+        scene.lines.id.tolist(), scene.lines.axis.tolist(), scene.lines.is_boundary.tolist(), strict=True
+    ):
+        entity = entities[number]
+        np.testing.assert_allclose([entity.dxf.start, entity.dxf.end], line_ends[number], atol=1e-12)
+        assert entity.dxf.layer == f"LINES_{'XYZ'[axis]}_{'BOUNDARY' if is_boundary else 'NONBOUNDARY'}"
+        assert values(entity, 1000) == ["line", "xyz"[axis]]
+        assert values(entity, 1070) == [int(is_boundary)]
+
+
+def test_the_triangles_of_each_face_are_there(document, model):
+    corners = defaultdict(set)
+    for entity in document.modelspace().query("3DFACE"):
+        assert entity.dxf.layer == "FACES"
+        assert entity.dxf.vtx2 == entity.dxf.vtx3
+        triangle = [tuple(np.round(entity.dxf.get(f"vtx{k}"), 9)) for k in range(3)]
+        corners[values(entity, 1071)[0]].add(frozenset(triangle))
+    for face in model.faces:
+        expected = {frozenset(map(tuple, face.vertices[t].round(9).tolist())) for t in triangulate(face)}
+        assert corners[face.id] == expected
+
+
+def test_exactly_the_edges_of_the_rings_are_visible(document, model):
+    shown = defaultdict(set)
+    for entity in document.modelspace().query("3DFACE"):
+        corners = [tuple(np.round(entity.dxf.get(f"vtx{k}"), 9)) for k in range(3)]
+        for place, flag in enumerate((1, 2, 8)):
+            if not entity.dxf.invisible_edges & flag:
+                shown[values(entity, 1071)[0]].add(frozenset((corners[place], corners[(place + 1) % 3])))
+    for face in model.faces:
+        edges = {
+            frozenset((tuple(start), tuple(end)))
+            for ring in face.rings
+            for start, end in zip(ring.round(9).tolist(), np.roll(ring, -1, axis=0).round(9).tolist(), strict=True)
+        }
+        assert shown[face.id] == edges
+
+
+def test_the_outlines_are_closed_polylines(document, model):
+    rings = defaultdict(dict)
+    for entity in document.modelspace().query("POLYLINE"):
+        assert entity.dxf.layer == "FACE_OUTLINES"
+        assert entity.is_closed
+        assert entity.is_3d_polyline
+        rings[values(entity, 1071)[0]][values(entity, 1070)[0]] = [vertex.dxf.location for vertex in entity.vertices]
+    for face in model.faces:
+        assert list(rings[face.id]) == list(range(len(face.rings)))
+        for number, ring in enumerate(face.rings):
+            np.testing.assert_allclose(rings[face.id][number], ring, atol=1e-12)
+
+
+def test_the_extents_enclose_the_model(document, model):
+    assert (np.array(document.header["$EXTMIN"]) <= model.points.min(axis=0) + 1e-9).all()
+    assert (np.array(document.header["$EXTMAX"]) >= model.points.max(axis=0) - 1e-9).all()
+
+
+def test_layers_are_ascii_and_have_distinct_colours(document):
+    layers = [layer for layer in document.layers if layer.dxf.name.startswith("LINES_")]
+    assert len(layers) == 6
+    assert len({layer.dxf.color for layer in layers}) == 6
+    assert all(layer.dxf.name.isascii() for layer in document.layers)
+
+
+def test_the_unit_the_photo_and_the_camera_are_told(scene, free_unit, document, tmp_path):
+    told = dict(document.header.custom_vars.properties)
+    assert told["linecad unit"] == KNOWN_UNIT
+    assert told["linecad photo"] == scene.photo
+    assert "focal length 1350.0 px, principal point 879.8 542.3 px from the top left" in told["linecad camera"]
+    rotation = np.array(told["linecad camera from world"].split(), float).reshape(3, 3)
+    np.testing.assert_array_equal(rotation, scene.rotation)
+    export(free_unit, tmp_path / "free.dxf")
+    free = ezdxf.readfile(tmp_path / "free.dxf")
+    assert dict(free.header.custom_vars.properties)["linecad unit"] == FREE_UNIT
+
+
+def test_ids_that_32_bits_do_not_hold_are_text(large_ids, tmp_path):
+    export(large_ids, tmp_path / "a.dxf")
+    entities = ezdxf.readfile(tmp_path / "a.dxf", errors="strict").modelspace().query("LINE")
+    assert {int(values(entity, 1000)[1]) for entity in entities} == set(large_ids.lines.id.tolist())
+    assert all(not values(entity, 1071) for entity in entities)
+
+
+def test_the_setting_of_ezdxf_is_as_before(scene, tmp_path):
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    export(scene, tmp_path / "a.dxf")
+    assert ezdxf.options.write_fixed_meta_data_for_testing == before

@@ -1,0 +1,266 @@
+"""What holds for every format: a new row in FORMATS is taken up by itself."""
+
+import os
+import subprocess
+import sys
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from exporters import formats
+from exporters.formats import FORMATS, export, find_format, suffixes
+from linecad.errors import OutputError
+from linecad.scenefile import write_scene
+
+FACES_ONLY = {".ply", ".stl"}
+REPOSITORY = Path(__file__).parents[2]
+HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "pxr", "shapely", "trimesh"}
+
+every_format = pytest.mark.parametrize("suffix", FORMATS)
+with_lines = pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in FACES_ONLY])
+
+
+def start(script, *arguments, **environment):
+    command = [sys.executable, "-c", script, *map(str, arguments)]
+    return subprocess.Popen(command, cwd=REPOSITORY, env=os.environ | environment, stdout=subprocess.PIPE, text=True)
+
+
+def run(script, *arguments):
+    process = start(script, *arguments)
+    output, _ = process.communicate(timeout=120)
+    assert process.returncode == 0
+    return output
+
+
+def names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+@every_format
+def test_a_file_is_written_and_nothing_else(scene, photo, tmp_path, suffix):
+    export(scene, tmp_path / f"a{suffix}", photo)
+    assert names(tmp_path) == [f"a{suffix}"]
+    assert (tmp_path / f"a{suffix}").stat().st_size > 1000
+
+
+@every_format
+def test_the_same_scene_gives_the_same_bytes_again_in_one_process(scene, photo, tmp_path, suffix):
+    for name in ("first", "second"):
+        export(scene, tmp_path / f"{name}{suffix}", photo)
+    assert (tmp_path / f"first{suffix}").read_bytes() == (tmp_path / f"second{suffix}").read_bytes()
+
+
+EXPORT_ALL = """
+import sys
+from pathlib import Path
+from exporters.formats import FORMATS, export
+from linecad.scenefile import read_scene
+scene = read_scene(Path(sys.argv[1]))
+for suffix in FORMATS:
+    export(scene, Path(sys.argv[2]) / ("a" + suffix))
+"""
+
+
+def test_the_same_scene_gives_the_same_bytes_in_fresh_processes(scene, tmp_path):
+    write_scene(scene, tmp_path / "scene.json")
+    folders = [tmp_path / seed for seed in ("1", "2")]
+    for folder in folders:
+        folder.mkdir()
+    processes = [start(EXPORT_ALL, tmp_path / "scene.json", path, PYTHONHASHSEED=path.name) for path in folders]
+    for process in processes:
+        process.communicate(timeout=120)
+        assert process.returncode == 0
+    first, second = ({path.name: path.read_bytes() for path in folder.iterdir()} for folder in folders)
+    assert set(first) == {f"a{suffix}" for suffix in FORMATS}
+    assert [name for name in first if first[name] != second[name]] == []
+
+
+@every_format
+def test_names_with_spaces_quotes_and_other_scripts(scene, tmp_path, suffix):
+    path = tmp_path / f"""Häuschen "家" it's {suffix}"""
+    export(scene, path)
+    plain = tmp_path / f"a{suffix}"
+    export(scene, plain)
+    assert path.read_bytes() == plain.read_bytes()
+
+
+@every_format
+def test_a_suffix_in_upper_case(scene, tmp_path, suffix):
+    export(scene, tmp_path / f"A{suffix.upper()}")
+    export(scene, tmp_path / f"a{suffix}")
+    assert (tmp_path / f"A{suffix.upper()}").read_bytes() == (tmp_path / f"a{suffix}").read_bytes()
+
+
+@with_lines
+def test_a_single_line_without_any_face(one_line, tmp_path, suffix):
+    export(one_line, tmp_path / f"a{suffix}")
+    assert names(tmp_path) == [f"a{suffix}"]
+
+
+@every_format
+def test_faces_without_any_line(no_lines, tmp_path, suffix):
+    export(no_lines, tmp_path / f"a{suffix}")
+    assert names(tmp_path) == [f"a{suffix}"]
+
+
+@pytest.mark.parametrize("suffix", sorted(FACES_ONLY))
+def test_lines_alone_do_not_fit_into_formats_for_faces(no_faces, tmp_path, suffix):
+    with pytest.raises(OutputError, match=f"{suffix} holds faces only and the scene has none"):
+        export(no_faces, tmp_path / f"a{suffix}")
+    assert names(tmp_path) == []
+
+
+@every_format
+def test_large_ids(large_ids, tmp_path, suffix):
+    export(large_ids, tmp_path / f"a{suffix}")
+    assert names(tmp_path) == [f"a{suffix}"]
+
+
+@every_format
+def test_a_scene_of_unknown_scale(free_unit, tmp_path, suffix):
+    export(free_unit, tmp_path / f"a{suffix}")
+    assert names(tmp_path) == [f"a{suffix}"]
+
+
+@every_format
+def test_an_empty_scene_is_refused(no_lines, tmp_path, suffix):
+    with pytest.raises(OutputError, match="nothing to write"):
+        export(replace(no_lines, planes=()), tmp_path / f"a{suffix}")
+    assert names(tmp_path) == []
+
+
+@every_format
+def test_a_face_that_is_no_polygon_is_named_or_drawn(scene, tmp_path, suffix):
+    """The picture shows what there is; the others would hold a face that no program can use."""
+    broken = replace(scene.planes[0].faces[0], id=77, holes=(), outline=scene.planes[0].faces[0].outline[[0, 2, 1, 5]])
+    with_broken = replace(scene, planes=(replace(scene.planes[0], faces=(broken,)),))
+    if suffix == ".png":
+        export(with_broken, tmp_path / f"a{suffix}")
+    else:
+        with pytest.raises(OutputError, match="face_0077 is not a polygon"):
+            export(with_broken, tmp_path / f"a{suffix}")
+        assert names(tmp_path) == []
+
+
+# A limit on the size of files stops every write that is too long, in Python and in C++ alike, as a full disk does.
+FULL_DISK = """
+import resource, sys
+from pathlib import Path
+from exporters.formats import FORMATS, export
+from linecad.errors import OutputError
+from linecad.scenefile import read_scene
+scene = read_scene(Path(sys.argv[1]))
+folder = Path(sys.argv[2])
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+for suffix in FORMATS:
+    try:
+        export(scene, folder / ("a" + suffix))
+    except OutputError as error:
+        print(suffix, error)
+"""
+
+
+def test_a_full_disk_keeps_the_old_file_and_leaves_no_other(scene, tmp_path):
+    write_scene(scene, tmp_path / "scene.json")
+    folder = tmp_path / "out"
+    folder.mkdir()
+    for suffix in FORMATS:
+        (folder / f"a{suffix}").write_text("old")
+    told = run(FULL_DISK, tmp_path / "scene.json", folder).splitlines()
+    assert [line.split()[0] for line in told] == list(FORMATS)
+    assert all("was not written" in line for line in told)
+    assert {path.name: path.read_text() for path in folder.iterdir()} == {f"a{suffix}": "old" for suffix in FORMATS}
+
+
+def test_two_exports_at_once_to_one_path_leave_one_whole_file(scene, tmp_path):
+    path = tmp_path / "a.dxf"
+    with ThreadPoolExecutor(2) as pool:
+        for _ in pool.map(lambda _: export(scene, path), range(4)):
+            pass
+    export(scene, tmp_path / "alone.dxf")
+    assert path.read_bytes() == (tmp_path / "alone.dxf").read_bytes()
+    assert names(tmp_path) == ["a.dxf", "alone.dxf"]
+
+
+def test_an_unknown_suffix_is_told_the_known_ones(scene, tmp_path):
+    with pytest.raises(OutputError) as caught:
+        export(scene, tmp_path / "a.xyz")
+    for suffix in (*FORMATS, ".json", ".xyz"):
+        assert suffix in str(caught.value)
+    assert names(tmp_path) == []
+
+
+def test_a_name_without_suffix_is_told_so():
+    with pytest.raises(OutputError, match="no suffix"):
+        find_format(Path("result"))
+
+
+def test_the_suffix_chooses_the_format_in_any_case():
+    assert find_format(Path("A.StEp")) is FORMATS[".step"]
+    assert suffixes() == tuple(FORMATS)
+
+
+def test_the_table_is_fit_for_people():
+    for suffix, row in FORMATS.items():
+        assert suffix == suffix.lower()
+        assert row.unit in {"metres", "millimetres", "pixels"}
+        assert row.phrase
+        assert "\n" not in row.phrase
+
+
+def test_a_missing_folder_is_to_be_made_first(scene, tmp_path):
+    with pytest.raises(OutputError, match="make it first"):
+        export(scene, tmp_path / "no" / "a.usda")
+    assert names(tmp_path) == []
+
+
+def test_a_folder_is_no_output(scene, tmp_path):
+    (tmp_path / "a.glb").mkdir()
+    with pytest.raises(OutputError, match="is a folder"):
+        export(scene, tmp_path / "a.glb")
+
+
+@pytest.mark.parametrize("wrong", [np.zeros((10, 10, 3), np.uint8), np.zeros((1200, 1600), np.uint8)])
+def test_a_photo_of_another_size_is_our_own_mistake(scene, tmp_path, wrong):
+    with pytest.raises(ValueError, match="expected uint8 of shape"):
+        export(scene, tmp_path / "a.png", wrong)
+
+
+def test_a_photo_of_another_type_is_our_own_mistake(scene, photo, tmp_path):
+    with pytest.raises(ValueError, match="float64"):
+        export(scene, tmp_path / "a.png", photo / 255)
+
+
+def test_the_table_loads_no_heavy_library():
+    script = "import sys, exporters.formats; print(' '.join(name.split('.')[0] for name in sys.modules))"
+    assert HEAVY.isdisjoint(run(script).split())
+
+
+def test_only_the_module_of_the_format_is_loaded(scene, tmp_path):
+    write_scene(scene, tmp_path / "scene.json")
+    script = (
+        "import sys; from pathlib import Path; from exporters.formats import export\n"
+        "from linecad.scenefile import read_scene\n"
+        "export(read_scene(Path(sys.argv[1])), Path(sys.argv[2]))\n"
+        "print(' '.join(name.split('.')[0] for name in sys.modules))"
+    )
+    loaded = set(run(script, tmp_path / "scene.json", tmp_path / "a.dxf").split())
+    assert loaded & HEAVY == {"ezdxf", "shapely"}
+
+
+def test_a_writer_that_fails_midway_leaves_the_old_file(scene, tmp_path, monkeypatch):
+    class Failing:
+        @staticmethod
+        def write(_, path):
+            path.write_text("half")
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(formats.importlib, "import_module", lambda _: Failing)
+    (tmp_path / "a.dxf").write_text("old")
+    with pytest.raises(OutputError, match="no space is left"):
+        export(scene, tmp_path / "a.dxf")
+    assert (tmp_path / "a.dxf").read_text() == "old"
+    assert names(tmp_path) == ["a.dxf"]

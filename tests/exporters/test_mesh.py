@@ -1,0 +1,87 @@
+import numpy as np
+import pytest
+import trimesh
+
+from exporters.faces import triangulate
+from exporters.formats import export
+from exporters.model import FREE_UNIT, KNOWN_UNIT
+
+
+@pytest.fixture(scope="module")
+def paths(scene, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("mesh")
+    paths = {suffix: folder / f"a{suffix}" for suffix in (".obj", ".ply", ".stl")}
+    for path in paths.values():
+        export(scene, path)
+    return paths
+
+
+@pytest.fixture(scope="module")
+def triangles(model):
+    """(T, 3, 3) m, the corners of the triangles of all faces in their order."""
+    return np.concatenate([face.vertices[triangulate(face)] for face in model.faces])
+
+
+@pytest.mark.parametrize("suffix", [".ply", ".stl"])
+def test_all_triangles_are_there_in_metres(paths, triangles, suffix):
+    read = trimesh.load_mesh(paths[suffix], process=False)
+    np.testing.assert_allclose(read.vertices[read.faces], triangles, atol=1e-5)
+
+
+def test_ply_uses_the_vertices_of_the_faces_and_no_others(paths, model):
+    read = trimesh.load_mesh(paths[".ply"], process=False)
+    np.testing.assert_allclose(read.vertices, np.concatenate([face.vertices for face in model.faces]), atol=1e-5)
+
+
+def test_every_face_is_an_object_of_the_obj(paths, model):
+    read = trimesh.load_scene(paths[".obj"], process=False, split_objects=True, group_material=False)
+    for face in model.faces:
+        mesh = read.geometry[face.name]
+        expected = trimesh.Trimesh(face.vertices, triangulate(face), process=False)
+        assert mesh.area == pytest.approx(expected.area, rel=1e-6)
+        np.testing.assert_allclose(mesh.bounds, expected.bounds, atol=1e-7)
+
+
+def obj_lines(path):
+    """Group name -> line id -> its two ends, read by hand as other programs read an OBJ."""
+    vertices, groups, name, number = [], {}, None, None
+    for row in path.read_text().splitlines():
+        word, _, rest = row.partition(" ")
+        if word == "v":
+            vertices.append([float(value) for value in rest.split()])
+        elif word == "o":
+            name = rest
+        elif row.startswith("# line "):
+            number = int(row.split()[2])
+        elif word == "l":
+            first, last = (vertices[int(index) - 1] for index in rest.split())
+            groups.setdefault(name, {})[number] = np.array([first, last])
+    return groups
+
+
+@pytest.mark.parametrize("name", ["scene", "no_faces", "one_line"])
+def test_every_line_is_in_the_obj(request, tmp_path, name):
+    scene = request.getfixturevalue(name)
+    export(scene, tmp_path / "a.obj")
+    groups = obj_lines(tmp_path / "a.obj")
+    found = {number: ends for group in groups.values() for number, ends in group.items()}
+    assert set(found) == set(scene.lines.id.tolist())
+    for number, ends, axis in zip(scene.lines.id.tolist(), scene.lines.ends, scene.lines.axis.tolist(), strict=True):
+        np.testing.assert_allclose(found[number], ends, atol=1e-7)
+        assert any(number in group for key, group in groups.items() if key.startswith(f"lines_{'xyz'[axis]}_"))
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".stl"])
+def test_the_unit_is_told(paths, free_unit, tmp_path, suffix):
+    assert KNOWN_UNIT.encode() in paths[suffix].read_bytes()[:400]
+    export(free_unit, tmp_path / f"a{suffix}")
+    start = tmp_path.joinpath(f"a{suffix}").read_bytes()[:400]
+    assert FREE_UNIT.encode()[:50] in start
+
+
+def test_a_binary_stl_does_not_begin_like_one_in_text(paths):
+    assert not paths[".stl"].read_bytes().startswith(b"solid")
+
+
+def test_lines_end_in_a_newline_alone(paths):
+    assert b"\r" not in paths[".obj"].read_bytes()

@@ -1,0 +1,82 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from exporters.model import FREE_UNIT, KNOWN_UNIT, SHORTEST_LINE, build_model, signed_area
+
+
+def test_every_line_stands_in_the_group_of_its_axis_and_kind(scene, model):
+    found = {number: group for group in model.groups for number in group.ids.tolist()}
+    assert len(found) == len(scene.lines)
+    for place, number in enumerate(scene.lines.id.tolist()):
+        assert found[number].axis == scene.lines.axis[place]
+        assert found[number].is_boundary == scene.lines.is_boundary[place]
+
+
+def test_groups_are_named_by_axis_and_kind(model):
+    assert [group.name for group in model.groups] == [
+        f"lines_{axis}_{kind}" for axis in "xyz" for kind in ("boundary", "nonboundary")
+    ]
+
+
+def test_ids_ascend_in_each_group_with_their_ends(model, line_ends):
+    for group in model.groups:
+        assert (np.diff(group.ids) > 0).all()
+        np.testing.assert_array_equal(group.ends, [line_ends[number] for number in group.ids.tolist()])
+
+
+def test_a_group_without_lines_is_left_out(one_line):
+    assert len(build_model(one_line).groups) == 1
+
+
+@pytest.mark.parametrize(("length", "kept"), [(0.0, 0), (0.9 * SHORTEST_LINE, 0), (2 * SHORTEST_LINE, 1)])
+def test_lines_without_length_are_dropped(one_line, length, kept):
+    ends = np.array([[[0.0, 1.0, 0.0], [length, 1.0, 0.0]]])
+    model = build_model(replace(one_line, lines=replace(one_line.lines, ends=ends)))
+    assert sum(len(group.ids) for group in model.groups) == kept
+
+
+def test_a_known_scale_gives_metres(scene, model):
+    scaled = build_model(replace(scene, metres_per_unit=0.25))
+    assert scaled.unit_note == KNOWN_UNIT
+    np.testing.assert_allclose(scaled.points, 0.25 * model.points)
+    assert [face.offset for face in scaled.faces] == [0.25 * face.offset for face in model.faces]
+
+
+def test_an_unknown_scale_gives_one_metre_a_unit_and_says_so(free_unit, model):
+    free = build_model(free_unit)
+    assert free.unit_note == FREE_UNIT
+    np.testing.assert_array_equal(free.points, model.points)
+
+
+def test_faces_look_at_the_camera(model):
+    for face in model.faces:
+        assert face.normal @ (0 - face.vertices[0]) > 0
+
+
+def test_outlines_turn_counter_clockwise_as_the_camera_sees_them_and_holes_the_other_way(model):
+    for face in model.faces:
+        across = [np.cross(ring, np.roll(ring, -1, axis=0)).sum(axis=0) @ face.normal for ring in face.rings]
+        assert across[0] > 0
+        assert all(value < 0 for value in across[1:])
+
+
+def test_the_two_axes_of_a_plane_give_its_normal(model):
+    for face in model.faces:
+        u, v = (np.eye(3)[axis] for axis in face.in_plane)
+        np.testing.assert_array_equal(np.cross(u, v), face.normal)
+
+
+def test_the_area_of_a_ring_far_from_the_origin_is_exact():
+    ring = np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) + 1e9
+    assert signed_area(ring) == 1.0
+    assert signed_area(ring[::-1]) == -1.0
+
+
+@pytest.mark.parametrize(
+    ("photo", "name"),
+    [("folder/a b.jpg", "a b.jpg"), ("a\nb.jpg", "a b.jpg"), ("\udcff.jpg", "?.jpg"), ("家.jpg", "家.jpg")],
+)
+def test_the_name_of_the_photo_is_one_line_of_text(scene, photo, name):
+    assert build_model(replace(scene, photo=photo)).photo == name

@@ -1,0 +1,164 @@
+import re
+
+import numpy as np
+import pytest
+from build123d import GeomType, Shape
+from OCP.collections import Sequence_TDF_Label
+from OCP.IFSelect import IFSelect_ReturnStatus
+from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
+from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.TCollection import TCollection_ExtendedString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+from exporters.colours import FACE, line_colour
+from exporters.formats import export
+from exporters.model import FREE_UNIT, build_model, signed_area
+
+MILLIMETRES = 1000.0  # per metre
+
+
+class Reader:
+    """What a program that knows names and colours sees in a STEP file."""
+
+    def __init__(self, path):
+        reader = STEPCAFControl_Reader()
+        reader.SetNameMode(True)
+        reader.SetColorMode(True)
+        assert reader.ReadFile(str(path)) == IFSelect_ReturnStatus.IFSelect_RetDone
+        self.document = TDocStd_Document(TCollection_ExtendedString("read"))
+        assert reader.Transfer(self.document)
+        shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
+        self.colours = XCAFDoc_DocumentTool.ColorTool_s(self.document.Main())
+        self.parents, self.parts = {}, {}
+        for root in labels(shapes.GetFreeShapes):
+            self.walk(root, None)
+
+    def walk(self, label, parent):
+        name, referred = name_of(label), TDF_Label()
+        if XCAFDoc_ShapeTool.GetReferredShape_s(label, referred):
+            label = referred
+        assert name_of(label) == name
+        assert name not in self.parents
+        self.parents[name] = parent
+        if XCAFDoc_ShapeTool.IsAssembly_s(label):
+            for component in labels(lambda found: XCAFDoc_ShapeTool.GetComponents_s(label, found)):
+                self.walk(component, name)
+        else:
+            self.parts[name] = Shape.cast(XCAFDoc_ShapeTool.GetShape_s(label))
+
+    def colour(self, shape, kind):
+        colour = Quantity_Color()
+        assert self.colours.GetColor(shape.wrapped, kind, colour)
+        return [getattr(colour, part)() for part in ("Red", "Green", "Blue")]  # linear light
+
+
+def labels(fill):
+    sequence = Sequence_TDF_Label()
+    fill(sequence)
+    return [sequence.Value(number) for number in range(1, sequence.Length() + 1)]
+
+
+def name_of(label):
+    attribute = TDataStd_Name()
+    assert label.FindAttribute(TDataStd_Name.GetID_s(), attribute)
+    return attribute.Get().ToExtString()
+
+
+def points(shape):
+    return np.array([tuple(vertex) for vertex in shape.vertices()]) / MILLIMETRES
+
+
+def linear_light(colour):
+    made = Quantity_Color(*colour, Quantity_TypeOfColor.Quantity_TOC_sRGB)
+    return pytest.approx([made.Red(), made.Green(), made.Blue()], abs=1e-3)
+
+
+@pytest.fixture(scope="module")
+def path(scene, tmp_path_factory):
+    path = tmp_path_factory.mktemp("step") / "a.step"
+    export(scene, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def read(path):
+    return Reader(path)
+
+
+def test_parts_are_named_and_stand_in_their_assembly(read, model):
+    expected = {"linecad": None, "lines": "linecad", "faces": "linecad", "camera": "linecad"}
+    expected |= {group.name: "lines" for group in model.groups}
+    expected |= {face.name: "faces" for face in model.faces}
+    assert read.parents == expected
+
+
+def test_every_line_is_a_straight_edge_at_its_place(read, model):
+    for group in model.groups:
+        edges = read.parts[group.name].edges()
+        assert all(edge.geom_type == GeomType.LINE for edge in edges)
+        found = sorted(sorted(points(edge).round(7).tolist()) for edge in edges)
+        expected = sorted(sorted(ends) for ends in group.ends.round(7).tolist())
+        np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
+def test_every_face_is_flat_valid_and_has_its_holes(read, model):
+    for face in model.faces:
+        (shape,) = read.parts[face.name].faces()
+        assert shape.is_valid
+        assert shape.geom_type == GeomType.PLANE
+        assert len(shape.outer_wire().edges()) == len(face.rings[0])
+        assert sorted(len(wire.edges()) for wire in shape.inner_wires()) == sorted(map(len, face.rings[1:]))
+        np.testing.assert_allclose(points(shape)[:, face.axis], face.offset, atol=1e-9)
+        area = sum(signed_area(ring[:, face.in_plane]) for ring in face.rings)
+        assert shape.area / MILLIMETRES**2 == pytest.approx(area, rel=1e-9)
+
+
+def test_faces_look_at_the_camera(read, model):
+    for face in model.faces:
+        (shape,) = read.parts[face.name].faces()
+        np.testing.assert_allclose(tuple(shape.normal_at()), face.normal, atol=1e-12)
+
+
+def test_lines_and_faces_have_their_colours(read, model):
+    for group in model.groups:
+        pieces = list(read.parts[group.name])  # OCCT reads each curve as a compound of its own, and colours that
+        assert len(pieces) == len(group.ids)
+        for piece in pieces:
+            colour = read.colour(piece, XCAFDoc_ColorType.XCAFDoc_ColorCurv)
+            assert colour == linear_light(line_colour(group.axis, group.is_boundary))
+    for face in model.faces:
+        (shape,) = read.parts[face.name].faces()
+        assert read.colour(shape, XCAFDoc_ColorType.XCAFDoc_ColorSurf) == linear_light(FACE)
+
+
+def test_the_camera_is_a_point_where_it_stood(read):
+    assert points(read.parts["camera"]).tolist() == [[0.0, 0.0, 0.0]]
+    assert not read.parts["camera"].edges()
+
+
+def test_it_says_millimetres_and_nothing_of_this_run(path):
+    text = path.read_text()
+    assert "SI_UNIT(.MILLI.,.METRE.)" in text
+    assert "'1970-01-01T00:00:00'" in text
+    assert path.parent.name not in text
+    assert not re.search(r"FILE_NAME\([^)]*(\.linecad|\.step)", text)
+
+
+def test_an_unknown_scale_is_told(free_unit, tmp_path):
+    export(free_unit, tmp_path / "a.step")
+    header = tmp_path.joinpath("a.step").read_text().split("FILE_NAME")[0]
+    assert FREE_UNIT in "".join(line.strip("\n") for line in header.replace("\n  ", "").splitlines())
+
+
+def test_lines_alone_keep_their_names(no_faces, tmp_path):
+    export(no_faces, tmp_path / "a.step")
+    groups = {group.name for group in build_model(no_faces).groups}
+    assert set(Reader(tmp_path / "a.step").parts) == {"camera", *groups}
+
+
+def test_nothing_is_printed(scene, tmp_path, capfd):
+    export(scene, tmp_path / "a.step")
+    assert capfd.readouterr() == ("", "")

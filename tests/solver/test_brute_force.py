@@ -1,0 +1,181 @@
+"""The optimum of every small graph, found a second time by trying all sets of real crossings."""
+
+from itertools import chain, combinations, permutations
+from random import Random
+
+import numpy as np
+import pytest
+from hypothesis import Phase, find, given, settings
+from hypothesis import strategies as st
+
+from solver.problem import FAMILIES, SolveOptions, solve
+
+ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
+MOST_EDGES = 10
+GRID = 0.37  # keeps every line off the coordinate planes of the camera
+
+# Uneven numbers, so that no sum of logarithms of grid coordinates comes to lie on the border of an interval.
+TOLERANCES = [0.0021, 0.0173, 0.0611, 0.3117]
+DEPTH_RANGES = [100.0, 3.07, 1.531]
+
+
+@st.composite
+def lines_in_space(draw):
+    """Three to seven lines on a small grid, so that many of them meet; some moved a little off it."""
+    lines = []
+    for _ in range(draw(st.integers(3, 7))):
+        axis = draw(st.integers(0, 2))
+        x, y, z = draw(st.integers(-1, 2)), draw(st.integers(4, 6)), draw(st.integers(-1, 1))
+        point = np.array([x, y, z]) + GRID + np.array(draw(st.sampled_from(WOBBLES)))
+        low = point[axis] - draw(st.sampled_from([0.2, 0.9]))
+        lines.append((axis, point, low, point[axis] + draw(st.sampled_from([0.4, 1.7]))))
+    return lines
+
+
+WOBBLES = [(0, 0, 0), (0, 0, 0), (0.0031, -0.0043, 0.0017), (-0.011, 0.023, 0.013)]
+
+
+@st.composite
+def problems(draw):
+    """Arguments for `build_graph` and for SolveOptions."""
+    lines = draw(lines_in_space())
+    pairs = [(i, j) for i in range(len(lines)) for j in range(i + 1, len(lines))]
+    crossings = [(i, j) for i, j in pairs if lines[i][0] != lines[j][0]]
+    collinear = [(i, j) for i, j in pairs if lines[i][0] == lines[j][0]]
+    edges = list(draw(st.permutations(crossings)))[:MOST_EDGES]
+    if collinear and draw(st.booleans()):
+        edges[-1:] = [draw(st.sampled_from(collinear))]
+    each = {"min_size": len(edges), "max_size": len(edges)}
+    graph = {
+        "lines": lines,
+        "edges": edges,
+        "tolerance": draw(st.lists(st.sampled_from(TOLERANCES), **each)),
+        "weight": draw(st.lists(st.sampled_from([0.4, 1.0, 1.0, 2.3]), **each)),
+        "informative": draw(st.lists(st.sampled_from([True, True, True, False]), **each)),
+        "yaw": draw(st.sampled_from([0.3, -0.2])),
+    }
+    options = {
+        "mu_planarity": draw(st.sampled_from([0.0, 0.5, 3.0])),
+        "mu_boundary": draw(st.sampled_from([0.3, 1.0, 10.0])),
+        "depth_range": draw(st.sampled_from(DEPTH_RANGES)),
+    }
+    return graph, options
+
+
+def all_subsets(n):
+    return (np.arange(2**n)[:, None] >> np.arange(n)) & 1 == 1
+
+
+def fits_depths(graph, subsets, depth_range):
+    """Which subsets have depths: shortest paths between all lines and the ground, no negative cycle among them."""
+    n = len(graph.segments)
+    axis = np.eye(3)[graph.axis]
+    flat = np.linalg.norm(np.cross(graph.rays, axis), axis=1)  # of the ray, across the line's axis
+    ends = np.linalg.norm(np.cross(graph.end_rays, axis[:, None]), axis=2)
+    nearest = np.log((flat[:, None] / ends).min(axis=1))  # log of near end depth over middle depth
+    dist = np.full((len(subsets), n + 1, n + 1), np.inf)
+    dist[:, :n, n] = nearest  # t_ground - t_i <= nearest, so that the near end is at 1 or more
+    dist[:, n, :n] = np.log(depth_range) - nearest
+    for e in np.flatnonzero(graph.informative):
+        i, j = graph.edges[e]
+        c, tolerance = graph.log_ratio[e], graph.tolerance[e]
+        dist[:, j, i] = np.where(subsets[:, e], c + tolerance, dist[:, j, i])  # t_i <= t_j + c + tolerance
+        dist[:, i, j] = np.where(subsets[:, e], tolerance - c, dist[:, i, j])
+    for k in range(n + 1):
+        dist = np.minimum(dist, dist[:, :, k, None] + dist[:, None, k, :])
+    fits = (np.diagonal(dist, axis1=1, axis2=2) >= -1e-9).all(axis=1)
+    return fits & ~(subsets & ~graph.possible).any(axis=1)
+
+
+def edge_table(graph, allowed):
+    return {tuple(pair): e for e, (i, j) in enumerate(graph.edges.tolist()) if allowed[e] for pair in ((i, j), (j, i))}
+
+
+def keeps_cycles_open(graph, subsets):
+    edge = edge_table(graph, (graph.kind != "collinear") & graph.informative)
+    axis = graph.axis.tolist()
+    keeps = np.ones(len(subsets), bool)
+    for size in (3, 4):
+        for cycle in permutations(range(len(axis)), size):
+            sides = list(zip(cycle, (*cycle[1:], cycle[0]), strict=True))
+            if len({axis[i] for i in cycle}) == 3 and all(side in edge for side in sides):
+                keeps &= ~subsets[:, [edge[side] for side in sides]].all(axis=1)
+    return keeps
+
+
+def planar_count(graph, subsets):
+    """For each subset, how many pairs of parallel lines can be given a plane."""
+    edge = edge_table(graph, graph.kind != "collinear")
+    axis = graph.axis.tolist()
+    count = np.zeros(len(subsets), int)
+    for k, l in combinations(range(len(axis)), 2):  # noqa: E741
+        shared = [m for m in range(len(axis)) if (k, m) in edge and (l, m) in edge]
+        if axis[k] != axis[l] or not any(graph.possible[edge[k, m]] and graph.possible[edge[l, m]] for m in shared):
+            continue
+        planar = np.zeros(len(subsets), bool)
+        for plane in {0, 1, 2} - {axis[k]}:
+            holds = np.ones(len(subsets), bool)
+            for m in shared:
+                one, other = subsets[:, edge[k, m]], subsets[:, edge[l, m]]
+                holds &= (one == other) if axis[m] == plane else ~(one & other)
+            planar |= holds
+        count += planar
+    return count
+
+
+def inner_count(graph, subsets):
+    """For each subset, how many lines meet lines of at most one other axis."""
+    edge = edge_table(graph, graph.kind != "collinear")
+    axis = graph.axis.tolist()
+    count = np.zeros(len(subsets), int)
+    for i in range(len(axis)):
+        met = [
+            subsets[:, [edge[i, m] for m in range(len(axis)) if axis[m] == a and (i, m) in edge]].any(axis=1)
+            for a in {0, 1, 2} - {axis[i]}
+        ]
+        count += ~(met[0] & met[1])
+    return count
+
+
+def values(graph, options):
+    """All sets of edges and what each is worth, minus infinity where it is not allowed."""
+    subsets = all_subsets(len(graph.edges))
+    value = subsets @ graph.weight
+    allowed = fits_depths(graph, subsets, options.depth_range)
+    if "cycles" not in options.without:
+        allowed &= keeps_cycles_open(graph, subsets)
+    if "planarity" not in options.without:
+        value = value + options.mu_planarity * planar_count(graph, subsets)
+    if "boundary" not in options.without:
+        value = value + options.mu_boundary * inner_count(graph, subsets)
+    return np.where(allowed, value, -np.inf)
+
+
+@pytest.mark.parametrize("without", ALL_WITHOUT, ids=lambda families: "-".join(sorted(families)) or "none")
+@given(problem=problems())
+@settings(max_examples=60, deadline=None)
+def test_paper_finds_the_optimum_of_brute_force(build_graph, without, problem):
+    graph = build_graph(**problem[0])
+    options = SolveOptions(formulation="paper", without=without, **problem[1])
+    value = values(graph, options)
+    solution = solve(graph, options)
+    number = int(solution.connected @ (1 << np.arange(len(graph.edges))))
+    assert solution.status == "optimal"
+    assert solution.objective == pytest.approx(value.max(), abs=1e-6)
+    assert value[number] == pytest.approx(value.max(), abs=1e-6)
+    assert solution.bound == pytest.approx(value.max(), abs=1e-6)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_the_drawn_problems_put_every_family_to_the_test(build_graph, family):
+    """Guards the property above: among the problems are such whose best crossings the family forbids."""
+    without = frozenset(FAMILIES)
+
+    def is_decided_by_family(problem):
+        graph = build_graph(**problem[0])
+        free = values(graph, SolveOptions(without=without, **problem[1]))
+        best = np.argmax(values(graph, SolveOptions(without=without - {family}, **problem[1])))
+        return free[best] < free.max() - 1e-6
+
+    search = settings(max_examples=500, deadline=None, phases=[Phase.generate], database=None)
+    find(problems(), is_decided_by_family, settings=search, random=Random(0))

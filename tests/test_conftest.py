@@ -1,0 +1,68 @@
+"""In CI a test that is skipped counts as a failure, whichever way it skips, and permissions bind root."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+CONFTEST = Path(__file__).with_name("conftest.py")
+SKIPPING = {
+    "in the test": "import pytest\ndef test_it():\n    pytest.skip('too cold')\n",
+    "by a mark": "import pytest\n@pytest.mark.skipif(True, reason='too cold')\ndef test_it():\n    pass\n",
+    "in a fixture": (
+        "import pytest\n@pytest.fixture\ndef sun():\n    pytest.skip('too cold')\ndef test_it(sun):\n    pass\n"
+    ),
+    "the whole module": "import pytest\npytest.skip('too cold', allow_module_level=True)\n",
+}
+
+
+def run(folder: Path, text: str, no_skips: str) -> subprocess.CompletedProcess[str]:
+    (folder / "conftest.py").write_text(CONFTEST.read_text())
+    (folder / "test_it.py").write_text(text)
+    environment = os.environ | {"LINECAD_NO_SKIPS": no_skips}
+    command = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-q",
+        "-p",
+        "no:cacheprovider",
+        "-p",
+        "no:hypothesispytest",
+        "test_it.py",
+    ]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("text", SKIPPING.values(), ids=SKIPPING.keys())
+def test_skip_is_a_failure_when_no_skip_is_allowed(tmp_path: Path, text: str) -> None:
+    result = run(tmp_path, text, "1")
+    assert result.returncode != 0
+    assert "too cold" in result.stdout
+    assert "allows no skip" in result.stdout
+
+
+def test_skip_is_a_skip_elsewhere(tmp_path: Path) -> None:
+    result = run(tmp_path, SKIPPING["in the test"], "")
+    assert result.returncode == 0
+    assert "1 skipped" in result.stdout
+
+
+def test_expected_failure_is_no_skip(tmp_path: Path) -> None:
+    result = run(tmp_path, "import pytest\n@pytest.mark.xfail\ndef test_it():\n    assert False\n", "1")
+    assert result.returncode == 0
+    assert "1 xfailed" in result.stdout
+
+
+@pytest.mark.usefixtures("bound_by_permissions")
+def test_permissions_bind_whoever_runs_the_tests(tmp_path: Path) -> None:
+    path = tmp_path / "secret"
+    path.write_text("")
+    path.chmod(0)
+    with pytest.raises(PermissionError):
+        path.read_text()
+    tmp_path.chmod(0o500)
+    with pytest.raises(PermissionError):
+        (tmp_path / "new").write_text("")

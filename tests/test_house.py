@@ -1,0 +1,240 @@
+"""The rules of the house: imports go downwards, heavy libraries wait, nothing in a file belongs to one machine."""
+
+import ast
+import importlib.metadata
+import os
+import re
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+from packaging.requirements import Requirement
+from packaging.utils import canonicalize_name
+
+ROOT = Path(__file__).resolve().parent.parent
+PACKAGES = ("linecad", "exporters", "solver")
+
+# A module of linecad imports modules of lower floors only; so the stages, all on one floor, do not know each other.
+FLOORS = [
+    ["linecad"],
+    ["linecad.errors"],
+    ["linecad.scene", "linecad.strictjson", "linecad.files"],
+    ["linecad.scenedocument", "linecad.geometry"],
+    ["linecad.scenefile"],
+    ["linecad.calibration", "linecad.decoding"],  # parts of the photo stage
+    ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph", "linecad.lifting", "linecad.planes"],
+    ["linecad.pipeline"],
+    ["linecad.evaluation", "linecad.batch", "linecad.editor"],
+    ["linecad.cli"],
+    ["linecad.__main__"],
+]
+FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.pipeline"  # solver and exporters are called from here upwards
+KNOWN_TO_THE_PACKAGES = {"linecad.errors", "linecad.scene", "linecad.files"}
+
+HEAVY = {"build123d", "cv2", "ezdxf", "networkx", "OCP", "PIL", "pxr", "pyscipopt", "scipy", "shapely", "trimesh"}
+LONGEST_HELP = 0.5  # s, what `linecad --help` may take
+
+# Hosts that a file may link to: standards, papers, the tools' own documentation.
+HOSTS = {
+    "arxiv.org",
+    "creativecommons.org",
+    "docs.opencv.org",
+    "docs.python.org",
+    "doi.org",
+    "ezdxf.readthedocs.io",
+    "github.com",
+    "help.autodesk.com",
+    "openusd.org",
+    "paulbourke.net",
+    "registry.khronos.org",
+    "semver.org",
+    "www.iso.org",
+    "www.khronos.org",
+    "www.loc.gov",
+    "www.rfc-editor.org",
+    "www.scipopt.org",
+    "www.steptools.com",
+    "www.w3.org",
+}
+HOST_OF_A_REGISTRY = re.compile(r"[\w.-]*(?:pypi|npmjs|pythonhosted|artifactory|nexus)[\w-]*\.[a-z]{2,}", re.IGNORECASE)
+PATH_OF_A_MACHINE = re.compile(r"(?<![\w.*}>$-])/(?:home|root|Users|work|workspace|tmp|mnt|media|srv|opt)/[\w.-]+")
+
+
+def python_files(*folders: str) -> list[Path]:
+    return sorted(path for folder in folders for path in (ROOT / folder).rglob("*.py"))
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {name_of(path): path for path in python_files(*PACKAGES)}
+FLOOR = {name: floor for floor, names in enumerate(FLOORS) for name in names}
+
+
+def without_functions(node: ast.AST) -> Iterator[ast.AST]:
+    """The nodes of a tree that run when the module is imported."""
+    for child in ast.iter_child_nodes(node):
+        if not isinstance(child, ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda):
+            yield child
+            yield from without_functions(child)
+
+
+def imported(module: str, walk: Callable[[ast.AST], Iterator[ast.AST]]) -> Iterator[str]:
+    """Every module that a module imports where `walk` goes."""
+    path = MODULES[module]
+    package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
+    for node in walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            start = package[: len(package) - node.level + 1] if node.level else []
+            base = ".".join([*start, *([node.module] if node.module else [])])
+            names = [f"{base}.{alias.name}" for alias in node.names]
+            yield from (name if name in MODULES else base for name in names)
+
+
+IMPORTS = {module: {name for name in imported(module, ast.walk) if name in MODULES} for module in MODULES}
+
+
+def test_every_module_of_linecad_has_a_floor() -> None:
+    homeless = [module for module in MODULES if module.split(".")[0] == "linecad" and module not in FLOOR]
+    assert not homeless, f"say in FLOORS where {homeless} stand"
+
+
+@pytest.mark.parametrize("module", sorted(set(MODULES) & set(FLOOR)))
+def test_imports_of_linecad_go_downwards(module: str) -> None:
+    ours = {name for name in IMPORTS[module] if name in FLOOR}
+    assert {name for name in ours if FLOOR[name] >= FLOOR[module]} == set()
+    if FLOOR[module] < FLOOR[FIRST_THAT_KNOWS_THE_PACKAGES]:
+        assert {name for name in IMPORTS[module] if name.split(".")[0] != "linecad"} == set()
+
+
+@pytest.mark.parametrize("module", sorted(name for name in MODULES if name.split(".")[0] != "linecad"))
+def test_solver_and_exporters_know_only_records_and_errors(module: str) -> None:
+    package = module.split(".")[0]
+    assert {name for name in IMPORTS[module] if name.split(".")[0] != package} <= KNOWN_TO_THE_PACKAGES
+
+
+def test_no_module_imports_itself_by_a_detour() -> None:
+    # A function may import what stands above its module, as a dispatcher does; a module may not.
+    at_top = {module: {name for name in imported(module, without_functions) if name in MODULES} for module in MODULES}
+    TopologicalSorter(at_top).prepare()  # raises CycleError
+
+
+@pytest.mark.parametrize("path", python_files(*PACKAGES, "samples"), ids=name_of)
+def test_module_starts_by_saying_what_it_holds(path: Path) -> None:
+    module = ast.parse(path.read_text(encoding="utf-8"))
+    assert ast.get_docstring(module)
+    assert module.body[0].lineno == 1
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_package_is_typed(package: str) -> None:
+    assert (ROOT / package / "py.typed").is_file()
+
+
+def help_in_a_fresh_process(*options: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, *options, "-m", "linecad", "--help"]
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+
+
+def test_help_loads_no_heavy_library() -> None:
+    report = help_in_a_fresh_process("-X", "importtime").stderr
+    loaded = {
+        line.split("|")[-1].strip().split(".")[0] for line in report.splitlines() if line.startswith("import time")
+    }
+    assert "linecad" in loaded
+    assert loaded & HEAVY == set()
+
+
+def test_help_answers_at_once() -> None:
+    def seconds() -> float:
+        start = time.perf_counter()
+        help_in_a_fresh_process()
+        return time.perf_counter() - start
+
+    # The best of several: on a busy machine the others measure their neighbours.
+    assert min(seconds() for _ in range(5)) < LONGEST_HELP
+
+
+def test_readme_names_every_command() -> None:
+    usage = help_in_a_fresh_process().stdout
+    found = re.search(r"\{([\w,-]+)\}", usage)
+    assert found, "the help lists the commands in braces"
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert [command for command in found[1].split(",") if f"linecad {command}" not in readme] == []
+
+
+def tracked_texts() -> list[tuple[str, str]]:
+    """Name and text of every file of the checkout that git keeps or would keep, except pictures and models."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listing = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    if listing.returncode != 0:
+        pytest.skip("this is not a git checkout")
+    texts = []
+    for name in filter(None, listing.stdout.split("\0")):
+        path = ROOT / name
+        if not path.is_file():
+            continue
+        data = path.read_bytes()
+        if b"\0" not in data:
+            texts.append((name, data.decode("utf-8")))
+    assert "pyproject.toml" in [name for name, _ in texts]
+    return texts
+
+
+def test_no_file_names_a_path_of_one_machine() -> None:
+    found = {name: PATH_OF_A_MACHINE.findall(text) for name, text in tracked_texts()}
+    assert {name: paths for name, paths in found.items() if paths} == {}
+
+
+def test_no_file_names_a_package_registry() -> None:
+    found = {name: HOST_OF_A_REGISTRY.findall(text) for name, text in tracked_texts()}
+    assert {name: hosts for name, hosts in found.items() if hosts} == {}
+
+
+def test_files_link_only_to_hosts_that_we_know() -> None:
+    found = {name: set(re.findall(r"https?://([\w.-]+)", text)) - HOSTS for name, text in tracked_texts()}
+    assert {name: hosts for name, hosts in found.items() if hosts} == {}
+
+
+def pinned_versions() -> dict[str, str]:
+    lines = (ROOT / "constraints.txt").read_text(encoding="utf-8").splitlines()
+    requirements = [Requirement(line) for line in lines if line and not line.startswith("#")]
+    for requirement in requirements:
+        assert requirement.url is None
+        assert re.fullmatch(r"==[\w.]+", str(requirement.specifier)), requirement
+    return {canonicalize_name(requirement.name): str(requirement.specifier)[2:] for requirement in requirements}
+
+
+def test_constraints_pin_every_dependency_to_a_version_that_we_allow() -> None:
+    pinned = pinned_versions()
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    wanted = [Requirement(text) for text in project["dependencies"] + project["optional-dependencies"]["dev"]]
+    assert [str(each) for each in wanted if pinned.get(canonicalize_name(each.name)) not in each.specifier] == []
+    assert "linecad" not in pinned
+
+
+def test_constraints_pin_what_the_dependencies_bring() -> None:
+    """Every library that an installed, pinned library asks for on this machine is pinned too."""
+    pinned = pinned_versions()
+    brought = {
+        canonicalize_name(need.name): name
+        for name in pinned
+        for need in map(Requirement, importlib.metadata.requires(name) or [])
+        if need.marker is None or need.marker.evaluate({"extra": ""})
+    }
+    assert {name: asker for name, asker in brought.items() if name not in pinned} == {}
+
+
+def test_make_alone_lists_the_targets() -> None:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("MAKE", "MFLAGS"))}
+    listing = subprocess.run(["make"], cwd=ROOT, env=environment, capture_output=True, text=True, check=True).stdout
+    assert re.findall(r"^make (\w+) ", listing, re.MULTILINE) == ["demo", "test", "lint", "check", "clean"]
