@@ -1,5 +1,6 @@
 """The sample photos: complete, small, and in agreement with their own ground truth."""
 
+import io
 import json
 import subprocess
 import sys
@@ -141,22 +142,23 @@ def test_courtyard_is_distorted() -> None:
 
 def make_small(folder: Path) -> dict[str, bytes]:
     """All files of a run at 160 px."""
-    folder.mkdir()
     command = [sys.executable, str(SAMPLES / "make_samples.py"), "--width", "160", "--output", str(folder)]
     subprocess.run(command, check=True, capture_output=True, timeout=120)
     return {path.name: path.read_bytes() for path in folder.iterdir()}
 
 
-def test_making_them_twice_gives_the_same_bytes(tmp_path: Path) -> None:
-    first, second = make_small(tmp_path / "first"), make_small(tmp_path / "second")
-    assert set(first) == {f"{name}{suffix}" for name in NAMES for suffix in (".jpg", ".json", ".truth.json")}
-    assert first == second
+@pytest.fixture(scope="module")
+def small(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    return make_small(tmp_path_factory.mktemp("small"))
 
 
-def test_small_version_shows_the_same_scene(tmp_path: Path) -> None:
-    """The photos in this folder come from the script in this folder."""
-    make_small(tmp_path / "small")
-    for name in NAMES:
-        with Image.open(tmp_path / "small" / f"{name}.jpg") as small, Image.open(SAMPLES / f"{name}.jpg") as large:
-            shrunk = np.asarray(large.resize(small.size, Image.Resampling.BOX), float)
-            assert np.abs(np.asarray(small, float) - shrunk).mean() < 8, name
+def test_making_them_twice_gives_the_same_bytes(small: dict[str, bytes], tmp_path: Path) -> None:
+    assert set(small) == {f"{name}{suffix}" for name in NAMES for suffix in (".jpg", ".json", ".truth.json")}
+    assert make_small(tmp_path) == small
+
+
+@each
+def test_script_shows_the_scene_of_the_photo_beside_it(small: dict[str, bytes], name: str) -> None:
+    with Image.open(io.BytesIO(small[f"{name}.jpg"])) as made, Image.open(SAMPLES / f"{name}.jpg") as kept:
+        shrunk = np.asarray(kept.resize(made.size, Image.Resampling.BOX), float)
+        assert np.abs(np.asarray(made, float) - shrunk).mean() < 12  # grey levels; two of the scenes differ by over 40
