@@ -140,7 +140,7 @@ def _say(weight: Float, label: Int, residual: Float, error: Float) -> Float:
         if total > 0:
             noise = say[own] @ error[own] ** 2 / total + ERROR_FLOOR**2
             say[own] *= total / (say[own] ** 2).sum() / noise
-    return say
+    return np.asarray(say)
 
 
 def _refine(ends: Float, weight: Float, K: Float, axes: Float) -> Float:
