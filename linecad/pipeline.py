@@ -123,8 +123,8 @@ def _scene(
         raise ReconstructionError(
             "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
         )
-    dropped = len(graph.segments) - sum(map(len, parts))
     parts = parts[:1] if options.largest_component else parts
+    dropped = len(graph.segments) - sum(map(len, parts))
     component = np.full(len(graph.segments), -1)
     for number, part in enumerate(parts):
         component[part] = number
@@ -207,7 +207,7 @@ def _doubts(solution: Solution, parts: list[Int], dropped: int, shift: Float) ->
             "their neighbours in the photo and marked weak"
         )
     if dropped:
-        notes.append(f"{dropped} lines meet no others in space and are left out")
+        notes.append(f"{dropped} lines meet none of the others in space and are left out")
     moved = int((shift > SHIFT_NOTED).sum())
     if moved:
         notes.append(f"{moved} lines moved by up to {np.degrees(shift.max()):.1f} degrees to meet the others exactly")
