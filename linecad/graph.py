@@ -24,7 +24,13 @@ END_ZONE_FLOOR = 2.5  # px
 CORNER_REACH = 12.0  # px at the reference width between the crossings of a Y or W junction
 CORNER_REACH_FLOOR = 3.0  # px
 
-NOISE = 1.0  # px across the segment, one standard deviation, at the photo's own size
+COLLINEAR_ACROSS = 2.5  # px at the reference width between two segments of one line
+COLLINEAR_ACROSS_FLOOR = 0.8  # px
+COLLINEAR_GAP = 1000.0  # px at the reference width; what is further apart says nothing about each other
+COLLINEAR_GAP_SHARE = 1.5  # of the shorter segment; a larger gap needs longer segments to be believed
+
+NOISE = 1.25  # px across the segment at the reference width, one standard deviation
+NOISE_FLOOR = 0.5  # px in any photo: the detector is not better
 NOISE_FACTOR = 3.0  # standard deviations that a tolerance covers
 MIN_TOLERANCE = 0.002  # relative depth; calibration and frame are not better than that
 MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
@@ -35,6 +41,7 @@ Weights = Literal["ones", "junctions"]
 # The paper took its weights from an earlier work that did not print them. CONTRIBUTING tells how these were found.
 JUNCTION_WEIGHT = {"L": 1.0, "T": 1.0, "X": 1.0}
 CORNER_FACTOR = 1.0
+COLLINEAR_WEIGHT = 0.5  # two segments of one image line are evidence too, but not that the line goes on between them
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,10 +60,12 @@ def build_line_graph(
     frame: ManhattanFrame,
     extension: float = EXTENSION,
     weights: Weights = "junctions",
+    collinear: bool = False,
 ) -> LineGraph:
     """The line graph of segments that pass through their vanishing points (paper, section "Line Graph").
 
-    `extension` is in px at REFERENCE_WIDTH. Segments that are too short to be lines are left out.
+    `extension` is in px at REFERENCE_WIDTH. Segments that are too short to be lines are left out. `collinear` adds a
+    second kind of edge that the paper does not have: two segments on one image line may be one line in space.
     """
     scale = camera.width / REFERENCE_WIDTH
     segments = segments.subset(segments.length >= max(MIN_LENGTH * scale, MIN_LENGTH_FLOOR))
@@ -66,9 +75,19 @@ def build_line_graph(
 
     middle = segments.ends.mean(axis=1)
     rays = world_rays(middle, camera.matrix, frame.rotation)
-    spread = _ray_spread(segments, middle, camera, frame)
+    spread = _ray_spread(segments, middle, camera, frame, max(NOISE * scale, NOISE_FLOOR))
+    coordinate = 3 - segments.axis[found.edges].sum(axis=1)
+    weight = _weights(kind, corner, weights)
+    if collinear:
+        pieces = _find_collinear(
+            segments, directions_to(middle, vanishing_points(camera.matrix, frame.rotation)[segments.axis]), scale
+        )
+        found = _joined(found, pieces)
+        kind = np.r_[kind, np.full(len(pieces.edges), "collinear")]
+        corner = np.r_[corner, np.zeros(len(pieces.edges), bool)]
+        weight = np.r_[weight, np.full(len(pieces.edges), 1.0 if weights == "ones" else COLLINEAR_WEIGHT)]
+        coordinate = np.r_[coordinate, _telling_coordinates(rays, segments.axis, pieces.edges)]
     i, j = found.edges.T
-    coordinate = 3 - segments.axis[i] - segments.axis[j]
     component = np.stack([rays[i, coordinate], rays[j, coordinate]], axis=1)
     noise = np.abs(np.stack([spread[i, coordinate], spread[j, coordinate]], axis=1))
     possible = component.prod(axis=1) > 0
@@ -84,7 +103,7 @@ def build_line_graph(
         gap=found.gap,
         kind=kind,
         corner=corner,
-        weight=_weights(kind, corner, weights),
+        weight=weight,
         coordinate=coordinate,
         log_ratio=log_ratio,
         tolerance=tolerance,
@@ -155,6 +174,52 @@ def _find_crossings(segments: Segments, extension: float) -> _Crossings:
     return _Crossings(pairs, np.concatenate(points), np.maximum(-to_end, 0), np.maximum(to_end, 0))
 
 
+def _find_collinear(segments: Segments, direction: Float, scale: float) -> _Crossings:
+    """Pairs of segments of one axis that lie on one image line, one after the other; the point is between them."""
+    across = max(COLLINEAR_ACROSS * scale, COLLINEAR_ACROSS_FLOOR)
+    middle, length = segments.ends.mean(axis=1), segments.length
+    edges, points, gaps = [], [], []
+    for i in range(len(segments)):
+        others = np.flatnonzero(segments.axis[i + 1 :] == segments.axis[i]) + i + 1
+        to = middle[others] - middle[i]
+        own = np.abs(to[:, 0] * direction[i, 1] - to[:, 1] * direction[i, 0])
+        other = np.abs(to[:, 0] * direction[others, 1] - to[:, 1] * direction[others, 0])
+        reach = (segments.ends[others] - middle[i]) @ direction[i]
+        ahead = reach.min(axis=1) - length[i] / 2
+        behind = -length[i] / 2 - reach.max(axis=1)
+        gap = np.maximum(ahead, behind)
+        shorter = np.minimum(length[i], length[others])
+        limit = np.minimum(COLLINEAR_GAP * scale, COLLINEAR_GAP_SHARE * shorter)
+        one_line = (np.maximum(own, other) < across) & (gap > 0) & (gap <= limit)
+        side = np.where(ahead > behind, 1, -1)[one_line]
+        edges.append(np.column_stack([np.full(one_line.sum(), i), others[one_line]]))
+        points.append(middle[i] + (side * (length[i] + gap[one_line]) / 2)[:, None] * direction[i])
+        gaps.append(np.column_stack([gap[one_line], gap[one_line]]) / 2)
+    if not edges:
+        return _Crossings(np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 2)))
+    gap_halves = np.concatenate(gaps)
+    return _Crossings(np.concatenate(edges), np.concatenate(points), gap_halves, np.zeros_like(gap_halves))
+
+
+def _joined(first: _Crossings, second: _Crossings) -> _Crossings:
+    return _Crossings(
+        np.concatenate([first.edges, second.edges]),
+        np.concatenate([first.point, second.point]),
+        np.concatenate([first.gap, second.gap]),
+        np.concatenate([first.inside, second.inside]),
+    )
+
+
+def _telling_coordinates(rays: Float, axis: Int, edges: Int) -> Int:
+    """Of the two coordinates (E,) in which collinear lines agree, the one that is further from the camera's zero."""
+    first = (axis[edges[:, 0]] + 1) % 3
+    second = (axis[edges[:, 0]] + 2) % 3
+    size = np.abs(rays)
+    by_first = np.minimum(size[edges[:, 0], first], size[edges[:, 1], first])
+    by_second = np.minimum(size[edges[:, 0], second], size[edges[:, 1], second])
+    return np.asarray(np.where(by_first >= by_second, first, second))
+
+
 def _junction_kinds(found: _Crossings, zone: float) -> Text:
     """L where both segments end at the crossing, T where one does, X where both go on."""
     ends_here = (found.inside <= zone).sum(axis=1)
@@ -178,10 +243,10 @@ def _corners(found: _Crossings, axis: Int, reach: float) -> Bool:
     return is_corner
 
 
-def _ray_spread(segments: Segments, middle: Float, camera: Camera, frame: ManhattanFrame) -> Float:
-    """How far the world rays (N, 3) of the middles move when the segments move across by their pixel noise."""
+def _ray_spread(segments: Segments, middle: Float, camera: Camera, frame: ManhattanFrame, noise: float) -> Float:
+    """How far the world rays (N, 3) of the middles move when the segments move across by `noise` px."""
     towards = directions_to(middle, vanishing_points(camera.matrix, frame.rotation)[segments.axis])
-    across = np.stack([-towards[:, 1], towards[:, 0]], axis=1) * NOISE
+    across = np.stack([-towards[:, 1], towards[:, 0]], axis=1) * noise
     spread: Float = world_rays(middle + across, camera.matrix, frame.rotation) - world_rays(
         middle, camera.matrix, frame.rotation
     )

@@ -58,8 +58,11 @@ def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float) -> Float:
 def _shared_coordinates(graph: LineGraph, chosen: Bool) -> Int:
     """Numbers (N, 3) such that two coordinates have the same number when chosen crossings make them equal."""
     count = 3 * len(graph.segments)
-    coordinate = graph.coordinate[chosen]
     i, j = graph.edges[chosen].T
+    # Crossing lines share one coordinate, the pieces of one line share both of theirs.
+    also = graph.axis[i] == graph.axis[j]
+    coordinate = np.r_[graph.coordinate[chosen], (3 - graph.axis[i] - graph.coordinate[chosen])[also]]
+    i, j = np.r_[i, i[also]], np.r_[j, j[also]]
     links = csr_matrix((np.ones(len(i)), (3 * i + coordinate, 3 * j + coordinate)), (count, count))
     shared: Int = connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int64)
     shared[np.arange(len(graph.segments)), graph.axis] = -1
