@@ -10,7 +10,7 @@ import sys
 import time
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NoReturn, Self
 
 from linecad import __version__
 from linecad.errors import LinecadError, OutputError
@@ -33,7 +33,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"linecad: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("linecad: interrupted, nothing was written", file=sys.stderr)
+        print("linecad: interrupted; a file that was not written yet is as it was before", file=sys.stderr)
         return 1
     return code
 
@@ -56,7 +56,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="linecad", description="From one photo of a Manhattan scene to 3D lines, planes and CAD files."
     )
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
     _add_export(commands)
     return parser
@@ -191,12 +191,11 @@ def _convert(parsed: argparse.Namespace) -> int:
             seed=parsed.seed,
         ),
     )
-    show = _Shown(parsed)
-    show.stage("reading the photo")
-    photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
-    scene = reconstruct(photo, options, show.progress, show.stage)
-    _write(scene, photo, parsed.output, show)
-    show.end()
+    with _Shown(parsed) as show:
+        show.stage("reading the photo")
+        photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
+        scene = reconstruct(photo, options, show.progress, show.stage)
+        _write(scene, photo, parsed.output, show)
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
@@ -214,12 +213,11 @@ def _export(parsed: argparse.Namespace) -> int:
     _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
     from linecad.scenefile import read_scene
 
-    show = _Shown(parsed)
-    show.stage("reading the scene")
-    scene = read_scene(parsed.scene)
-    photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
-    _write(scene, photo, parsed.output, show)
-    show.end()
+    with _Shown(parsed) as show:
+        show.stage("reading the scene")
+        scene = read_scene(parsed.scene)
+        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
+        _write(scene, photo, parsed.output, show)
     return 0
 
 
@@ -308,8 +306,11 @@ class _Shown:
                 f"gap {at.gap:.2%} (Ctrl-C keeps the best)"
             )
 
-    def end(self) -> None:
-        """Nothing more to show."""
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        """Nothing more to show; an error's line begins on a clean one."""
         self._finish_stage()
         self.current = ""
         if self.live:

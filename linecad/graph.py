@@ -38,9 +38,10 @@ MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
 Weights = Literal["ones", "junctions"]
 
 # w_ij by kind of junction, and where a line of the third axis passes through the same point (Y and W junctions).
-# The paper took its weights from an earlier work that did not print them. CONTRIBUTING tells how these were found.
-JUNCTION_WEIGHT = {"L": 1.0, "T": 1.0, "X": 1.0}
-CORNER_FACTOR = 1.0
+# The paper took its weights from an earlier work that did not print them. These follow the log-odds that a crossing of
+# each kind is real in surveyed photos, X = 1 (tests/benchmarks/junction_weights.py; CONTRIBUTING, 2026-11-21).
+JUNCTION_WEIGHT = {"L": 1.1, "T": 0.9, "X": 1.0}
+CORNER_FACTOR = 0.6
 COLLINEAR_WEIGHT = 0.5  # two segments of one image line are evidence too, but not that the line goes on between them
 
 

@@ -15,7 +15,6 @@ from scipy.sparse.linalg import spsolve
 from linecad.scene import Bool, Float, Int, LineGraph, Solution
 
 ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
-SNAP = 0.02  # of the segment's length; a line that ends so near a chosen crossing ends at it
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +50,9 @@ def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float) -> Float:
     incidence = csr_matrix((np.r_[np.ones(len(rows)), -np.ones(len(rows))], (np.r_[rows, rows], np.r_[i, j])), shape)
     weight = diags_array(1 / graph.tolerance[used] ** 2)
     normal = incidence.T @ weight @ incidence + ANCHOR * diags_array(np.ones(shape[1]))
-    right = incidence.T @ (weight @ graph.log_ratio[used]) + ANCHOR * guess
-    return np.asarray(spsolve(normal.tocsc(), right))
+    # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
+    misfit = graph.log_ratio[used] - incidence @ guess
+    return np.asarray(guess + spsolve(normal.tocsc(), incidence.T @ (weight @ misfit)))
 
 
 def _shared_coordinates(graph: LineGraph, chosen: Bool) -> Int:
@@ -105,15 +105,13 @@ def _ends(graph: LineGraph, offset: Float) -> tuple[Float, Float]:
 
 
 def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, ends: Float) -> Float:
-    """Ends that fall short of chosen crossings, or stop right at them, moved to the outermost junction exactly."""
+    """Ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
     junctions: dict[tuple[int, int], list[float]] = {}
-    for edge in np.flatnonzero(chosen).tolist():
+    for edge in np.flatnonzero(chosen & (graph.kind != "collinear")).tolist():  # those have no point in common
         for side in range(2):
             line, other = graph.edges[edge, side], graph.edges[edge, 1 - side]
-            if graph.axis[line] == graph.axis[other]:
-                continue  # a collinear edge: the two have no single point in common
-            to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edge], axis=1)
-            if graph.gap[edge, side] > 0 or to_ends.min() <= SNAP * graph.segments.length[line]:
+            if _ends_there(graph, edge, side):
+                to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edge], axis=1)
                 nearer = (int(line), int(to_ends.argmin()))
                 junctions.setdefault(nearer, []).append(float(offset[other, graph.axis[line]]))
     moved = ends.copy()
@@ -122,3 +120,13 @@ def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, ends: Float
         outward = float(np.sign(ends[line, end, axis] - ends[line, 1 - end, axis]))
         moved[line, end, axis] = max(places) if outward > 0 else min(places)
     return moved
+
+
+def _ends_there(graph: LineGraph, edge: int, side: int) -> bool:
+    """Whether a line ends at a crossing: both do at an L, one does at a T, and an X is passed by all that reach it."""
+    if graph.gap[edge, side] > 0 or graph.kind[edge] == "L":
+        return True
+    if graph.kind[edge] == "X" or graph.gap[edge, 1 - side] > 0:
+        return False
+    to_ends = np.linalg.norm(graph.segments.ends[graph.edges[edge]] - graph.crossing[edge], axis=2).min(axis=1)
+    return bool(to_ends[side] < to_ends[1 - side])

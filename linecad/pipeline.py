@@ -1,7 +1,7 @@
 """The stages in the paper's order (algorithm 1): a photo becomes a scene."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -68,7 +68,7 @@ def reconstruct(
     segments = group_segments(label_segments(raw, camera, frame), camera, frame)
     graph = _kept(build_line_graph(segments, camera, frame, options.extension, options.weights), options)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
-    solution = solve(graph, options.solve, on_progress)
+    solution = _within_groups(graph, solve(graph, options.solve, on_progress))
     on_stage("lifting the lines into space")
     return _scene(photo, camera, frame, graph, solution, lift(graph, solution), notes, options)
 
@@ -106,6 +106,19 @@ def _kept(graph: LineGraph, options: ReconstructOptions) -> LineGraph:
     return graph.subset(np.sort(np.concatenate(kept)))
 
 
+def _within_groups(graph: LineGraph, solution: Solution) -> Solution:
+    """The solution without chosen crossings between groups of lines that nothing else ties.
+
+    Such a crossing lies so near the horizon that it says nothing about depth; the two groups have scales of their own,
+    and a coordinate that they shared would be two numbers.
+    """
+    group = np.empty(len(graph.segments), np.int64)
+    for number, part in enumerate(components(graph, solution.connected & graph.informative)):
+        group[part] = number
+    i, j = graph.edges.T
+    return replace(solution, connected=solution.connected & (group[i] == group[j]))
+
+
 def _scene(
     photo: Photo,
     camera: Camera,
@@ -132,8 +145,8 @@ def _scene(
     scale = _component_scales(graph, lifted, parts)
     ends = lifted.ends * scale[component][:, None, None]
     offset = lifted.offset * scale[component][:, None]
-    real = solution.connected & (component[graph.edges] >= 0).all(axis=1)
-    real &= component[graph.edges[:, 0]] == component[graph.edges[:, 1]]
+    inside = (component[graph.edges] >= 0).all(axis=1)
+    real = solution.connected & inside
 
     new_id = np.cumsum(component >= 0) - 1
     lines = Lines(
@@ -145,7 +158,6 @@ def _scene(
         component=component[kept],
         confidence=_confidence(solution, component, hinged_nodes(graph, telling))[kept],
     )
-    inside = (component[graph.edges] >= 0).all(axis=1)
     intersections = Intersections(
         lines=new_id[graph.edges[inside]],
         kind=graph.kind[inside],
@@ -200,7 +212,8 @@ def _confidence(solution: Solution, component: Int, hinged: Bool) -> Text:
 def _doubts(solution: Solution, parts: list[Int], dropped: int, shift: Float) -> list[str]:
     notes = []
     if solution.status != "optimal":
-        notes.append(f"the solver ended by its {solution.status} with a gap of {solution.gap:.1%}: not proven optimal")
+        ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"
+        notes.append(f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal")
     if len(parts) > 1:
         notes.append(
             f"{len(parts) - 1} smaller groups of lines have a scale of their own; they are placed at the depth of "
