@@ -90,6 +90,8 @@ def main() -> None:
     parser.add_argument("--time-limit", type=float, default=60.0)
     chosen = parser.parse_args()
     files = sorted((chosen.data / chosen.dataset).glob("*.json"))
+    if not files:
+        parser.error(f"there are no photos in {chosen.data / chosen.dataset}; name their folder with --data")
     if chosen.dataset == "york_urban":
         errors, labels, seconds = np.array([measure_frame(file) for file in files]).T
         print(

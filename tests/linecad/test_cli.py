@@ -343,7 +343,7 @@ def test_an_error_on_a_terminal_stands_on_a_line_of_its_own(folder):
 WITH_A_SMALL_DISK = """
 import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 from linecad.cli import main
 sys.exit(main(sys.argv[1:]))
 """

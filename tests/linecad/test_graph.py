@@ -1,5 +1,7 @@
 """The line graph against brute force and against the true depths of the made scene."""
 
+from itertools import pairwise
+
 import networkx as nx
 import numpy as np
 import pytest
@@ -139,7 +141,7 @@ def test_log_ratio_of_a_fake_crossing_is_not_that_of_the_depths(made, depth_on):
     course = int(np.flatnonzero((made.axis == 0) & (made.box == 0))[1])
     middle = made.pixels[course].mean(axis=0)
     near = 0.5 * made.ends[course].mean(axis=0)
-    ends = np.array([near - [0, 0, 0.5], near + [0, 0, 0.5]]) @ (made.camera.matrix @ made.frame.rotation).T
+    ends = np.array([near - [0, 0, 0.5], near + np.array([0, 0, 0.5])]) @ (made.camera.matrix @ made.frame.rotation).T
     segments = Segments([made.pixels[course], ends[:, :2] / ends[:, 2:]], [0, 2])
     graph = build_line_graph(segments, made.camera, made.frame)
     assert len(graph.edges) == 1
@@ -229,7 +231,7 @@ def test_spanning_tree_spans_with_the_least_residual(made, seed):
         for number in np.flatnonzero(tree):
             net.add_edge(*graph.edges[number].tolist(), number=number)
         path = nx.shortest_path(net, *graph.edges[edge].tolist())
-        around = [net.edges[pair]["number"] for pair in zip(path, path[1:], strict=False)]
+        around = [net.edges[pair]["number"] for pair in pairwise(path)]
         assert residual[around].max() <= residual[edge]
 
 
