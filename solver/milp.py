@@ -21,6 +21,7 @@ brackets are the paper's equations.
 What the paper leaves open, and how it is settled here:
 
 - lambda has an upper bound (the near end of a line lies at most at `options.depth_range`), without which no L exists.
+- What a person called real or fake is a bound of b.
 - The paper writes "(j, m) in E" above (13); it must read "(l, m)".
 - A pi exists only for pairs with a neighbour that both lines can meet; else it would be a reward for nothing.
 - An edge whose two lines lie on opposite sides of the camera (`possible` False) has b = 0. One that says nothing about
@@ -37,6 +38,7 @@ from linecad.errors import SolverError
 from linecad.scene import AXES, Bool, Float, Int, LineGraph
 from solver.choice import Choice, boundaries, objective_of
 from solver.depths import near_log_ratio
+from solver.facts import read_facts
 from solver.families import Families
 from solver.problem import SolveOptions
 
@@ -72,6 +74,7 @@ def _add_variables(graph: LineGraph, families: Families, options: SolveOptions, 
     """All variables; (6), lambda_ia >= 1, is the lower bound of the depths."""
     model = Model("linecad")
     model.hideOutput()
+    known_real, known_fake = read_facts(graph, options)
     near = np.argmin(ratios, axis=1).tolist()
     largest = options.depth_range * ratios / ratios.min(axis=1, keepdims=True)
     depth = [
@@ -82,8 +85,10 @@ def _add_variables(graph: LineGraph, families: Families, options: SolveOptions, 
         for i, upper in enumerate(largest.tolist())
     ]
     connected = [
-        model.addVar(f"b_{i}_{j}", vtype="B", ub=float(possible))
-        for (i, j), possible in zip(graph.edges.tolist(), graph.possible.tolist(), strict=True)
+        model.addVar(f"b_{i}_{j}", vtype="B", lb=float(real), ub=float(allowed))
+        for (i, j), real, allowed in zip(
+            graph.edges.tolist(), known_real.tolist(), (graph.possible & ~known_fake).tolist(), strict=True
+        )
     ]
     planar = {
         (*pair.lines, axis): model.addVar(f"pi_{pair.lines[0]}_{pair.lines[1]}_{AXES[axis]}", vtype="B")

@@ -9,11 +9,13 @@ import numpy as np
 from linecad.scene import Float, LineGraph, Solution
 from solver.choice import Choice, objective_of, recheck, trivial_bound
 from solver.depths import end_ratios, near_log_ratio
+from solver.facts import check_facts, read_facts
 from solver.families import find_families
 from solver.milp import PaperModel, add_start, build_model, exclude, read_choice
 from solver.potentials import fit_near_depths
 from solver.problem import Progress, SolveOptions, relative_gap
-from solver.scip import Outcome, Reporter, Watch, catch_interrupt, run, version
+from solver.progress import Reporter, catch_interrupt
+from solver.scip import Outcome, Watch, run, version
 from solver.start import find_start
 
 
@@ -23,7 +25,9 @@ def solve_paper(graph: LineGraph, options: SolveOptions, on_progress: Callable[[
     with catch_interrupt() as stop:
         ratios = end_ratios(graph)
         families = find_families(graph, options.without)
-        start = find_start(graph, families, options, ratios)
+        real, fake = read_facts(graph, options)
+        check_facts(graph, families, options, real, ratios)
+        start = find_start(graph, families, options, ratios, real=real, fake=fake)
         recheck(graph, families, options, start)
         paper = build_model(graph, families, options, ratios)
         least, most = objective_of(graph, options, start), trivial_bound(graph, families, options)

@@ -1,4 +1,4 @@
-"""Line graphs of made streets with the paper's statistics: boxes with windows, one camera, noise, hidden lines left out.
+"""Line graphs of made streets with the paper's statistics: boxes with windows, one camera, noise, no hidden lines.
 
 The paper's graphs have 215 lines and 867 crossings on average, of which 13 % are fake (its data: 751.78 of 867.22 are
 real). `make_instance` draws a street from a seed, keeps the lines that the camera sees, and returns a
