@@ -22,6 +22,7 @@ status says so.
 import threading
 import time
 from collections.abc import Callable
+from typing import assert_never
 
 import numpy as np
 
@@ -47,11 +48,10 @@ SAFETY = 1e-6  # relative, by which a bound must be worse than the objective to 
 RELAXATION_SHARE = 0.7  # of the time, after which the relaxations leave the rest to branch and cut
 
 
-def solve_gain(
-    graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progress], None] | None, backend: Backend
-) -> Solution:
+def solve_gain(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progress], None] | None) -> Solution:
     """The best balanced set of crossings; see `solver.problem.solve` for what is promised."""
     began = time.monotonic()
+    backend = _backend(options)
     with catch_interrupt() as stop:
         search = _Search(graph, options, backend, began, on_progress, stop)
         status = search.run()
@@ -76,6 +76,20 @@ def solve_gain(
         log_depth=search.best.log_depth,
         cuts=search.separation.cuts if search.separation else 0,
     )
+
+
+def _backend(options: SolveOptions) -> Backend:
+    match options.backend:
+        case "scip":
+            from solver.scip_backend import ScipBackend
+
+            return ScipBackend()
+        case "highs":
+            from solver.highs import HighsBackend
+
+            return HighsBackend()
+        case _:
+            assert_never(options.backend)
 
 
 class _Search:

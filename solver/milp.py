@@ -29,6 +29,7 @@ What the paper leaves open, and how it is settled here:
 - A collinear edge joins two lines of one axis; it has rows (4) and a place in the objective, and nothing else.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -220,16 +221,23 @@ def exclude(paper: PaperModel, edges: Int) -> None:
     paper.model.addCons(quicksum(paper.connected[e] for e in edges.tolist()) <= len(edges) - 1, f"exclude_{names}")
 
 
-def read_choice(paper: PaperModel, graph: LineGraph, options: SolveOptions, ratios: Float) -> Choice:
-    """SCIP's best solution; a boundary flag that no crossing asks for is taken back, which only adds to the objective.
+def read_choice(
+    paper: PaperModel, graph: LineGraph, options: SolveOptions, ratios: Float, found: Mapping[str, float] | None = None
+) -> Choice:
+    """SCIP's best solution, or what another solver `found` for the variables by name.
+
+    A boundary flag that no crossing asks for is taken back, which only adds to the objective.
 
     Raises SolverError when a Boolean is not integral or when SCIP counts another objective for the same choice.
     """
     model = paper.model
-    best = model.getBestSol()
+    best = model.getBestSol() if found is None else None
+
+    def value(variable: Variable) -> float:
+        return float(model.getSolVal(best, variable) if found is None else found[variable.name])
 
     def flags(variables: list[Variable]) -> Bool:
-        values = np.array([model.getSolVal(best, variable) for variable in variables], np.float64)
+        values = np.array([value(variable) for variable in variables], np.float64)
         off = np.abs(values - np.rint(values))
         if len(off) and off.max() > INTEGRALITY_TOLERANCE:
             name = variables[int(np.argmax(off))].name
@@ -237,7 +245,7 @@ def read_choice(paper: PaperModel, graph: LineGraph, options: SolveOptions, rati
         read: Bool = values > 0.5
         return read
 
-    near = np.array([model.getSolVal(best, ends[near]) for ends, near in zip(paper.depth, paper.near, strict=True)])
+    near = np.array([value(ends[near]) for ends, near in zip(paper.depth, paper.near, strict=True)])
     connected = flags(paper.connected)
     planar = flags(list(paper.planar.values()))
     needed = boundaries(graph, connected)
@@ -245,7 +253,10 @@ def read_choice(paper: PaperModel, graph: LineGraph, options: SolveOptions, rati
     planar_pairs = np.array(list(paper.planar), np.int64).reshape(-1, 3)[planar]
     log_depth = np.log(near / ratios.min(axis=1))
     counted = objective_of(graph, options, Choice(connected, marked, planar_pairs, log_depth))
-    told = model.getSolObjVal(best)
+    if found is None:
+        told = model.getSolObjVal(best)
+    else:
+        told = model.getObjoffset() + sum(variable.getObj() * value(variable) for variable in model.getVars())
     if abs(counted - told) > INTEGRALITY_TOLERANCE * max(1.0, abs(told)):
         raise SolverError(f"SCIP counts {told:g} where its answer is worth {counted:g}; this is a fault of linecad")
     return Choice(connected, marked & needed, planar_pairs, log_depth)

@@ -12,6 +12,8 @@ from linecad.scene import Formulation, LineGraph, Solution
 
 Family = Literal["cycles", "planarity", "boundary"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
+BackendName = Literal["scip", "highs"]
+BACKENDS: tuple[BackendName, ...] = get_args(BackendName)
 FORMULATIONS: tuple[Formulation, ...] = get_args(Formulation)
 
 LARGEST_SEED = 2**31 - 1  # SCIP takes its seed as a C int
@@ -31,12 +33,15 @@ class SolveOptions:
     depth_range: float = 100.0  # largest over smallest depth of the near ends; bounds the constant L of "paper" alone
     memory_limit_mb: float = 4096.0  # MB, of the solver itself
     node_limit: int | None = None  # branch-and-bound nodes
+    backend: BackendName = "scip"  # the solver; HiGHS is the extra `highs`
     real: tuple[int, ...] = ()  # edges of the graph that a person called real: every answer has them
     fake: tuple[int, ...] = ()  # edges that a person called fake: no answer has them
 
     def __post_init__(self) -> None:
         if self.formulation not in FORMULATIONS:
             raise SolverError(f"formulation {self.formulation!r} is unknown; use one of {', '.join(FORMULATIONS)}")
+        if self.backend not in BACKENDS:
+            raise SolverError(f"backend {self.backend!r} is unknown; use one of {', '.join(BACKENDS)}")
         unknown = sorted(set(self.without) - set(FAMILIES))
         if unknown:
             raise SolverError(f"family {unknown[0]!r} is unknown; use {', '.join(FAMILIES)}")
@@ -89,9 +94,8 @@ def solve(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progre
             return solve_paper(graph, options, on_progress)
         case "gain":
             from solver.gain import solve_gain
-            from solver.scip_backend import ScipBackend
 
-            return solve_gain(graph, options, on_progress, ScipBackend())
+            return solve_gain(graph, options, on_progress)
         case _:
             assert_never(options.formulation)
 

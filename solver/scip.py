@@ -51,10 +51,11 @@ LEAST_TIME_S = 0.01  # SCIP gets at least this, however long the model took to b
 
 @dataclass(frozen=True)
 class Outcome:
-    """How SCIP ended; the solution itself is in the model, bound and nodes are in the reporter."""
+    """How SCIP ended; the solution itself is in the model unless it is `found`, bound and nodes are in the reporter."""
 
     status: Status
     has_solution: bool
+    found: dict[str, float] | None = None  # the solution, by the names of the variables, where another solver found it
 
 
 def status_of(name: str) -> Status:
