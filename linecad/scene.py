@@ -28,8 +28,8 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 EdgeKind = Literal["L", "T", "X", "collinear"]
 Confidence = Literal["proven", "supported", "weak"]
-Formulation = Literal["paper"]
-Status = Literal["optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit"]
+Formulation = Literal["gain", "paper"]
+Status = Literal["optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit", "heuristic"]
 
 CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 EDGE_KINDS: tuple[EdgeKind, ...] = get_args(EdgeKind)
@@ -241,6 +241,7 @@ class Solution:
     is_boundary: Bool  # (N,) the paper's B_i
     planar_pairs: Int  # (P, 3) two parallel lines and the other axis of the plane they lie in, the paper's pi
     log_depth: Float  # (N,) log of the depth of each segment's middle, consistent with `connected`
+    cuts: int = 0  # rows that were added while solving
 
     def __post_init__(self) -> None:
         _freeze(self, "connected", np.bool_, (None,))

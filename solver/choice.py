@@ -33,6 +33,23 @@ def boundaries(graph: LineGraph, connected: Bool) -> Bool:
     return found
 
 
+def planar_pairs(families: Families, connected: Bool) -> Int:
+    """(P, 3) every pair that fits one of its planes, (12) to (17), with the first of the two that it fits."""
+    if not families.pairs:
+        return np.zeros((0, 3), np.int64)
+    members = [(m.first, m.second, m.axis == pair.axes[0]) for pair in families.pairs for m in pair.shared]
+    first, second, along = np.array(members, np.int64).T
+    start = np.concatenate([[0], np.cumsum([len(pair.shared) for pair in families.pairs])[:-1]])
+    unequal = connected[first] != connected[second]
+    both = connected[first] & connected[second]
+    fits = [~np.logical_or.reduceat(np.where(along == (plane == 0), unequal, both), start) for plane in range(2)]
+    rows = [
+        (*families.pairs[k].lines, families.pairs[k].axes[0 if fits[0][k] else 1])
+        for k in np.flatnonzero(fits[0] | fits[1]).tolist()
+    ]
+    return np.array(rows, np.int64).reshape(-1, 3)
+
+
 def objective_of(graph: LineGraph, options: SolveOptions, choice: Choice) -> float:
     """The paper's objective (21), without the terms of the families that are off."""
     value = float(graph.weight[choice.connected].sum())
@@ -60,16 +77,22 @@ def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice:
     connected = choice.connected
     if (connected & ~graph.possible).any():
         _fail(f"connects edge {int(np.argmax(connected & ~graph.possible))}, whose lines cannot meet")
+    against = [edge for edge in options.real if not connected[edge]] + [
+        edge for edge in options.fake if connected[edge]
+    ]
+    if against:
+        _fail(f"goes against what was said about edge {against[0]}")
     i, j = graph.edges.T
     off = np.abs(choice.log_depth[i] - choice.log_depth[j] - graph.log_ratio) - graph.tolerance
     off = np.where(connected & graph.informative, off, -np.inf)
     if (off > RECHECK_TOLERANCE).any():
         _fail(f"leaves edge {int(np.argmax(off))} outside its tolerance by {off.max():.3g} in log depth")
-    near = choice.log_depth + np.log(end_ratios(graph).min(axis=1))
-    if len(near) and not (
-        near.min() >= -RECHECK_TOLERANCE and near.max() <= np.log(options.depth_range) + RECHECK_TOLERANCE
-    ):
-        _fail(f"puts line ends outside the depths 1 to {options.depth_range:g}")
+    if options.formulation == "paper":
+        near = choice.log_depth + np.log(end_ratios(graph).min(axis=1))
+        if len(near) and not (
+            near.min() >= -RECHECK_TOLERANCE and near.max() <= np.log(options.depth_range) + RECHECK_TOLERANCE
+        ):
+            _fail(f"puts line ends outside the depths 1 to {options.depth_range:g}")
     for cycle in families.cycles:
         if connected[list(cycle)].all():
             _fail(f"connects all edges {cycle} of a cycle that must keep one open")

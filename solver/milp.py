@@ -21,6 +21,7 @@ brackets are the paper's equations.
 What the paper leaves open, and how it is settled here:
 
 - lambda has an upper bound (the near end of a line lies at most at `options.depth_range`), without which no L exists.
+- What a person called real or fake is a bound of b.
 - The paper writes "(j, m) in E" above (13); it must read "(l, m)".
 - A pi exists only for pairs with a neighbour that both lines can meet; else it would be a reward for nothing.
 - An edge whose two lines lie on opposite sides of the camera (`possible` False) has b = 0. One that says nothing about
@@ -28,6 +29,7 @@ What the paper leaves open, and how it is settled here:
 - A collinear edge joins two lines of one axis; it has rows (4) and a place in the objective, and nothing else.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +39,7 @@ from linecad.errors import SolverError
 from linecad.scene import AXES, Bool, Float, Int, LineGraph
 from solver.choice import Choice, boundaries, objective_of
 from solver.depths import near_log_ratio
+from solver.facts import read_facts
 from solver.families import Families
 from solver.problem import SolveOptions
 
@@ -72,6 +75,7 @@ def _add_variables(graph: LineGraph, families: Families, options: SolveOptions, 
     """All variables; (6), lambda_ia >= 1, is the lower bound of the depths."""
     model = Model("linecad")
     model.hideOutput()
+    known_real, known_fake = read_facts(graph, options)
     near = np.argmin(ratios, axis=1).tolist()
     largest = options.depth_range * ratios / ratios.min(axis=1, keepdims=True)
     depth = [
@@ -82,8 +86,10 @@ def _add_variables(graph: LineGraph, families: Families, options: SolveOptions, 
         for i, upper in enumerate(largest.tolist())
     ]
     connected = [
-        model.addVar(f"b_{i}_{j}", vtype="B", ub=float(possible))
-        for (i, j), possible in zip(graph.edges.tolist(), graph.possible.tolist(), strict=True)
+        model.addVar(f"b_{i}_{j}", vtype="B", lb=float(real), ub=float(allowed))
+        for (i, j), real, allowed in zip(
+            graph.edges.tolist(), known_real.tolist(), (graph.possible & ~known_fake).tolist(), strict=True
+        )
     ]
     planar = {
         (*pair.lines, axis): model.addVar(f"pi_{pair.lines[0]}_{pair.lines[1]}_{AXES[axis]}", vtype="B")
@@ -215,16 +221,23 @@ def exclude(paper: PaperModel, edges: Int) -> None:
     paper.model.addCons(quicksum(paper.connected[e] for e in edges.tolist()) <= len(edges) - 1, f"exclude_{names}")
 
 
-def read_choice(paper: PaperModel, graph: LineGraph, options: SolveOptions, ratios: Float) -> Choice:
-    """SCIP's best solution; a boundary flag that no crossing asks for is taken back, which only adds to the objective.
+def read_choice(
+    paper: PaperModel, graph: LineGraph, options: SolveOptions, ratios: Float, found: Mapping[str, float] | None = None
+) -> Choice:
+    """SCIP's best solution, or what another solver `found` for the variables by name.
+
+    A boundary flag that no crossing asks for is taken back, which only adds to the objective.
 
     Raises SolverError when a Boolean is not integral or when SCIP counts another objective for the same choice.
     """
     model = paper.model
-    best = model.getBestSol()
+    best = model.getBestSol() if found is None else None
+
+    def value(variable: Variable) -> float:
+        return float(model.getSolVal(best, variable) if found is None else found[variable.name])
 
     def flags(variables: list[Variable]) -> Bool:
-        values = np.array([model.getSolVal(best, variable) for variable in variables], np.float64)
+        values = np.array([value(variable) for variable in variables], np.float64)
         off = np.abs(values - np.rint(values))
         if len(off) and off.max() > INTEGRALITY_TOLERANCE:
             name = variables[int(np.argmax(off))].name
@@ -232,7 +245,7 @@ def read_choice(paper: PaperModel, graph: LineGraph, options: SolveOptions, rati
         read: Bool = values > 0.5
         return read
 
-    near = np.array([model.getSolVal(best, ends[near]) for ends, near in zip(paper.depth, paper.near, strict=True)])
+    near = np.array([value(ends[near]) for ends, near in zip(paper.depth, paper.near, strict=True)])
     connected = flags(paper.connected)
     planar = flags(list(paper.planar.values()))
     needed = boundaries(graph, connected)
@@ -240,7 +253,10 @@ def read_choice(paper: PaperModel, graph: LineGraph, options: SolveOptions, rati
     planar_pairs = np.array(list(paper.planar), np.int64).reshape(-1, 3)[planar]
     log_depth = np.log(near / ratios.min(axis=1))
     counted = objective_of(graph, options, Choice(connected, marked, planar_pairs, log_depth))
-    told = model.getSolObjVal(best)
+    if found is None:
+        told = model.getSolObjVal(best)
+    else:
+        told = model.getObjoffset() + sum(variable.getObj() * value(variable) for variable in model.getVars())
     if abs(counted - told) > INTEGRALITY_TOLERANCE * max(1.0, abs(told)):
         raise SolverError(f"SCIP counts {told:g} where its answer is worth {counted:g}; this is a fault of linecad")
     return Choice(connected, marked & needed, planar_pairs, log_depth)

@@ -12,6 +12,7 @@ import numpy as np
 from linecad.scene import Bool, Float, Int, LineGraph
 
 SLACK = 1e-7  # log depth, added to every tolerance; far below pixel noise, above what rounding sums up to
+LOOK_EVERY = 16  # rounds after which a contradiction is looked for; it shows long before the last round
 IMPROVEMENT = 1e-12  # log depth, below which a change is rounding
 
 
@@ -41,7 +42,7 @@ def fit_near_depths(graph: LineGraph, step: Float, connected: Bool, log_range: f
     edge = np.concatenate([edges, edges, np.full(2 * lines, -1)])
     depth = np.append(guess, 0.0)
     cause = np.full(lines + 1, -1)  # the constraint that last lowered each depth
-    for _ in range(lines + 2):
+    for turn in range(1, lines + 3):
         reached = depth[tail] + width
         lowest = depth.copy()
         np.minimum.at(lowest, head, reached)
@@ -51,11 +52,24 @@ def fit_near_depths(graph: LineGraph, step: Float, connected: Bool, log_range: f
         binding = np.flatnonzero(lowered[head] & (reached == lowest[head]))
         cause[head[binding]] = binding
         depth = np.where(lowered, lowest, depth)
-    return Fit(depth[:-1], _cycle(int(np.flatnonzero(lowered)[0]), cause, tail, edge))
+        if turn % LOOK_EVERY == 0 or turn > lines:
+            circling = _on_a_cycle(cause, tail)
+            if len(circling):
+                return Fit(depth[:-1], _cycle(int(circling[0]), cause, tail, edge))
+    raise AssertionError("depths fall in every round, yet no cycle of constraints is the cause")
+
+
+def _on_a_cycle(cause: Int, tail: Int) -> Int:
+    """Nodes on a cycle of causes; such a cycle has a negative sum, whenever it appears (Tarjan)."""
+    start = len(cause)
+    before = np.append(np.where(cause >= 0, tail[cause], start), start)
+    for _ in range(start.bit_length() + 1):  # each round doubles the steps that are gone back
+        before = before[before]
+    return np.unique(before[before < start])
 
 
 def _cycle(node: int, cause: Int, tail: Int, edge: Int) -> Int:
-    """The edges of the cycle of causes that `node` hangs on; there is one where depths fall in so late a round."""
+    """The edges of the cycle of causes that `node` hangs on."""
     seen: dict[int, int] = {}
     walked: list[int] = []
     while node not in seen:

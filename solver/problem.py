@@ -12,6 +12,8 @@ from linecad.scene import Formulation, LineGraph, Solution
 
 Family = Literal["cycles", "planarity", "boundary"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
+BackendName = Literal["scip", "highs"]
+BACKENDS: tuple[BackendName, ...] = get_args(BackendName)
 FORMULATIONS: tuple[Formulation, ...] = get_args(Formulation)
 
 LARGEST_SEED = 2**31 - 1  # SCIP takes its seed as a C int
@@ -23,20 +25,25 @@ LONGEST_TIME_S = 1e9  # thirty years; SCIP refuses numbers that it takes for inf
 class SolveOptions:
     """How a line graph is solved; SolverError, in one line, for a value that cannot be used."""
 
-    formulation: Formulation = "paper"
+    formulation: Formulation = "gain"
     without: frozenset[Family] = frozenset()  # families of constraints switched off, with their term of the objective
     mu_planarity: float = 0.5  # the paper's mu_1, reward of a pair of parallel lines in one Manhattan plane
     mu_boundary: float = 10.0  # the paper's mu_2, reward of a line that is not at the meeting of two planes
     time_limit_s: float = 60.0  # s, for the whole of `solve`
     gap: float = 0.0  # (bound - objective) / |objective| at which the solver may stop
     seed: int = 0
-    depth_range: float = 100.0  # largest over smallest depth of the lines' near ends; bounds the paper's constant L
+    depth_range: float = 100.0  # largest over smallest depth of the near ends; bounds the constant L of "paper" alone
     memory_limit_mb: float = 4096.0  # MB, of the solver itself
     node_limit: int | None = None  # branch-and-bound nodes
+    backend: BackendName = "scip"  # the solver; HiGHS is the extra `highs`
+    real: tuple[int, ...] = ()  # edges of the graph that a person called real: every answer has them
+    fake: tuple[int, ...] = ()  # edges that a person called fake: no answer has them
 
     def __post_init__(self) -> None:
         if self.formulation not in FORMULATIONS:
             raise SolverError(f"formulation {self.formulation!r} is unknown; use one of {', '.join(FORMULATIONS)}")
+        if self.backend not in BACKENDS:
+            raise SolverError(f"backend {self.backend!r} is unknown; use one of {', '.join(BACKENDS)}")
         unknown = sorted(set(self.without) - set(FAMILIES))
         if unknown:
             raise SolverError(f"family {unknown[0]!r} is unknown; use {', '.join(FAMILIES)}")
@@ -91,6 +98,10 @@ def solve(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progre
             from solver.paper import solve_paper
 
             return solve_paper(graph, options, on_progress)
+        case "gain":
+            from solver.gain import solve_gain
+
+            return solve_gain(graph, options, on_progress)
         case _:
             assert_never(options.formulation)
 

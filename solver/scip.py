@@ -1,15 +1,13 @@
-"""SCIP run to an answer: parameters, limits, progress, Ctrl-C, and one total table of its statuses.
+"""SCIP run to an answer: parameters, limits, progress, and one total table of its statuses.
 
 SCIP works in a thread of its own without Python's lock; the calling thread waits, reports progress and takes Ctrl-C.
 SCIP's own handling of SIGINT is off, since it prints to stdout and would act on threads that have no part in it.
 """
 
-import signal
+import math
 import threading
 import time
-from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, wait
-from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal, assert_never, get_args
 
@@ -19,7 +17,8 @@ from pyscipopt.scip import PY_SCIP_STAGE as SCIP_STAGE
 
 from linecad.errors import SolverError
 from linecad.scene import Status
-from solver.problem import Progress, SolveOptions, relative_gap
+from solver.problem import SolveOptions
+from solver.progress import Reporter
 
 ScipStatus = Literal[
     "unknown",
@@ -52,10 +51,11 @@ LEAST_TIME_S = 0.01  # SCIP gets at least this, however long the model took to b
 
 @dataclass(frozen=True)
 class Outcome:
-    """How SCIP ended; the solution itself is in the model, bound and nodes are in the reporter."""
+    """How SCIP ended; the solution itself is in the model unless it is `found`, bound and nodes are in the reporter."""
 
     status: Status
     has_solution: bool
+    found: dict[str, float] | None = None  # the solution, by the names of the variables, where another solver found it
 
 
 def status_of(name: str) -> Status:
@@ -92,59 +92,14 @@ def _status_of(name: ScipStatus) -> Status:
             assert_never(name)
 
 
-@contextmanager
-def catch_interrupt() -> Iterator[threading.Event]:
-    """While this is open, Ctrl-C sets the event instead of raising; in the main thread, as Python allows no other."""
-    stop = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
-        yield stop
-        return
-    previous = signal.signal(signal.SIGINT, lambda _number, _frame: stop.set())
-    try:
-        yield stop
-    finally:
-        signal.signal(signal.SIGINT, signal.SIG_DFL if previous is None else previous)
-
-
-class Reporter:
-    """Turns what SCIP knows into Progress that never gets worse, and passes it on when it has changed."""
-
-    def __init__(
-        self, began: float, objective: float, bound: float, on_progress: Callable[[Progress], None] | None
-    ) -> None:
-        """`began` is the `time.monotonic()` of the start, `objective` and `bound` what is known before the search."""
-        self.began = began
-        self.objective = objective
-        self.bound = bound
-        self.nodes = 0
-        self.on_progress = on_progress
-        self.told: tuple[float, float] | None = None
-
-    def note(self, objective: float, bound: float, nodes: int) -> None:
-        """Take over SCIP's numbers; where it knows none yet they are infinite, which never wins."""
-        self.objective = max(self.objective, objective)
-        self.bound = min(self.bound, bound)
-        self.nodes = max(self.nodes, nodes)
-
-    def report(self) -> None:
-        """Call the callback if the objective or the bound has changed."""
-        objective, bound = self.objective, max(self.objective, self.bound)
-        if self.told != (objective, bound):
-            self.finish(objective, bound)
-
-    def finish(self, objective: float, bound: float) -> None:
-        """Call the callback with these numbers."""
-        self.told = (objective, bound)
-        if self.on_progress is not None:
-            seconds = time.monotonic() - self.began
-            self.on_progress(Progress(seconds, objective, bound, relative_gap(objective, bound), self.nodes))
-
-
 class Watch(Eventhdlr):
     """Tells a reporter objective, bound and nodes of one model whenever SCIP has found something."""
 
-    def __init__(self, model: Model, reporter: Reporter) -> None:
+    def __init__(self, model: Model, reporter: Reporter, bound_only: bool = False) -> None:
+        """With `bound_only` the model is a relaxation: its solutions are no solutions of the problem yet."""
         self.reporter = reporter
+        self.bound_only = bound_only
+        self.nodes_before = reporter.nodes if bound_only else 0
         self.failure: Exception | None = None
         model.includeEventhdlr(self, "linecad_watch", "notes progress")
 
@@ -163,7 +118,8 @@ class Watch(Eventhdlr):
 
     def note(self, model: Model) -> None:
         """Pass on what SCIP knows."""
-        self.reporter.note(model.getPrimalbound(), model.getDualbound(), model.getNTotalNodes())
+        objective = -math.inf if self.bound_only else model.getPrimalbound()
+        self.reporter.note(objective, model.getDualbound(), self.nodes_before + model.getNTotalNodes())
 
 
 def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event) -> Outcome:

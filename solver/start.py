@@ -6,37 +6,57 @@ The exact solver starts from it and can only improve on it.
 import numpy as np
 
 from linecad.scene import Bool, Float, LineGraph
-from solver.choice import Choice, boundaries
+from solver.choice import Choice, boundaries, planar_pairs
 from solver.depths import near_log_ratio
 from solver.families import Families
+from solver.potentials import fit_near_depths
 from solver.problem import SolveOptions
 
 SAFETY = 1e-9  # log depth, kept from every limit so that rounding cannot push the start over it
+CERTAIN = 1e6  # evidence of a crossing that a person called real
 PASSES = 20  # of the local search; a number, not a time, so that the result does not depend on the machine
 LEAST_GAIN = 1e-9  # of the objective, below which a move counts as none
 
 
-def find_start(graph: LineGraph, families: Families, options: SolveOptions, ratios: Float) -> Choice:
-    """A choice that satisfies every constraint of the model; `ratios` as `solver.depths.end_ratios` returns them."""
-    step, log_range = near_log_ratio(graph, ratios), float(np.log(options.depth_range))
-    near = _greedy_near_depths(graph, step, log_range)
-    _settle(near, graph, step, log_range)
+def find_start(
+    graph: LineGraph,
+    families: Families,
+    options: SolveOptions,
+    ratios: Float,
+    evidence: Float | None = None,
+    real: Bool | None = None,
+    fake: Bool | None = None,
+) -> Choice:
+    """A choice that satisfies every constraint of the model; `ratios` as `solver.depths.end_ratios` returns them.
+
+    `evidence` (E,), the weights if None, says how much each crossing is believed when the depths are laid out.
+    `real` and `fake` (E,) are a person's word; the real ones must not contradict each other (`solver.facts`).
+    """
+    none = np.zeros(len(graph.edges), bool)
+    real, fake = none if real is None else real, none if fake is None else fake
+    step = near_log_ratio(graph, ratios)
+    log_range = float(np.log(options.depth_range)) if options.formulation == "paper" else np.inf
+    evidence = np.where(real, CERTAIN, np.where(fake, 0.0, graph.weight if evidence is None else evidence))
+    near = _greedy_near_depths(graph, step, log_range, evidence)
+    _settle(near, graph, step, log_range, evidence)
+    if real.any():
+        near = fit_near_depths(graph, step, real, log_range, near).near
     i, j = graph.edges.T
     off = np.abs(near[i] - near[j] - step)
-    agrees = graph.possible & (~graph.informative | (off <= graph.tolerance - SAFETY))
-    search = _Search(graph, families, options, agrees)
+    agrees = ~fake & graph.possible & (~graph.informative | (off <= graph.tolerance - SAFETY))
+    search = _Search(graph, families, options, agrees, real)
     search.run()
     connected = np.array(search.chosen, bool)
     return Choice(
         connected=connected,
         is_boundary=boundaries(graph, connected),
-        planar_pairs=search.planar_pairs(),
+        planar_pairs=planar_pairs(families, connected),
         log_depth=near - np.log(ratios.min(axis=1)),
     )
 
 
-def _greedy_near_depths(graph: LineGraph, step: Float, log_range: float) -> Float:
-    """(N,) log depth of each near end, from 0 to `log_range`: a union-find with potentials, heaviest edges first.
+def _greedy_near_depths(graph: LineGraph, step: Float, log_range: float, evidence: Float) -> Float:
+    """(N,) log depth of each near end, from 0 to `log_range`: a union-find with potentials, best evidence first.
 
     An edge between two groups of lines ties them together unless the group would then be deeper than the range; an edge
     within a group decides nothing any more.
@@ -45,7 +65,7 @@ def _greedy_near_depths(graph: LineGraph, step: Float, log_range: float) -> Floa
     group = list(range(len(near)))
     members = [[line] for line in group]
     usable = graph.possible & graph.informative
-    for edge in np.argsort(-graph.weight, kind="stable").tolist():
+    for edge in np.argsort(-evidence, kind="stable").tolist():
         i, j = graph.edges[edge].tolist()
         a, b = group[i], group[j]
         if not usable[edge] or a == b:
@@ -68,8 +88,8 @@ def _greedy_near_depths(graph: LineGraph, step: Float, log_range: float) -> Floa
     return near
 
 
-def _settle(near: Float, graph: LineGraph, step: Float, log_range: float) -> None:
-    """Move one line at a time to the depth, in `near`, at which the most weight of its edges agrees, until none moves.
+def _settle(near: Float, graph: LineGraph, step: Float, log_range: float, evidence: Float) -> None:
+    """Move one line at a time to the depth, in `near`, at which the most evidence agrees, until none moves.
 
     The union takes the first edge's word for a line; this takes the majority's.
     """
@@ -79,15 +99,16 @@ def _settle(near: Float, graph: LineGraph, step: Float, log_range: float) -> Non
     to_line = np.concatenate([step[edges], -step[edges]])
     order = np.argsort(line, kind="stable")
     starts = np.searchsorted(line[order], np.arange(len(near) + 1))
+    nearest = SAFETY if np.isfinite(log_range) else -np.inf
     for _ in range(PASSES):
         moved = False
         for k in range(len(near)):
             own = order[starts[k] : starts[k + 1]]
             places = near[other[own]] + to_line[own]
-            allowed = (places >= SAFETY) & (places <= log_range - SAFETY)
+            allowed = (places >= nearest) & (places <= log_range - SAFETY)
             candidates = np.append(near[k], places[allowed])
             agree = np.abs(places - candidates[:, None]) <= graph.tolerance[edges[own % len(edges)]] - SAFETY
-            votes = agree @ graph.weight[edges[own % len(edges)]]
+            votes = agree @ evidence[edges[own % len(edges)]]
             best = int(np.argmax(votes))
             if votes[best] > votes[0] + LEAST_GAIN:
                 near[k] = candidates[best]
@@ -102,10 +123,11 @@ class _Search:
     Only edges that agree with the greedy depths are ever taken, so every state fits the depths; cycles are kept open.
     """
 
-    def __init__(self, graph: LineGraph, families: Families, options: SolveOptions, agrees: Bool) -> None:
+    def __init__(self, graph: LineGraph, families: Families, options: SolveOptions, agrees: Bool, real: Bool) -> None:
         edges = range(len(graph.edges))
         self.weight: list[float] = graph.weight.tolist()
         self.agrees = agrees.tolist()
+        self.real = real.tolist()
         self.mu_planarity, self.mu_boundary = options.mu_planarity, options.mu_boundary
         self.families = families
         self.chosen = [False for _ in edges]
@@ -129,6 +151,9 @@ class _Search:
                 self.partners_of[m.second].append((number, along, m.first))
 
     def run(self) -> None:
+        for edge in range(len(self.chosen)):
+            if self.real[edge]:
+                self._toggle(edge)
         by_weight = sorted(range(len(self.chosen)), key=lambda edge: (-self.weight[edge], edge))
         for edge in by_weight:
             if self._may_take(edge):
@@ -138,15 +163,6 @@ class _Search:
             gain += sum(self._try([edge]) for edge in by_weight if self.chosen[edge] or self._may_take(edge))
             if gain <= LEAST_GAIN:
                 break
-
-    def planar_pairs(self) -> np.ndarray:
-        """(P, 3) every pair that fits one of its planes, with the first that it fits."""
-        rows = [
-            (*pair.lines, pair.axes[conflicts.index(0)])
-            for pair, conflicts in zip(self.families.pairs, self.conflicts, strict=True)
-            if 0 in conflicts
-        ]
-        return np.array(rows, np.int64).reshape(-1, 3)
 
     def _may_take(self, edge: int) -> bool:
         free = self.agrees[edge] and not self.chosen[edge]
@@ -161,6 +177,8 @@ class _Search:
 
     def _try(self, edges: list[int]) -> float:
         """Toggle `edges`; take it back unless the objective rises. Returns by how much it rose."""
+        if any(self.real[edge] for edge in edges):
+            return 0.0
         gain = sum(self._toggle(edge) for edge in edges)
         if gain > LEAST_GAIN:
             return gain

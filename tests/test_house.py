@@ -36,7 +36,20 @@ FLOORS = [
 FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.pipeline"  # solver and exporters are called from here upwards
 KNOWN_TO_THE_PACKAGES = {"linecad.errors", "linecad.scene", "linecad.files"}
 
-HEAVY = {"build123d", "cv2", "ezdxf", "networkx", "OCP", "PIL", "pxr", "pyscipopt", "scipy", "shapely", "trimesh"}
+HEAVY = {
+    "build123d",
+    "cv2",
+    "ezdxf",
+    "highspy",
+    "networkx",
+    "OCP",
+    "PIL",
+    "pxr",
+    "pyscipopt",
+    "scipy",
+    "shapely",
+    "trimesh",
+}
 LONGEST_HELP = 0.5  # s, what `linecad --help` may take
 
 # Hosts that a file may link to: standards, papers, the tools' own documentation.

@@ -105,3 +105,9 @@ def corner(build_graph):
 def street(build_graph):
     """With family cycles alone too much for SCIP to finish within a minute."""
     return build_graph(*street_lines(60), tolerance=0.004)
+
+
+@pytest.fixture(scope="session")
+def alley(build_graph):
+    """36 lines with 52 crossings, most of them fake: without P and B formulation "gain" takes hundreds of nodes."""
+    return build_graph(*street_lines(36), tolerance=0.004)

@@ -28,47 +28,47 @@ def rectangle(build_graph):
 
 
 def test_a_right_answer_passes(rectangle):
-    check(rectangle, SolveOptions(), answer(rectangle, SolveOptions()))
+    check(rectangle, SolveOptions(formulation="paper"), answer(rectangle, SolveOptions(formulation="paper")))
 
 
 def test_its_value_is_that_of_the_papers_objective(rectangle):
-    choice = answer(rectangle, SolveOptions())
-    assert objective_of(rectangle, SolveOptions(), choice) == 4 + 0.5 * 2 + 10.0 * 4
-    assert objective_of(rectangle, SolveOptions(without=frozenset({"boundary"})), choice) == 5.0
-    assert objective_of(rectangle, SolveOptions(without=frozenset({"planarity"})), choice) == 44.0
+    choice = answer(rectangle, SolveOptions(formulation="paper"))
+    assert objective_of(rectangle, SolveOptions(formulation="paper"), choice) == 4 + 0.5 * 2 + 10.0 * 4
+    assert objective_of(rectangle, SolveOptions(formulation="paper", without=frozenset({"boundary"})), choice) == 5.0
+    assert objective_of(rectangle, SolveOptions(formulation="paper", without=frozenset({"planarity"})), choice) == 44.0
     families = find_families(rectangle, frozenset())
-    assert trivial_bound(rectangle, families, SolveOptions()) == 45.0
+    assert trivial_bound(rectangle, families, SolveOptions(formulation="paper")) == 45.0
 
 
 def test_a_line_at_a_wrong_depth_is_seen(rectangle):
-    right = answer(rectangle, SolveOptions())
+    right = answer(rectangle, SolveOptions(formulation="paper"))
     moved = right.log_depth + np.array([0, 0, 0, 0.03])
     with pytest.raises(SolverError, match="outside its tolerance"):
-        check(rectangle, SolveOptions(), replace(right, log_depth=moved))
+        check(rectangle, SolveOptions(formulation="paper"), replace(right, log_depth=moved))
 
 
 def test_a_depth_out_of_range_is_seen(rectangle):
-    right = answer(rectangle, SolveOptions())
+    right = answer(rectangle, SolveOptions(formulation="paper"))
     for shift in (-1.0, 5.0):
         with pytest.raises(SolverError, match="outside the depths"):
-            check(rectangle, SolveOptions(), replace(right, log_depth=right.log_depth + shift))
+            check(rectangle, SolveOptions(formulation="paper"), replace(right, log_depth=right.log_depth + shift))
 
 
 def test_an_impossible_crossing_is_seen(rectangle, change):
-    right = answer(rectangle, SolveOptions())
+    right = answer(rectangle, SolveOptions(formulation="paper"))
     with pytest.raises(SolverError, match="edge 2, whose lines cannot meet"):
-        check(change(rectangle, possible=[True, True, False, True]), SolveOptions(), right)
+        check(change(rectangle, possible=[True, True, False, True]), SolveOptions(formulation="paper"), right)
 
 
 def test_a_closed_cycle_is_seen(corner):
-    closed = answer(corner, SolveOptions(without=frozenset({"cycles"}), mu_boundary=0.1))
+    closed = answer(corner, SolveOptions(formulation="paper", without=frozenset({"cycles"}), mu_boundary=0.1))
     assert closed.connected.all()
     with pytest.raises(SolverError, match="cycle"):
-        check(corner, SolveOptions(), closed)
+        check(corner, SolveOptions(formulation="paper"), closed)
 
 
 def test_a_missing_boundary_flag_is_seen(corner):
-    options = SolveOptions(without=frozenset({"cycles"}), mu_boundary=0.1)
+    options = SolveOptions(formulation="paper", without=frozenset({"cycles"}), mu_boundary=0.1)
     right = answer(corner, options)
     with pytest.raises(SolverError, match="boundary"):
         check(corner, options, replace(right, is_boundary=np.array([True, False, True])))
@@ -84,16 +84,16 @@ def test_a_missing_boundary_flag_is_seen(corner):
     ],
 )
 def test_a_wrong_planar_pair_is_seen(rectangle, pairs, message):
-    right = answer(rectangle, SolveOptions())
+    right = answer(rectangle, SolveOptions(formulation="paper"))
     with pytest.raises(SolverError, match=message):
-        check(rectangle, SolveOptions(), replace(right, planar_pairs=np.array(pairs)))
+        check(rectangle, SolveOptions(formulation="paper"), replace(right, planar_pairs=np.array(pairs)))
 
 
 def test_a_planar_pair_that_meets_a_line_once_is_seen(rectangle):
-    right = answer(rectangle, SolveOptions())
+    right = answer(rectangle, SolveOptions(formulation="paper"))
     connected = np.array([False, True, True, True])
     with pytest.raises(SolverError, match="breaks the plane"):
-        check(rectangle, SolveOptions(), replace(right, connected=connected))
+        check(rectangle, SolveOptions(formulation="paper"), replace(right, connected=connected))
 
 
 def test_boundaries_are_the_lines_that_meet_two_axes(corner):

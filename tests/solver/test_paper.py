@@ -17,7 +17,7 @@ import json, sys
 sys.path.insert(0, sys.argv[1])
 from conftest import line_graph, street_lines
 from solver.problem import SolveOptions, solve
-found = solve(line_graph(*street_lines(40), tolerance=0.004), SolveOptions(seed=3))
+found = solve(line_graph(*street_lines(40), tolerance=0.004), SolveOptions(formulation="paper", seed=3))
 print(json.dumps([found.status, found.objective, found.nodes, found.connected.tolist(), found.is_boundary.tolist(),
                   found.planar_pairs.tolist(), found.log_depth.tolist()]))
 """
@@ -39,7 +39,7 @@ def test_crossings_that_hold_by_loose_arithmetic_alone_are_excluded(build_graph,
     lines = [(0, (0, 5, 2), 1, 3), (1, (1, 0, 2), 5, 7), (2, (1, 5.2, 0), -1, 2)]
     graph = build_graph(lines, tolerance=0.01)
     wide = build_graph(lines, tolerance=0.02)
-    options = SolveOptions(without=frozenset({"cycles", "boundary"}))
+    options = SolveOptions(formulation="paper", without=frozenset({"cycles", "boundary"}))
     assert solve(graph, options).connected.sum() == 2
     assert solve(wide, options).connected.sum() == 3
     build = solver.paper.build_model
@@ -52,7 +52,7 @@ def test_crossings_that_hold_by_loose_arithmetic_alone_are_excluded(build_graph,
 
 
 def test_the_report_agrees_with_the_answer(street):
-    found = solve(street, SolveOptions())
+    found = solve(street, SolveOptions(formulation="paper"))
     expected = street.weight[found.connected].sum() + 0.5 * len(found.planar_pairs) + 10 * (~found.is_boundary).sum()
     assert found.objective == pytest.approx(expected)
     assert found.gap == pytest.approx((found.bound - found.objective) / found.objective)
@@ -61,7 +61,7 @@ def test_the_report_agrees_with_the_answer(street):
 
 
 def test_connected_edges_hold_within_their_tolerance(street):
-    found = solve(street, SolveOptions())
+    found = solve(street, SolveOptions(formulation="paper"))
     i, j = street.edges.T
     off = np.abs(found.log_depth[i] - found.log_depth[j] - street.log_ratio)
     real = found.connected & street.informative

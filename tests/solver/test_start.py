@@ -16,7 +16,7 @@ def start_of(graph, options):
 @pytest.mark.parametrize("mu_boundary", [0.3, 1.0, 10.0])
 @pytest.mark.parametrize("off", [(), ("cycles",), ("planarity",), ("boundary",), FAMILIES])
 def test_the_start_passes_the_re_check_and_beats_the_empty_choice(street, off, mu_boundary):
-    options = SolveOptions(without=frozenset(off), mu_boundary=mu_boundary)
+    options = SolveOptions(formulation="paper", without=frozenset(off), mu_boundary=mu_boundary)
     start = start_of(street, options)
     recheck(street, find_families(street, options.without), options, start)
     none = np.zeros(len(street.edges), bool)
@@ -26,7 +26,7 @@ def test_the_start_passes_the_re_check_and_beats_the_empty_choice(street, off, m
 
 @pytest.mark.parametrize("depth_range", [100.0, 1.7])
 def test_scip_finds_the_start_feasible(street, depth_range):
-    options = SolveOptions(depth_range=depth_range)
+    options = SolveOptions(formulation="paper", depth_range=depth_range)
     ratios, families = end_ratios(street), find_families(street, options.without)
     start = find_start(street, families, options, ratios)
     paper = build_model(street, families, options, ratios)
@@ -41,7 +41,7 @@ def test_a_consistent_scene_is_taken_whole(build_graph):
     """A grid of x- and z-lines in one facade: all crossings are real, every pair is planar, no line a boundary."""
     lines = [(0, (0, 6, z), 0, 3) for z in (1, 2, 3)] + [(2, (x, 6, 0), 0.5, 3.5) for x in (0.5, 1.5, 2.5)]
     graph = build_graph(lines)
-    start = start_of(graph, SolveOptions())
+    start = start_of(graph, SolveOptions(formulation="paper"))
     assert start.connected.all()
     assert len(start.planar_pairs) == 6
     assert not start.is_boundary.any()
@@ -53,5 +53,7 @@ def test_the_majority_of_its_edges_places_a_line(build_graph):
     lines += [(0, (0, 6, 1.5), 0, 4), (1, (4, 0, 0.7), 6, 8), (0, (0, 6, 0.7), 0, 4)]
     edges = [(0, k) for k in (1, 2, 3, 4, 5)] + [(k, 6) for k in (1, 2, 3, 4)] + [(5, 7), (7, 8), (1, 8)]
     weight = [1, 1, 1, 1, 2.5, *[3] * 7]
-    start = start_of(build_graph(lines, edges, weight=weight), SolveOptions(without=frozenset(FAMILIES)))
+    start = start_of(
+        build_graph(lines, edges, weight=weight), SolveOptions(formulation="paper", without=frozenset(FAMILIES))
+    )
     assert start.connected.tolist() == [True] * 4 + [False] + [True] * 7

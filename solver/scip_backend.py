@@ -1,0 +1,190 @@
+"""SCIP behind the search of formulation "gain": SoPlex for the relaxations, SCIP with lazy rows for the rest.
+
+The lazy rows come from a constraint handler: one search tree, in which every solution is tested by propagating depths
+and every relaxation is searched for broken rows. Measured against solving and cutting in turns, on graphs of the
+paper's size: 0.05 to 8 s where the turns take 1 to 32 s, since each turn grows its tree anew.
+
+SCIP does not see the rows that are still to come, so whatever it concludes from the rows that it has must be off:
+symmetry, and reductions that only keep some optimal solution (`BLIND`). With them on it can cut off the optimum.
+"""
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+from pyscipopt import LP, Conshdlr, Constraint, Model, Variable, quicksum
+from pyscipopt.scip import PY_SCIP_LPPARAM as SCIP_LPPARAM
+from pyscipopt.scip import PY_SCIP_PARAMSETTING as SCIP_PARAMSETTING
+from pyscipopt.scip import PY_SCIP_RESULT as SCIP_RESULT
+
+from linecad.scene import Float
+from solver.backend import Integral, Relaxed
+from solver.master import Program, Row
+from solver.problem import SolveOptions
+from solver.progress import Reporter
+from solver.scip import Watch, run, version
+from solver.separation import Separation
+
+BLIND = {"misc/usesymmetry": 0, "misc/allowstrongdualreds": False, "misc/allowweakdualreds": False}
+
+# These programs are degenerate: one trial branching takes a thousand iterations, and at SCIP's own settings 10 of 12 s
+# went into the first four nodes. Tried on two graphs of the paper's size, 5 and over 12 s became 4 and 4.
+LEAN = {
+    "branching/relpscost/inititer": 50,
+    "branching/relpscost/initcand": 20,
+    "separating/gomory/freq": -1,
+    "separating/aggregation/freq": -1,
+}
+
+
+class ScipBackend:
+    """SCIP with its LP solver."""
+
+    @property
+    def name(self) -> str:
+        """Name and version."""
+        return version()
+
+    def relaxation(self, program: Program) -> "SoplexRelaxation":
+        """A relaxation that starts from its last basis."""
+        return SoplexRelaxation(program)
+
+    def solve_integer(
+        self,
+        program: Program,
+        separation: Separation,
+        options: SolveOptions,
+        start: Float,
+        reporter: Reporter,
+        stop: threading.Event,
+    ) -> Integral:
+        """See `solver.backend.Backend`.
+
+        All columns are declared integer: the optimum is the same (`solver.master`), and SCIP can then round its bound
+        where weights and rewards have a common measure, which decides most graphs with weights of one at the root.
+        """
+        model = Model("linecad")
+        model.hideOutput()
+        bounds = list(zip(program.lower, program.upper, strict=True))
+        x = [model.addVar(f"x_{k}", vtype="I", lb=lower, ub=upper) for k, (lower, upper) in enumerate(bounds)]
+        for variable in x[: program.integers]:
+            model.chgVarBranchPriority(variable, 1)  # the others follow from these
+        for number, row in enumerate(program.rows):
+            add_row(model, x, row, f"row_{number}")
+        model.setObjective(quicksum(c * v for c, v in zip(program.objective, x, strict=True)), "maximize")
+        model.addObjoffset(program.offset)
+        for name, value in (BLIND | LEAN).items():
+            model.setParam(name, value)
+        model.setHeuristics(SCIP_PARAMSETTING.OFF)  # they know a part of the rows only; `solver.start` knows all
+        handler = LazyRows(separation, x)
+        model.includeConshdlr(
+            handler,
+            "linecad_lazy_rows",
+            "cycles that do not balance and pairs that are not planar",
+            sepapriority=10,
+            enfopriority=-10,
+            chckpriority=-10,
+            sepafreq=1,
+            propfreq=-1,
+            eagerfreq=-1,
+            maxprerounds=0,
+            needscons=False,
+        )
+        first = model.createSol()
+        for variable, at in zip(x, start.tolist(), strict=True):
+            model.setSolVal(first, variable, at)
+        model.addSol(first)
+        outcome = run(model, options, Watch(model, reporter), stop)
+        if handler.failure is not None:
+            raise handler.failure
+        if not outcome.has_solution:
+            return Integral(outcome.status, None)
+        best = model.getBestSol()
+        return Integral(outcome.status, np.array([model.getSolVal(best, variable) for variable in x]))
+
+
+def add_row(model: Model, x: list[Variable], row: Row, name: str) -> None:
+    """Write a row of the program as a linear constraint."""
+    terms = quicksum(a * x[k] for k, a in zip(row.columns, row.coefficients, strict=True))
+    model.addCons(terms <= row.right, name, removable=True)
+
+
+class LazyRows(Conshdlr):
+    """Adds the rows that a solution or a relaxation breaks while SCIP searches."""
+
+    def __init__(self, separation: Separation, x: list[Variable]) -> None:
+        self.separation = separation
+        self.x = x
+        self.failure: Exception | None = None
+        self.rows = 0
+
+    def conscheck(self, _constraints: object, solution: object, *_: object) -> dict[str, int]:
+        """Whether a solution breaks no row."""
+        return self._guard(lambda: SCIP_RESULT.INFEASIBLE if self._breaks(solution) else SCIP_RESULT.FEASIBLE)
+
+    def consenfolp(self, *_: object) -> dict[str, int]:
+        """Cut off an integral relaxation that breaks a row."""
+        return self._guard(lambda: SCIP_RESULT.CONSADDED if self._add(is_integral=True) else SCIP_RESULT.FEASIBLE)
+
+    def consenfops(self, *_: object) -> dict[str, int]:
+        """The same where the relaxation was not solved."""
+        return self.consenfolp()
+
+    def conssepalp(self, *_: object) -> dict[str, int]:
+        """Cut off a fractional relaxation, if that can be done."""
+        nothing = SCIP_RESULT.DIDNOTFIND
+        return self._guard(lambda: SCIP_RESULT.CONSADDED if self._add(is_integral=False) else nothing, nothing)
+
+    def conslock(self, _constraint: Constraint, _kind: int, positive: int, negative: int) -> None:
+        """A row may hold any variable back in either direction."""
+        for variable in self.x:
+            self.model.addVarLocks(variable, positive + negative, positive + negative)
+
+    def _values(self, solution: object) -> Float:
+        return np.array([self.model.getSolVal(solution, variable) for variable in self.x])
+
+    def _breaks(self, solution: object) -> bool:
+        return self.separation.breaks(self._values(solution))
+
+    def _add(self, is_integral: bool) -> int:
+        rows = self.separation.broken_rows(self._values(None), is_integral)
+        for row in rows:
+            self.rows += 1
+            add_row(self.model, self.x, row, f"lazy_{self.rows}")
+        return len(rows)
+
+    def _guard(self, answer: Callable[[], int], after_failure: int = SCIP_RESULT.INFEASIBLE) -> dict[str, int]:
+        """A failure in a callback would be printed and passed over; it stops the search and is raised after it."""
+        try:
+            return {"result": answer()}
+        except Exception as failure:
+            self.failure = self.failure or failure
+            self.model.interruptSolve()
+            return {"result": after_failure}
+
+
+class SoplexRelaxation:
+    """The linear relaxation of a program that grows, solved by the dual simplex from its last basis."""
+
+    def __init__(self, program: Program) -> None:
+        self.program = program
+        self.lp = LP("linecad", "maximize")
+        self.rows = 0
+
+    def solve(self, seconds: float) -> Relaxed | None:
+        """See `solver.backend.Relaxation`."""
+        program, lp = self.program, self.lp
+        new = slice(lp.ncols(), None)
+        if program.objective[new]:
+            empty: list[list[tuple[int, float]]] = [[] for _ in program.objective[new]]
+            lp.addCols(empty, program.objective[new], program.lower[new], program.upper[new])
+        fresh = program.rows[self.rows :]
+        if fresh:
+            entries = [list(zip(row.columns, row.coefficients, strict=True)) for row in fresh]
+            lp.addRows(entries, [-lp.infinity()] * len(fresh), [row.right for row in fresh])
+            self.rows = len(program.rows)
+        lp.setRealParam(SCIP_LPPARAM.LPTILIM, seconds)
+        lp.solve()
+        if not lp.isOptimal():
+            return None
+        return Relaxed(lp.getObjVal() + program.offset, np.array(lp.getPrimal()), np.array(lp.getRedcost()))
