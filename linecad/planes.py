@@ -24,7 +24,9 @@ def find_planes(ends: Float, offset: Float, shared: Int, line_ids: Int) -> tuple
         numbers, counts = np.unique(shared[:, axis][shared[:, axis] >= 0], return_counts=True)
         for number in numbers[counts >= MIN_LINES]:
             members = np.flatnonzero(shared[:, axis] == number)
-            planes.append((axis, float(offset[members[0], axis]), members))
+            # The pieces of one line share its coordinates too, but one direction spans no plane.
+            if len(np.unique((shared[members] < 0).argmax(axis=1))) == 2:
+                planes.append((axis, float(offset[members[0], axis]), members))
     planes.sort(key=lambda plane: (-len(plane[2]), int(plane[2][0]), plane[0]))
     found: list[Plane] = []
     for axis, place, members in planes:

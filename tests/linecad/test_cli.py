@@ -352,7 +352,7 @@ sys.exit(main(sys.argv[1:]))
 
 
 @posix
-@pytest.mark.parametrize("output", ["a.json", "a.ply"])
+@pytest.mark.parametrize("output", ["a.json", "a.obj"])
 def test_a_full_disk_leaves_what_was_there(folder, scene_file, output):
     (folder / output).write_text("from yesterday")
     command = [sys.executable, "-c", WITH_A_SMALL_DISK, "export", str(scene_file), "-o", output, "--quiet"]
