@@ -28,9 +28,11 @@ _TITLE, _TEXT = 42, 27  # px of text
 _COLOUR_KEPT = 0.50  # of the photo's colours, so that those of the lines stand out
 _BRIGHTENED = 0.30  # share of white laid over the photo
 _FACE_OPACITY = 0.20
-_LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 3, False: 1}  # px, by boundary
+_LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 4, False: 2}  # px, by boundary
+_CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wider than the line
 _FEW_LINES = 600  # from there on they are drawn thin
-_MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.5  # px, of crossings
+_MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.0  # px, of crossings
+_OUTLINED = 1.22  # radius of a disc with its dark outline over that of the disc
 _FEW_MARKS = 400  # crossings; from there on they are drawn smaller, so that they do not cover the photo
 _NEAREST_SHARE = 0.02  # of the middle depth: parts of faces nearer to the camera are cut off
 
@@ -147,11 +149,13 @@ def _before(ring: Float, nearest: float) -> Float:
 def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
     """Boundaries over the others, with a light casing that keeps them apart from the photo."""
     lines = scene.lines
+    few = len(lines) <= _FEW_LINES
+    widths, casing = (_LINE_WIDTH, _CASING_WIDTH) if few else (_THIN_LINE_WIDTH, _THIN_CASING_WIDTH)
     for wanted in (False, True):
         chosen = np.flatnonzero(lines.is_boundary == wanted).tolist()
-        width = (_LINE_WIDTH if len(lines) <= _FEW_LINES else _THIN_LINE_WIDTH)[wanted]
+        width = widths[wanted]
         for number in chosen:
-            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + 3)
+            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + casing)
         for number in chosen:
             colour = line_colour(int(lines.axis[number]), True)
             panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), colour, width)
@@ -169,13 +173,13 @@ def _draw_crossings(panel: Canvas, scene: Scene, centres: Float) -> None:
 
 
 def _draw_real(panel: Canvas, centre: list[float], radius: float) -> None:
-    panel.disc(centre, radius + 1.5, _INK)
+    panel.disc(centre, _OUTLINED * radius, _INK)
     panel.disc(centre, radius, _REAL)
 
 
 def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
     panel.cross(centre, radius + 2, _CASING, 5)
-    panel.cross(centre, radius + 2, _FAKE, 3)
+    panel.cross(centre, radius + 1.5, _FAKE, 3)
 
 
 def _draw_legend(canvas: Canvas, scene: Scene) -> None:
@@ -191,7 +195,7 @@ def _draw_legend(canvas: Canvas, scene: Scene) -> None:
     x = _label(canvas, x + 26, y, "fake crossing")
     others = int((scene.lines.component != 0).sum())
     if others:
-        text = f"{_count(others, 'line')} of smaller components not in the views"
+        text = f"pale: {_count(others, 'line')} of smaller components"
         canvas.text(_WIDTH - _MARGIN, y, text, _TEXT, _QUIET, "rm")
 
 

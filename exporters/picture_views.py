@@ -1,15 +1,18 @@
-"""The lines in space as seen from above, from the front and from the side, each view with one scale on both axes."""
+"""The lines in space as seen from above, from the front and from the side, each view with one scale on both axes.
+
+Lines of the largest component have the full colour of their axis; those of smaller ones, whose scale is their own, are
+paler.
+"""
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from exporters.canvas import Canvas
-from exporters.colours import RGB, line_colour
+from exporters.colours import line_colour
 from exporters.model import metres_per_unit
-from linecad.scene import AXES, Float, Scene
+from linecad.scene import AXES, Float, Lines, Scene
 
 # name, the axis that points right, the one that points up
 VIEWS = (("top", 0, 1), ("front", 0, 2), ("side", 1, 2))
@@ -19,6 +22,7 @@ _INK, _QUIET, _GRID, _PAPER = (0.13, 0.13, 0.15), (0.45, 0.45, 0.48), (0.93, 0.9
 _FACE_OPACITY = 0.12
 _EDGES = np.array([[40, 52], [40, 84]])  # px kept free at left and top, at right and bottom, for texts and axes
 _TEXT, _SMALL = 24, 20  # px
+_BOUNDARY_WIDTH, _OTHER_WIDTH = 4, 2  # px
 
 _INNER = (10, 90)  # per cent of the line ends that surely belong to the building
 _REACH = 1.0  # views reach this share of the largest inner range beyond each of them; the rest are outliers
@@ -40,10 +44,8 @@ class _Projection:
 
 
 def draw_view(panel: Canvas, scene: Scene, name: str, right: int, up: int) -> None:
-    """Draw the largest component of a scene without the coordinate that is neither `right` nor `up`."""
-    factor = metres_per_unit(scene)
-    lines, chosen = scene.lines, scene.lines.component == 0
-    ends = lines.ends[chosen] * factor
+    """Draw the lines of a scene without the coordinate that is neither `right` nor `up`."""
+    ends = scene.lines.ends * metres_per_unit(scene)
     panel.fill(_PAPER)
     panel.text(16, 14, f"{name} view", _TEXT, _INK, "la")
     if len(ends):
@@ -55,7 +57,7 @@ def draw_view(panel: Canvas, scene: Scene, name: str, right: int, up: int) -> No
         if shows_depth:
             _draw_camera(panel, projection, scene, right, up)
         pixels = projection.pixels(ends[:, :, (right, up)])
-        _draw_lines(panel, pixels, lines.axis[chosen].tolist(), lines.is_boundary[chosen].tolist())
+        _draw_lines(panel, pixels, scene.lines)
         inside = ((pixels >= 0) & (pixels < (panel.width, panel.height))).all(axis=(1, 2))
         if not inside.all():
             count = int((~inside).sum())
@@ -144,19 +146,16 @@ def _draw_camera(panel: Canvas, projection: _Projection, scene: Scene, right: in
     panel.text(float(at[0]), float(at[1]) + 14, "camera", _SMALL, _QUIET, "ma")
 
 
-def _draw_lines(panel: Canvas, pixels: Float, axes: list[int], boundaries: list[bool]) -> None:
-    """Boundaries over the others; a line that runs along the view is a dot."""
-    for wanted in (False, True):
-        for ends, axis, is_boundary in zip(pixels, axes, boundaries, strict=True):
-            if is_boundary == wanted:
-                _draw_line(panel, ends.tolist(), line_colour(axis, is_boundary), 3 if is_boundary else 2)
-
-
-def _draw_line(panel: Canvas, ends: Sequence[Sequence[float]], colour: RGB, width: int) -> None:
-    if math.dist(*ends) < width:
-        panel.disc(ends[0], width, colour)
-    else:
-        panel.line(ends[0], ends[1], colour, width)
+def _draw_lines(panel: Canvas, pixels: Float, lines: Lines) -> None:
+    """The largest component over the others, and boundaries over other lines."""
+    for number in np.lexsort((lines.is_boundary, lines.component == 0)).tolist():
+        colour = line_colour(int(lines.axis[number]), bool(lines.component[number] == 0))
+        start, end = pixels[number].tolist()
+        width = _BOUNDARY_WIDTH if lines.is_boundary[number] else _OTHER_WIDTH
+        if math.dist(start, end) < width:
+            panel.disc(start, width, colour)  # the line runs along the view
+        else:
+            panel.line(start, end, colour, width)
 
 
 def _draw_axes(panel: Canvas, right: int, up: int) -> None:

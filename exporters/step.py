@@ -117,9 +117,7 @@ def _add_lines(assembly: _Assembly, parent: TDF_Label, group: LineGroup) -> None
 def _face_shape(face: FlatFace) -> ShapeFace:
     checked_polygon(face)
     outline, *holes = (_wire(ring) for ring in face.rings)
-    shape = ShapeFace(outline, holes)
-    normal = shape.normal_at()
-    return shape if (normal.X, normal.Y, normal.Z)[face.axis] * face.normal[face.axis] > 0 else -shape
+    return ShapeFace(outline, holes)  # it looks to where its outline turns counter-clockwise, so to the camera
 
 
 def _wire(ring: Float) -> Wire:

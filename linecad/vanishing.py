@@ -18,7 +18,7 @@ MAX_SCORED = 1500  # the longest segments decide; more cost time and change noth
 REFINEMENTS = 30
 STEP_END = 1e-9  # rad; smaller steps end the refinement
 ERROR_FLOOR = 1e-4  # rad; no axis is known better than that
-SECOND_DIRECTION_SHARE = 0.02  # of the explained length that the second axis must carry
+SECOND_DIRECTION_SHARE = 0.02  # of the explained length that the second and third axis must add
 
 FOCAL_RANGE = (0.4, 4.0)  # of the larger side of the photo
 FOCAL_CANDIDATES = 24
@@ -140,7 +140,7 @@ def _say(weight: Float, label: Int, residual: Float, error: Float) -> Float:
         if total > 0:
             noise = say[own] @ error[own] ** 2 / total + ERROR_FLOOR**2
             say[own] *= total / (say[own] ** 2).sum() / noise
-    return say
+    return np.asarray(say)
 
 
 def _refine(ends: Float, weight: Float, K: Float, axes: Float) -> Float:
@@ -204,14 +204,17 @@ def _named_frame(segments: Segments, K: Float, axes: Float) -> ManhattanFrame:
     rotation = u @ v
 
     sines = angles_to(segments.ends, (K @ rotation).T)
-    label, residual = sines.argmin(axis=0), sines.min(axis=0)
+    residual = sines.min(axis=0)
     length = segments.length
-    near = residual < np.sin(INLIER_ANGLE)
-    by_axis = np.bincount(label[near], length[near], minlength=3)
-    if np.sort(by_axis)[1] < SECOND_DIRECTION_SHARE * by_axis.sum():
+    points_to = sines < np.sin(INLIER_ANGLE)
+    near = points_to.any(axis=0)
+    # Only what the main axis cannot explain speaks for a second one: through any single segment of the main axis
+    # there is a plane, and the search always finds a second axis in it.
+    main = (points_to @ length).argmax()
+    if length[near & ~points_to[main]].sum() < SECOND_DIRECTION_SHARE * length[near].sum():
         raise ReconstructionError(
             "all straight segments run in one direction, two Manhattan directions are needed; "
             "take the photo from a corner so that two sides of the scene show"
         )
     rms = float(np.sqrt(np.average(residual[near] ** 2, weights=length[near])))
-    return ManhattanFrame(rotation, rms, float(by_axis.sum() / length.sum()))
+    return ManhattanFrame(rotation, rms, float(length[near].sum() / length.sum()))

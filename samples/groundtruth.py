@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+
 from modelling import Face, Float, Model
 from raycaster import View, first_hits
 

@@ -7,8 +7,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from modelling import PLANE_AXES, Face, Float
 from numpy.typing import NDArray
+
+from modelling import PLANE_AXES, Face, Float
 from raycaster import TOUCHING, blocked
 from surfaces import linear
 

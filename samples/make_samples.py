@@ -11,15 +11,16 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+from PIL import ExifTags, Image
+
 import courtyard
 import groundtruth
-import numpy as np
 import room
 import street
 from lighting import Light, LightMap, indoor_light, light_maps, outdoor_light
 from modelling import Face, Float, Model
-from numpy.typing import NDArray
-from PIL import ExifTags, Image
 from raycaster import Sun, View, see, shade
 
 WIDTH = 1600  # px

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
-from modelling import PLANE_AXES, Face, Float, Hits
 from numpy.typing import NDArray
+
+from modelling import PLANE_AXES, Face, Float, Hits
 from surfaces import sky, surroundings
 
 Mask = NDArray[np.bool_]

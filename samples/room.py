@@ -1,6 +1,7 @@
 """A living room with a window, a door, shelves, a table and chairs."""
 
 import numpy as np
+
 from lighting import Lamp
 from modelling import Hits, Model, Surface, WallFrame
 from surfaces import blocks, boards, linear, plain, plaster

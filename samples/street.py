@@ -1,6 +1,7 @@
 """A street between houses, closed by a building across its end."""
 
 import numpy as np
+
 from modelling import Model, Surface, WallFrame
 from surfaces import blocks, boards, glass, ground, plain, plaster
 

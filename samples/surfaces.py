@@ -4,8 +4,9 @@ Every texture is a function of plane coordinates in metres. Patterns fade where 
 """
 
 import numpy as np
-from modelling import Float, Hits, Surface
 from numpy.typing import NDArray
+
+from modelling import Float, Hits, Surface
 
 TILE = 1024  # samples along each side of the noise tile
 NOISE_SEED = 20180907

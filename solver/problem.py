@@ -17,6 +17,8 @@ BACKENDS: tuple[BackendName, ...] = get_args(BackendName)
 FORMULATIONS: tuple[Formulation, ...] = get_args(Formulation)
 
 LARGEST_SEED = 2**31 - 1  # SCIP takes its seed as a C int
+LARGEST_REWARD = 1e6  # of one pair or line; beyond it the crossings drown in the rounding of the objective
+LONGEST_TIME_S = 1e9  # thirty years; SCIP refuses numbers that it takes for infinite
 
 
 @dataclass(frozen=True)
@@ -46,9 +48,13 @@ class SolveOptions:
         if unknown:
             raise SolverError(f"family {unknown[0]!r} is unknown; use {', '.join(FAMILIES)}")
         object.__setattr__(self, "without", frozenset(self.without))
-        self._require("mu_planarity", self.mu_planarity >= 0, "zero or more")
-        self._require("mu_boundary", self.mu_boundary >= 0, "zero or more")
-        self._require("time_limit_s", self.time_limit_s > 0, "more than zero seconds")
+        for name, reward in (("mu_planarity", self.mu_planarity), ("mu_boundary", self.mu_boundary)):
+            self._require(name, 0 <= reward <= LARGEST_REWARD, f"a number from 0 to {LARGEST_REWARD:.0f}")
+        self._require(
+            "time_limit_s",
+            0 < self.time_limit_s <= LONGEST_TIME_S,
+            f"more than zero seconds, at most {LONGEST_TIME_S:g}",
+        )
         self._require("gap", self.gap >= 0, "zero or more")
         self._require("seed", 0 <= self.seed <= LARGEST_SEED, f"an integer from 0 to {LARGEST_SEED}")
         self._require("depth_range", self.depth_range > 1, "more than 1")

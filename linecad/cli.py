@@ -1,0 +1,325 @@
+"""The command line: options, one call into the library, one line of output.
+
+Results go to stdout or files, progress to stderr. Exit codes: 0 done, 1 an error that the user can act on (one line on
+stderr), 2 wrong usage. argparse, because it costs nothing to load: `--help` answers at once and without any library.
+"""
+
+import argparse
+import importlib.util
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn, Self
+
+from linecad import __version__
+from linecad.errors import LinecadError, OutputError
+
+if TYPE_CHECKING:
+    from linecad.photo import Photo
+    from linecad.scene import Scene
+    from solver.problem import Progress
+
+SCENE_SUFFIX = ".json"
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line; the exit code."""
+    parsed = _parser().parse_args(arguments)
+    try:
+        check_packages()
+        code: int = parsed.run(parsed)
+    except LinecadError as error:
+        print(f"linecad: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("linecad: interrupted; a file that was not written yet is as it was before", file=sys.stderr)
+        return 1
+    return code
+
+
+def check_packages() -> None:
+    """Raise LinecadError when a file of the user's hides one of our packages with a generic name."""
+    home = Path(__file__).resolve().parent.parent
+    for name in ("solver", "exporters"):
+        spec = importlib.util.find_spec(name)
+        found = Path(spec.origin).resolve() if spec and spec.origin else None
+        if found != home / name / "__init__.py":
+            raise LinecadError(
+                f"linecad's package '{name}' is hidden by {found or 'nothing installed'}; "
+                "start linecad from another folder, or install linecad in an environment of its own"
+            )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="linecad", description="From one photo of a Manhattan scene to 3D lines, planes and CAD files."
+    )
+    parser.add_argument("--version", action="version", version=f"linecad {__version__}")
+    commands = parser.add_subparsers(dest="command", required=True)
+    _add_convert(commands)
+    _add_export(commands)
+    return parser
+
+
+class _Parser(argparse.ArgumentParser):
+    """An argument parser that says what is wrong in one line, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}; see {self.prog} --help\n")
+
+
+def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    convert = commands.add_parser(
+        "convert",
+        help="a photo to a scene and CAD files",
+        description="Reconstruct the lines and planes of a photo and write them.",
+        epilog="example: linecad convert facade.jpg --camera facade.json -o facade.step -o facade.png",
+    )
+    convert.set_defaults(run=_convert)
+    convert.add_argument("photo", type=Path, metavar="PHOTO")
+    _add_outputs(convert)
+    camera = convert.add_mutually_exclusive_group()
+    camera.add_argument(
+        "--camera", type=Path, metavar="FILE", help='calibration: JSON with width, height, K, "distortion"'
+    )
+    camera.add_argument(
+        "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
+    )
+    convert.add_argument("--formulation", choices=["paper"], default="paper", help="how the program is stated (paper)")
+    convert.add_argument(
+        "--without", type=_families, default=frozenset(), metavar="FAMILY[,FAMILY]",
+        help="leave out families of constraints: cycles, planarity, boundary",
+    )  # fmt: skip
+    convert.add_argument("--weights", choices=["ones", "junctions"], default="junctions", help="weights of crossings")
+    convert.add_argument(
+        "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
+    )
+    convert.add_argument(
+        "--mu-boundary", type=_not_negative, default=10.0, metavar="MU2", help="reward of non-boundary lines (10)"
+    )
+    convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
+    convert.add_argument(
+        "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
+    )
+    convert.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
+    convert.add_argument(
+        "--extension", type=_positive, default=30.0, metavar="PX",
+        help="how far segments are extended to find crossings, px on a photo 3840 px wide (30)",
+    )  # fmt: skip
+    convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
+    _add_loudness(convert)
+
+
+def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    export = commands.add_parser(
+        "export",
+        help="a scene file to CAD files",
+        description="Write a scene, as `linecad convert` saved it, in other formats.",
+        epilog="example: linecad export facade.json -o facade.dxf -o facade.usdz",
+    )
+    export.set_defaults(run=_export)
+    export.add_argument("scene", type=Path, metavar="SCENE.json", nargs="?")
+    _add_outputs(export)
+    export.add_argument(
+        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for the picture (else looked for)"
+    )
+    export.add_argument(
+        "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
+    )
+    export.add_argument("--formats", action="store_true", help="list the formats and end")
+    _add_loudness(export)
+
+
+def _add_outputs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
+        help="file to write, its suffix chooses the format (see linecad export --formats); may be given again",
+    )  # fmt: skip
+
+
+def _add_loudness(parser: argparse.ArgumentParser) -> None:
+    loudness = parser.add_mutually_exclusive_group()
+    loudness.add_argument("--quiet", action="store_true", help="no progress")
+    loudness.add_argument("--verbose", action="store_true", help="the time of every stage")
+
+
+def _positive(text: str) -> float:
+    value = _not_negative(text)
+    if value == 0:
+        raise argparse.ArgumentTypeError(f"{text} is not a positive number")
+    return value
+
+
+def _not_negative(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
+    if not 0 <= value < float("inf"):
+        raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
+    return value
+
+
+def _families(text: str) -> frozenset[str]:
+    from solver.problem import FAMILIES
+
+    names = frozenset(name for name in text.split(",") if name)
+    unknown = sorted(names - set(FAMILIES))
+    if unknown:
+        raise argparse.ArgumentTypeError(f"{unknown[0]!r} is no family of constraints; use {', '.join(FAMILIES)}")
+    return names
+
+
+def _convert(parsed: argparse.Namespace) -> int:
+    _check_outputs(parsed.output, [parsed.photo, parsed.camera])
+    from linecad.photo import read_photo
+    from linecad.pipeline import ReconstructOptions, reconstruct
+    from solver.problem import SolveOptions
+
+    options = ReconstructOptions(
+        extension=parsed.extension,
+        weights=parsed.weights,
+        largest_component=parsed.largest_component,
+        solve=SolveOptions(
+            formulation=parsed.formulation,
+            without=parsed.without,
+            mu_planarity=parsed.mu_planarity,
+            mu_boundary=parsed.mu_boundary,
+            time_limit_s=parsed.time_limit,
+            gap=parsed.gap,
+            seed=parsed.seed,
+        ),
+    )
+    with _Shown(parsed) as show:
+        show.stage("reading the photo")
+        photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
+        scene = reconstruct(photo, options, show.progress, show.stage)
+        _write(scene, photo, parsed.output, show)
+    real = int(scene.intersections.real.sum())
+    print(
+        f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
+        f"{scene.solve.status} in {scene.solve.seconds:.1f} s, gap {scene.solve.gap:.2%}"
+    )
+    _print_notes(scene)
+    return 0
+
+
+def _export(parsed: argparse.Namespace) -> int:
+    if parsed.formats:
+        return _print_formats()
+    if parsed.scene is None:
+        raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
+    _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    from linecad.scenefile import read_scene
+
+    with _Shown(parsed) as show:
+        show.stage("reading the scene")
+        scene = read_scene(parsed.scene)
+        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
+        _write(scene, photo, parsed.output, show)
+    return 0
+
+
+def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
+    """The photo of a scene: as named, else beside the scene file, else none (the picture then says so)."""
+    from linecad.photo import read_photo
+
+    beside = parsed.scene.parent / scene.photo
+    path = parsed.photo if parsed.photo is not None else beside if beside.is_file() else None
+    if path is None:
+        return None
+    if scene.camera.distortion and parsed.camera is None:
+        raise LinecadError(f"{scene.photo} was undistorted; give its calibration with --camera")
+    return read_photo(path, parsed.camera, None if parsed.camera else scene.camera.focal)
+
+
+def _check_outputs(outputs: list[Path], inputs: list[Path | None]) -> None:
+    """Everything that can be known to fail is refused before the long work starts."""
+    from exporters.formats import find_format
+    from linecad.files import check_output
+
+    if not outputs:
+        raise OutputError("no output was named; give one or more, such as -o scene.json -o scene.step")
+    for path in outputs:
+        if path.suffix.lower() != SCENE_SUFFIX:
+            find_format(path)
+        check_output(path)
+        for given in inputs:
+            if given is not None and given.exists() and path.exists() and path.samefile(given):
+                raise OutputError(f"{path} is an input too and would be lost; choose another name")
+    if len({path.resolve() for path in outputs}) < len(outputs):
+        raise OutputError("the same output was named twice; name each once")
+
+
+def _write(scene: "Scene", photo: "Photo | None", outputs: list[Path], show: "_Shown") -> None:
+    from exporters.formats import export
+    from linecad.scenefile import write_scene
+
+    for path in outputs:
+        show.stage(f"writing {path}")
+        if path.suffix.lower() == SCENE_SUFFIX:
+            write_scene(scene, path)
+        else:
+            export(scene, path, None if photo is None else photo.pixels)
+
+
+def _print_formats() -> int:
+    from exporters.formats import FORMATS
+
+    print(f"{SCENE_SUFFIX:6} the scene file, which `linecad export` reads (docs/scene-file.md)")
+    for suffix, row in FORMATS.items():
+        print(f"{suffix:6} {row.phrase} (in {row.unit})")
+    return 0
+
+
+def _print_notes(scene: "Scene") -> None:
+    for note in scene.notes:
+        print(f"note: {note}")
+
+
+class _Shown:
+    """Progress for a person: one line that is written over on a terminal, a plain line a stage otherwise."""
+
+    def __init__(self, parsed: argparse.Namespace) -> None:
+        self.quiet: bool = parsed.quiet
+        self.verbose: bool = parsed.verbose
+        self.live = sys.stderr.isatty() and not self.quiet
+        self.started = time.monotonic()
+        self.stage_started = self.started
+        self.current = ""
+
+    def stage(self, text: str) -> None:
+        """A new stage begins."""
+        self._finish_stage()
+        self.current, self.stage_started = text, time.monotonic()
+        if self.live:
+            self._over(f"{text} ...")
+        elif not self.quiet and not self.verbose:
+            print(text, file=sys.stderr, flush=True)
+
+    def progress(self, at: "Progress") -> None:
+        """The solver has come further."""
+        if self.live:
+            self._over(
+                f"{self.current} ... {at.seconds:.1f} s, best {at.objective:.1f}, bound {at.bound:.1f}, "
+                f"gap {at.gap:.2%} (Ctrl-C keeps the best)"
+            )
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_exception: object) -> None:
+        """Nothing more to show; an error's line begins on a clean one."""
+        self._finish_stage()
+        self.current = ""
+        if self.live:
+            self._over("")
+
+    def _finish_stage(self) -> None:
+        if self.verbose and self.current:
+            line = f"{time.monotonic() - self.stage_started:7.2f} s  {self.current}"
+            print(f"\r\033[K{line}" if self.live else line, file=sys.stderr, flush=True)
+
+    def _over(self, text: str) -> None:
+        print(f"\r\033[K{text}", end="", file=sys.stderr, flush=True)

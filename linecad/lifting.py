@@ -1,0 +1,132 @@
+"""A solved line graph to lines in space, made exact: chosen crossings meet in one point to rounding.
+
+The solver leaves each chosen crossing within its tolerance. Least squares spreads that slack; then every coordinate
+that chosen crossings share becomes one number, a plane offset. A line of axis x is then the meeting of its y and its z
+plane, and two lines that share a plane and cross in the image meet in space exactly.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
+
+from linecad.scene import Bool, Float, Int, LineGraph, Solution
+
+ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
+
+
+@dataclass(frozen=True, eq=False)
+class Lifted:
+    """The N lines of a graph in space; the unit is free, lines of different chosen components have unrelated scales."""
+
+    ends: Float  # (N, 2, 3) world
+    offset: Float  # (N, 3) the two coordinates that define each line; NaN along its own axis
+    shared: Int  # (N, 3) number of the offset that each coordinate belongs to; -1 along the line's own axis
+    residual: Float  # (E,) how far the log depths of an edge's lines are from its equation
+    shift: Float  # (N,) rad by which each line moved off the plane of its segment to become exact
+
+
+def lift(graph: LineGraph, solution: Solution) -> Lifted:
+    """Lines in space for every node of the graph, exact at the chosen crossings (paper, algorithm 1, last steps)."""
+    chosen = solution.connected
+    log_depth = fit_log_depths(graph, chosen, solution.log_depth)
+    shared = _shared_coordinates(graph, chosen)
+    offset = _offsets(graph, shared, np.exp(log_depth))
+    ends, shift = _ends(graph, offset)
+    ends = _end_at_junctions(graph, chosen, offset, ends)
+    i, j = graph.edges.T
+    residual = np.abs(log_depth[i] - log_depth[j] - graph.log_ratio)
+    return Lifted(ends, offset, shared, residual, shift)
+
+
+def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float) -> Float:
+    """Weighted least squares of log s_i - log s_j = c_ij over the chosen crossings that say something (N,)."""
+    used = chosen & graph.informative
+    rows = np.arange(used.sum())
+    i, j = graph.edges[used].T
+    shape = (len(rows), len(graph.segments))
+    incidence = csr_matrix((np.r_[np.ones(len(rows)), -np.ones(len(rows))], (np.r_[rows, rows], np.r_[i, j])), shape)
+    weight = diags_array(1 / graph.tolerance[used] ** 2)
+    normal = incidence.T @ weight @ incidence + ANCHOR * diags_array(np.ones(shape[1]))
+    # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
+    misfit = graph.log_ratio[used] - incidence @ guess
+    return np.asarray(guess + spsolve(normal.tocsc(), incidence.T @ (weight @ misfit)))
+
+
+def _shared_coordinates(graph: LineGraph, chosen: Bool) -> Int:
+    """Numbers (N, 3) such that two coordinates have the same number when chosen crossings make them equal."""
+    count = 3 * len(graph.segments)
+    i, j = graph.edges[chosen].T
+    # Crossing lines share one coordinate, the pieces of one line share both of theirs.
+    also = graph.axis[i] == graph.axis[j]
+    coordinate = np.r_[graph.coordinate[chosen], (3 - graph.axis[i] - graph.coordinate[chosen])[also]]
+    i, j = np.r_[i, i[also]], np.r_[j, j[also]]
+    links = csr_matrix((np.ones(len(i)), (3 * i + coordinate, 3 * j + coordinate)), (count, count))
+    shared: Int = connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int64)
+    shared[np.arange(len(graph.segments)), graph.axis] = -1
+    return shared
+
+
+def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
+    """One number (N, 3) for each shared coordinate: the mean of what its lines say, by their certainty."""
+    say = depth[:, None] * graph.rays
+    # A segment's noise moves its ray by about the same angle everywhere, so its coordinates move with its depth.
+    certainty = np.broadcast_to(1 / depth[:, None] ** 2, say.shape)
+    own = shared >= 0
+    groups = int(shared.max(initial=-1)) + 1
+    total = np.bincount(shared[own], (say * certainty)[own], groups)
+    mass = np.bincount(shared[own], certainty[own], groups)
+    offset = np.full(shared.shape, np.nan)
+    offset[own] = (total / np.maximum(mass, np.finfo(float).tiny))[shared[own]]
+    return offset
+
+
+def _ends(graph: LineGraph, offset: Float) -> tuple[Float, Float]:
+    """Ends (N, 2, 3): the points of the exact line nearest to the rays of the segment's ends; and the angle (N,)."""
+    count = len(graph.segments)
+    rows = np.arange(count)
+    across = np.stack([(graph.axis + 1) % 3, (graph.axis + 2) % 3], axis=1)
+    fixed = np.take_along_axis(offset, across, axis=1)
+    rays = np.take_along_axis(graph.end_rays, across[:, None, :].repeat(2, axis=1), axis=2)
+    # Of all points of a ray, the one whose two fixed coordinates are nearest to the line's.
+    depth = (rays * fixed[:, None]).sum(axis=2) / np.maximum((rays**2).sum(axis=2), np.finfo(float).tiny)
+    ends = np.empty((count, 2, 3))
+    ends[rows[:, None], np.arange(2), graph.axis[:, None]] = (
+        depth * graph.end_rays[rows[:, None], np.arange(2), graph.axis[:, None]]
+    )
+    for column in range(2):
+        ends[rows[:, None], np.arange(2), across[:, column, None]] = fixed[:, column, None]
+    missed = depth[..., None] * rays - fixed[:, None]
+    length = np.linalg.norm(ends, axis=2)
+    shift = (np.linalg.norm(missed, axis=2) / np.maximum(length, np.finfo(float).tiny)).max(axis=1)
+    return ends, shift
+
+
+def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, ends: Float) -> Float:
+    """Ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
+    junctions: dict[tuple[int, int], list[float]] = {}
+    for edge in np.flatnonzero(chosen & (graph.kind != "collinear")).tolist():  # those have no point in common
+        for side in range(2):
+            line, other = graph.edges[edge, side], graph.edges[edge, 1 - side]
+            if _ends_there(graph, edge, side):
+                to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edge], axis=1)
+                nearer = (int(line), int(to_ends.argmin()))
+                junctions.setdefault(nearer, []).append(float(offset[other, graph.axis[line]]))
+    moved = ends.copy()
+    for (line, end), places in junctions.items():
+        axis = graph.axis[line]
+        outward = float(np.sign(ends[line, end, axis] - ends[line, 1 - end, axis]))
+        moved[line, end, axis] = max(places) if outward > 0 else min(places)
+    return moved
+
+
+def _ends_there(graph: LineGraph, edge: int, side: int) -> bool:
+    """Whether a line ends at a crossing: both do at an L, one does at a T, and an X is passed by all that reach it."""
+    if graph.gap[edge, side] > 0 or graph.kind[edge] == "L":
+        return True
+    if graph.kind[edge] == "X" or graph.gap[edge, 1 - side] > 0:
+        return False
+    to_ends = np.linalg.norm(graph.segments.ends[graph.edges[edge]] - graph.crossing[edge], axis=2).min(axis=1)
+    return bool(to_ends[side] < to_ends[1 - side])

@@ -1,0 +1,227 @@
+"""The stages in the paper's order (algorithm 1): a photo becomes a scene."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from linecad.errors import ReconstructionError
+from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
+from linecad.lifting import Lifted, lift
+from linecad.photo import Photo
+from linecad.planes import find_planes
+from linecad.scene import (
+    Bool,
+    Camera,
+    Float,
+    Int,
+    Intersections,
+    LineGraph,
+    Lines,
+    ManhattanFrame,
+    Scene,
+    Segments,
+    Solution,
+    SolveReport,
+    Text,
+)  # fmt: skip
+from linecad.segments import find_segments, group_segments, label_segments
+from linecad.vanishing import FOCAL_SIGMA, central_camera, default_focal, find_focal, find_frame
+from solver.problem import Progress, SolveOptions, solve
+
+MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
+TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
+MIN_FRAME_SHARE = 0.3  # of the segment length; a frame that explains less is doubtful
+SHIFT_NOTED = 0.005  # rad; lines that had to move more to become exact are worth a note
+
+StageReport = Callable[[str], None]
+
+
+def _silent(_stage: str) -> None:
+    """Report nothing."""
+
+
+@dataclass(frozen=True)
+class ReconstructOptions:
+    """What a user can choose about a reconstruction."""
+
+    extension: float = EXTENSION  # px at 3840 px width by which segments are extended to find crossings
+    weights: Weights = "junctions"
+    largest_component: bool = False  # only the largest connected component, as in the paper
+    solve: SolveOptions = field(default_factory=SolveOptions)
+
+
+def reconstruct(
+    photo: Photo,
+    options: ReconstructOptions,
+    on_progress: Callable[[Progress], None] | None = None,
+    on_stage: StageReport = _silent,
+) -> Scene:
+    """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
+    on_stage("finding segments")
+    raw = find_segments(photo.grey)
+    on_stage(f"finding the Manhattan frame of {len(raw)} segments")
+    camera, notes = _camera(photo, raw)
+    frame = find_frame(raw, camera.matrix)
+    if frame.explained < MIN_FRAME_SHARE:
+        notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
+    segments = group_segments(label_segments(raw, camera, frame), camera, frame)
+    graph = _kept(build_line_graph(segments, camera, frame, options.extension, options.weights), options)
+    on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
+    solution = _within_groups(graph, solve(graph, options.solve, on_progress))
+    on_stage("lifting the lines into space")
+    return _scene(photo, camera, frame, graph, solution, lift(graph, solution), notes, options)
+
+
+def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
+    """The photo's camera, or one whose focal length the vanishing points tell; and the doubts about it."""
+    notes = list(photo.notes)
+    if photo.camera is not None:
+        return photo.camera, notes
+    guess = find_focal(raw, photo.width, photo.height)
+    if guess.relative_error <= FOCAL_SIGMA:
+        notes.append(
+            f"focal length guessed from the vanishing points: {guess.focal:.0f} px, "
+            f"standard error {guess.relative_error:.1%} or more; principal point assumed in the middle"
+        )
+        matrix = central_camera(guess.focal, photo.width, photo.height)
+        return Camera(photo.width, photo.height, matrix, "vanishing points"), notes
+    focal = default_focal(photo.width, photo.height)
+    notes.append(
+        f"focal length not known and not to be told from the vanishing points; {focal:.0f} px assumed "
+        "(28 mm equivalent), so depths may be stretched; give --focal or --camera"
+    )
+    return Camera(photo.width, photo.height, central_camera(focal, photo.width, photo.height), "default"), notes
+
+
+def _kept(graph: LineGraph, options: ReconstructOptions) -> LineGraph:
+    """The part of the line graph that is solved: the largest component, or all that are not tiny."""
+    parts = components(graph)
+    if not parts or len(parts[0]) < MIN_COMPONENT:
+        raise ReconstructionError(
+            f"the {len(graph.segments)} lines found hardly touch each other: {len(parts[0]) if parts else 0} in the "
+            f"largest group, at least {MIN_COMPONENT} are needed; raise --extension or use a larger photo"
+        )
+    kept = parts[:1] if options.largest_component else [part for part in parts if len(part) >= MIN_COMPONENT]
+    return graph.subset(np.sort(np.concatenate(kept)))
+
+
+def _within_groups(graph: LineGraph, solution: Solution) -> Solution:
+    """The solution without chosen crossings between groups of lines that nothing else ties.
+
+    Such a crossing lies so near the horizon that it says nothing about depth; the two groups have scales of their own,
+    and a coordinate that they shared would be two numbers.
+    """
+    group = np.empty(len(graph.segments), np.int64)
+    for number, part in enumerate(components(graph, solution.connected & graph.informative)):
+        group[part] = number
+    i, j = graph.edges.T
+    return replace(solution, connected=solution.connected & (group[i] == group[j]))
+
+
+def _scene(
+    photo: Photo,
+    camera: Camera,
+    frame: ManhattanFrame,
+    graph: LineGraph,
+    solution: Solution,
+    lifted: Lifted,
+    notes: list[str],
+    options: ReconstructOptions,
+) -> Scene:
+    """The scene of the lines that a chosen crossing ties to others, each component with its scale."""
+    telling = solution.connected & graph.informative
+    parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
+    if not parts:
+        raise ReconstructionError(
+            "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
+        )
+    parts = parts[:1] if options.largest_component else parts
+    dropped = len(graph.segments) - sum(map(len, parts))
+    component = np.full(len(graph.segments), -1)
+    for number, part in enumerate(parts):
+        component[part] = number
+    kept = np.sort(np.concatenate(parts))
+    scale = _component_scales(graph, lifted, parts)
+    ends = lifted.ends * scale[component][:, None, None]
+    offset = lifted.offset * scale[component][:, None]
+    inside = (component[graph.edges] >= 0).all(axis=1)
+    real = solution.connected & inside
+
+    new_id = np.cumsum(component >= 0) - 1
+    lines = Lines(
+        id=np.arange(len(kept)),
+        axis=graph.axis[kept],
+        segment=graph.segments.ends[kept],
+        ends=ends[kept],
+        is_boundary=solution.is_boundary[kept],
+        component=component[kept],
+        confidence=_confidence(solution, component, hinged_nodes(graph, telling))[kept],
+    )
+    intersections = Intersections(
+        lines=new_id[graph.edges[inside]],
+        kind=graph.kind[inside],
+        pixel=graph.crossing[inside],
+        real=real[inside],
+        in_tree=spanning_tree(graph, real & telling, lifted.residual)[inside],
+        weight=graph.weight[inside],
+    )
+    notes += _doubts(solution, parts, dropped, lifted.shift[kept])
+    return Scene(
+        photo=photo.name,
+        camera=camera,
+        rotation=frame.rotation,
+        lines=lines,
+        intersections=intersections,
+        planes=find_planes(ends[kept], offset[kept], lifted.shared[kept], lines.id),
+        solve=SolveReport(
+            solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
+            solution.seconds,
+        ),
+        notes=tuple(notes),
+    )  # fmt: skip
+
+
+def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Float:
+    """One factor a component, and 1 at the end for lines of none: component 0 gets TYPICAL_DEPTH as median depth.
+
+    Nothing in the photo ties the others to it, so each is put at the depth of the lines of component 0 that are
+    nearest to it in the photo: near enough to be looked at, marked as weak.
+    """
+    middle = graph.segments.ends.mean(axis=1)
+    # Camera depth of a line at its segment's middle, from its two exact coordinates.
+    rays = np.where(np.isnan(lifted.offset), 0, graph.rays)
+    offset = np.nan_to_num(lifted.offset)
+    depth = (rays * offset).sum(axis=1) / (rays**2).sum(axis=1)
+    main = parts[0]
+    scales = [TYPICAL_DEPTH / float(np.median(depth[main]))]
+    for part in parts[1:]:
+        distance = np.linalg.norm(middle[part][:, None] - middle[main][None], axis=2)
+        beside = main[distance.argmin(axis=1)]
+        scales.append(scales[0] * float(np.median(depth[beside] / depth[part])))
+    return np.array([*scales, 1.0])
+
+
+def _confidence(solution: Solution, component: Int, hinged: Bool) -> Text:
+    """How sure the depth of each line is (N,), in the words of docs/scene-file.md."""
+    sure = "proven" if solution.status == "optimal" else "supported"
+    word = np.where(hinged, "supported", sure)
+    return np.asarray(np.where(component == 0, word, "weak"), np.str_)
+
+
+def _doubts(solution: Solution, parts: list[Int], dropped: int, shift: Float) -> list[str]:
+    notes = []
+    if solution.status != "optimal":
+        ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"
+        notes.append(f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal")
+    if len(parts) > 1:
+        notes.append(
+            f"{len(parts) - 1} smaller groups of lines have a scale of their own; they are placed at the depth of "
+            "their neighbours in the photo and marked weak"
+        )
+    if dropped:
+        notes.append(f"{dropped} lines meet none of the others in space and are left out")
+    moved = int((shift > SHIFT_NOTED).sum())
+    if moved:
+        notes.append(f"{moved} lines moved by up to {np.degrees(shift.max()):.1f} degrees to meet the others exactly")
+    return notes

@@ -1,0 +1,416 @@
+"""The command line: what it refuses, in one line, and what it never leaves behind."""
+
+import json
+import os
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import time
+import zlib
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from exporters.formats import FORMATS
+from linecad import __version__
+from linecad.cli import main
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLES = ROOT / "samples"
+ROOM = SAMPLES / "room.jpg"
+posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
+
+
+def run_as_module(arguments, folder, **more):
+    """`python -m linecad` in a process of its own, started in `folder`."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    command = [sys.executable, "-m", "linecad", *map(str, arguments)]
+    return subprocess.run(
+        command, cwd=folder, env=environment, capture_output=True, text=True, timeout=100, check=False, **more
+    )
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty working folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def fails(folder, capsys):
+    """A function that runs the command, expects it to fail in one line and to change no file, and gives that line."""
+
+    def contents():
+        return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+    def run(*arguments, code=1):
+        before = contents()
+        try:
+            ended = main([*map(str, arguments), "--quiet"])
+        except SystemExit as leaving:  # argparse leaves so
+            ended = leaving.code
+        out, err = capsys.readouterr()
+        assert ended == code
+        assert out == ""
+        assert contents() == before
+        assert err.endswith("\n")
+        assert err.startswith("linecad")
+        assert len(err.splitlines()) == 1, err
+        return err.strip()
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def scene_file(tmp_path_factory):
+    """The scene of a sample photo."""
+    path = tmp_path_factory.mktemp("scene") / "room.json"
+    assert main(["convert", str(ROOM), "-o", str(path), "--quiet", "--largest-component"]) == 0
+    return path
+
+
+def png_that_claims(width, height):
+    """A PNG with a header and no pixels."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"")) + chunk(b"IEND", b"")
+
+
+def stripes():
+    """Parallel edges that meet in one vanishing point, and nothing else."""
+    image = np.full((600, 800), 220, np.uint8)
+    for u in range(-1200, 2000, 160):
+        corners = np.array([[400 + (u - 400) * 0.25, -10], [400 + (u - 320) * 0.25, -10], [u + 80, 610], [u, 610]])
+        cv2.fillPoly(image, [np.round(corners * 16).astype(np.int32)], 60, cv2.LINE_AA, shift=4)
+    return image
+
+
+def lonely_lines():
+    """Long thin lines of two directions that stay far from each other."""
+    image = np.full((900, 1200), 220, np.uint8)
+    for i in range(8):
+        image[60 + 100 * i : 63 + 100 * i, 80:400] = 40
+        image[80:800, 560 + 80 * i : 563 + 80 * i] = 40
+    return image
+
+
+BAD_PHOTOS = {
+    "text": (lambda: b"no picture, just words\n" * 20, "is not an image that linecad can read"),
+    "empty": (lambda: b"", "is empty"),
+    "truncated": (lambda: ROOM.read_bytes()[:60_000], "is damaged or incomplete"),
+    "huge": (lambda: png_that_claims(20_000, 10_001), "200 megapixels"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_PHOTOS)
+def test_files_that_are_no_photo(fails, folder, name):
+    content, words = BAD_PHOTOS[name]
+    (folder / "photo.png").write_bytes(content())
+    said = fails("convert", "photo.png", "-o", "a.json", "-o", "a.step")
+    assert "photo.png" in said
+    assert words in said
+
+
+@pytest.mark.parametrize(
+    ("draw", "words"),
+    [
+        (lambda: np.full((100, 63), 128, np.uint8), "64"),
+        (lambda: np.full((480, 640), 128, np.uint8), "0 straight segments found"),
+        (stripes, "run in one direction"),
+        (lonely_lines, "hardly touch each other"),
+    ],
+    ids=["tiny", "flat", "stripes", "lonely lines"],
+)
+def test_photos_that_show_too_little(fails, folder, draw, words):
+    Image.fromarray(draw()).save(folder / "photo.png")
+    assert words in fails("convert", "photo.png", "--focal", "900" if words != "64" else "90", "-o", "a.json")
+
+
+def test_a_photo_that_is_not_there(fails):
+    assert "nowhere.jpg" in fails("convert", "nowhere.jpg", "-o", "a.json")
+
+
+@pytest.mark.parametrize(
+    ("camera", "words"),
+    [
+        ("{", "camera.json"),
+        ("[]", "camera.json"),
+        ('{"width": 1600, "height": 1067}', "K"),
+        ('{"width": 1600, "height": 1067, "K": [[1, 2], [3, 4]]}', "K"),
+        ('{"width": 800, "height": 600, "K": [[700, 0, 400], [0, 700, 300], [0, 0, 1]]}', "800 x 600"),
+        ('{"width": 1600, "height": 1067, "K": [[NaN, 0, 800], [0, 700, 500], [0, 0, 1]]}', "camera.json"),
+    ],
+)
+def test_camera_files_that_do_not_fit(fails, folder, camera, words):
+    (folder / "camera.json").write_text(camera)
+    assert words in fails("convert", ROOM, "--camera", "camera.json", "-o", "a.json")
+
+
+@pytest.mark.parametrize(
+    ("outputs", "words"),
+    [
+        ([], "no output was named"),
+        (["a.doc"], "unknown suffix .doc"),
+        (["scene"], "no suffix"),
+        (["a.json", "a.doc"], "unknown suffix .doc"),
+        (["missing/a.json"], "does not exist"),
+        (["a.json", "./a.json"], "named twice"),
+        (["a.json", "."], "suffix"),
+        (["folder.step"], "is a folder"),
+    ],
+)
+@pytest.mark.parametrize("command", ["convert", "export"])
+def test_outputs_that_cannot_be(fails, folder, scene_file, command, outputs, words):
+    (folder / "folder.step").mkdir()
+    options = [word for output in outputs for word in ("-o", output)]
+    assert words in fails(command, ROOM if command == "convert" else scene_file, *options)
+
+
+@posix
+@pytest.mark.usefixtures("bound_by_permissions")
+def test_a_folder_that_cannot_be_written(fails, folder):
+    locked = folder / "locked"
+    locked.mkdir()
+    locked.chmod(0o555)
+    assert "cannot be written" in fails("convert", ROOM, "-o", "locked/a.json")
+
+
+def test_the_photo_is_never_overwritten(fails, folder):
+    Image.open(ROOM).save(folder / "photo.png")
+    assert "is an input too" in fails("convert", "photo.png", "-o", "photo.png")
+
+
+@posix
+def test_the_photo_is_never_overwritten_through_a_link(fails, folder):
+    Image.open(ROOM).save(folder / "photo.png")
+    (folder / "link.png").symlink_to("photo.png")
+    os.link(folder / "photo.png", folder / "hard.png")
+    assert "is an input too" in fails("convert", "photo.png", "-o", "link.png")
+    assert "is an input too" in fails("convert", "link.png", "-o", "photo.png")
+    assert "is an input too" in fails("convert", "photo.png", "-o", "hard.png")
+
+
+def test_the_camera_file_is_never_overwritten(fails, folder):
+    shutil.copy(SAMPLES / "room.json", folder)
+    assert "is an input too" in fails("convert", ROOM, "--camera", "room.json", "-o", "room.json")
+
+
+def test_the_scene_file_is_never_overwritten(fails, folder, scene_file):
+    shutil.copy(scene_file, folder)
+    assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json")
+
+
+@pytest.mark.parametrize("text", ["", "{", "{}", "[1]", '{"format": "linecad-scene", "version": 99}', "\x00\xff"])
+def test_broken_scene_files(fails, folder, text):
+    (folder / "broken.json").write_text(text, encoding="latin-1")
+    assert "broken.json" in fails("export", "broken.json", "-o", "a.step")
+
+
+def test_a_scene_file_cut_off_in_the_middle(fails, folder, scene_file):
+    (folder / "cut.json").write_bytes(scene_file.read_bytes()[:5000])
+    assert "cut.json" in fails("export", "cut.json", "-o", "a.obj")
+
+
+def test_export_without_a_scene(fails):
+    assert "no scene file was given" in fails("export", "-o", "a.step")
+
+
+def test_numbers_that_the_solver_cannot_use(fails):
+    assert "seed is -1" in fails("convert", ROOM, "-o", "a.json", "--seed", "-1")
+    assert "mu_boundary is 1e+300" in fails("convert", ROOM, "-o", "a.json", "--mu-boundary", "1e300")
+    assert "time_limit_s is 1e+300" in fails("convert", ROOM, "-o", "a.json", "--time-limit", "1e300")
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (["--without", "nonsense"], "'nonsense' is no family of constraints; use cycles, planarity, boundary"),
+        (["--focal", "abc"], "'abc' is not a number"),
+        (["--focal", "0"], "0 is not a positive number"),
+        (["--focal", "nan"], "nan is not a number of zero or more"),
+        (["--focal=-5"], "-5 is not a number of zero or more"),
+        (["--time-limit", "inf"], "inf is not a number of zero or more"),
+        (["--seed", "1.5"], "--seed"),
+        (["--weights", "heavy"], "--weights"),
+        (["--formulation", "other"], "--formulation"),
+        (["--focal", "900", "--camera", "room.json"], "not allowed with"),
+        (["--verbose"], "not allowed with"),  # together with --quiet
+        (["--unknown"], "--unknown"),
+        (["second.jpg"], "second.jpg"),
+    ],
+)
+def test_wrong_usage_is_exit_code_2(fails, options, words):
+    assert words in fails("convert", ROOM, "-o", "a.json", *options, code=2)
+
+
+@pytest.mark.parametrize("arguments", [[], ["invent"], ["convert"]])
+def test_commands_that_say_too_little(fails, arguments):
+    assert "--help" in fails(*arguments, code=2)
+
+
+def test_formats_lists_every_suffix(capsys):
+    assert main(["export", "--formats"]) == 0
+    out, err = capsys.readouterr()
+    assert [line.split()[0] for line in out.splitlines()] == [".json", *FORMATS]
+    assert err == ""
+
+
+def test_version_and_help(folder):
+    version = run_as_module(["--version"], folder)
+    assert (version.returncode, version.stdout, version.stderr) == (0, f"linecad {__version__}\n", "")
+    usage = run_as_module(["--help"], folder)
+    assert (usage.returncode, usage.stderr) == (0, "")
+    assert "convert" in usage.stdout
+    assert "export" in usage.stdout
+
+
+def test_every_option_is_explained(capsys):
+    for command in ("convert", "export"):
+        with pytest.raises(SystemExit, match="0"):
+            main([command, "--help"])
+        text = capsys.readouterr().out
+        assert "example: linecad " + command in text
+        assert "--output" in text
+
+
+@pytest.mark.parametrize("name", ["solver", "exporters"])
+def test_a_file_that_hides_a_package_is_named(folder, name):
+    (folder / f"{name}.py").write_text("raise RuntimeError('never to be run')\n")
+    ended = run_as_module(["convert", ROOM, "-o", "a.json"], folder)
+    assert ended.returncode == 1
+    assert len(ended.stderr.splitlines()) == 1
+    assert str((folder / f"{name}.py").resolve()) in ended.stderr
+    assert [path.name for path in folder.iterdir() if path.name != "__pycache__"] == [f"{name}.py"]
+
+
+def test_progress_goes_to_stderr_a_line_a_stage(folder, scene_file, capsys):
+    assert main(["export", str(scene_file), "-o", "a.obj", "-o", "b.json"]) == 0
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.splitlines() == ["reading the scene", "writing a.obj", "writing b.json"]
+
+
+def test_quiet_says_nothing_and_verbose_the_times(folder, scene_file, capsys):
+    assert main(["export", str(scene_file), "-o", "a.obj", "--quiet"]) == 0
+    assert capsys.readouterr() == ("", "")
+    assert main(["export", str(scene_file), "-o", "a.obj", "--verbose"]) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert [line.split(" s  ")[1] for line in lines] == ["reading the scene", "writing a.obj"]
+
+
+def test_an_exported_scene_file_is_the_same(folder, scene_file):
+    assert main(["export", str(scene_file), "-o", "again.json", "--quiet"]) == 0
+    assert (folder / "again.json").read_bytes() == scene_file.read_bytes()
+
+
+def test_the_picture_finds_the_photo_beside_the_scene(folder, scene_file):
+    shutil.copy(scene_file, folder / "room.json")
+    assert main(["export", "room.json", "-o", "without.png", "--quiet"]) == 0
+    shutil.copy(ROOM, folder)
+    assert main(["export", "room.json", "-o", "beside.png", "--quiet"]) == 0
+    (folder / "room.jpg").unlink()
+    assert main(["export", "room.json", "--photo", str(ROOM), "-o", "named.png", "--quiet"]) == 0
+    assert (folder / "beside.png").read_bytes() == (folder / "named.png").read_bytes()
+    assert (folder / "beside.png").read_bytes() != (folder / "without.png").read_bytes()
+
+
+@posix
+def test_an_error_on_a_terminal_stands_on_a_line_of_its_own(folder):
+    import pty
+
+    (folder / "photo.png").write_bytes(b"")
+    ours, theirs = pty.openpty()
+    command = [sys.executable, "-m", "linecad", "convert", "photo.png", "-o", "a.json"]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    ended = subprocess.run(command, cwd=folder, env=environment, stderr=theirs, timeout=60, check=False)
+    os.close(theirs)
+    shown = os.read(ours, 100_000).decode()
+    os.close(ours)
+    assert ended.returncode == 1
+    assert "reading the photo ...\r\033[Klinecad: photo.png" in shown
+
+
+WITH_A_SMALL_DISK = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+from linecad.cli import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@posix
+@pytest.mark.parametrize("output", ["a.json", "a.ply"])
+def test_a_full_disk_leaves_what_was_there(folder, scene_file, output):
+    (folder / output).write_text("from yesterday")
+    command = [sys.executable, "-c", WITH_A_SMALL_DISK, "export", str(scene_file), "-o", output, "--quiet"]
+    ended = subprocess.run(
+        command, cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=60,
+        check=False,
+    )  # fmt: skip
+    assert ended.returncode == 1
+    assert ended.stderr.splitlines() == [
+        f"linecad: {output} was not written: no space is left for it; free some or choose another disk"
+    ]
+    assert (folder / output).read_text() == "from yesterday"
+    assert [path.name for path in folder.rglob("*") if path.name.startswith(".linecad-")] == []
+
+
+def start_and_interrupt(arguments, folder, stage, after):
+    """Start the command, send Ctrl-C `after` seconds into the stage that begins with `stage`, and wait."""
+    child = subprocess.Popen(
+        [sys.executable, "-m", "linecad", *map(str, arguments)], cwd=folder, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    )  # fmt: skip
+    watchdog = threading.Timer(90, child.kill)
+    watchdog.start()
+    try:
+        lines = []
+        for line in child.stderr:
+            lines.append(line.rstrip())
+            if line.startswith(stage):
+                time.sleep(after)
+                child.send_signal(signal.SIGINT)
+        out = child.stdout.read()
+        return child.wait(), out, lines
+    finally:
+        watchdog.cancel()
+        child.kill()
+        child.wait()
+        child.stdout.close()
+        child.stderr.close()
+
+
+@posix
+def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
+    street = [SAMPLES / "street.jpg", "--camera", SAMPLES / "street.json", "--extension", 90, "--mu-boundary", 1]
+    code, out, _ = start_and_interrupt(
+        ["convert", *street, "-o", "a.json", "-o", "a.obj"], folder, "solving", after=1.5
+    )
+    assert code == 0
+    scene = json.loads((folder / "a.json").read_text())
+    assert scene["solve"]["status"] == "interrupted"
+    assert any("was interrupted" in note for note in scene["notes"])
+    assert len(scene["lines"]) > 100
+    assert "interrupted in " in out
+    assert sorted(path.name for path in folder.iterdir()) == ["a.json", "a.obj"]
+
+
+@posix
+def test_ctrl_c_before_the_solver_writes_nothing(folder):
+    code, out, lines = start_and_interrupt(["convert", ROOM, "-o", "a.json"], folder, "reading the photo", after=0)
+    assert code == 1
+    assert out == ""
+    assert lines[-1].startswith("linecad: interrupted")
+    assert not any("Traceback" in line for line in lines)
+    assert list(folder.iterdir()) == []

@@ -1,0 +1,86 @@
+"""Rays, projection, vanishing points and rotations against their definitions."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from linecad.geometry import (
+    angles_to,
+    directions_to,
+    homogeneous,
+    plane_normals,
+    project,
+    rotation_about,
+    vanishing_points,
+    world_rays,
+)
+
+small = st.floats(-3, 3)
+
+
+def test_homogeneous_points_end_in_one():
+    assert homogeneous(np.array([[2.0, 3.0]])).tolist() == [[2.0, 3.0, 1.0]]
+
+
+def test_a_world_ray_has_camera_depth_one(made):
+    rays = world_rays(made.pixels, made.camera.matrix, made.frame.rotation)
+    np.testing.assert_allclose((rays @ made.frame.rotation.T)[..., 2], 1, atol=1e-12)
+
+
+@given(st.tuples(st.floats(0, 1600), st.floats(0, 1200)), st.floats(0.1, 1e4))
+def test_a_point_on_a_pixels_ray_projects_to_the_pixel(made, pixel, depth):
+    ray = world_rays(np.array(pixel), made.camera.matrix, made.frame.rotation)
+    back = project(depth * ray, made.camera.matrix, made.frame.rotation)
+    np.testing.assert_allclose(back, pixel, atol=1e-8)
+
+
+def test_a_vanishing_point_is_where_a_line_along_the_axis_ends(made):
+    points = vanishing_points(made.camera.matrix, made.frame.rotation)
+    far = project(np.array([0.3, 1e9, -0.2]), made.camera.matrix, made.frame.rotation)
+    np.testing.assert_allclose(points[1, :2] / points[1, 2], far, atol=1e-5)
+
+
+def test_every_true_segment_points_to_the_vanishing_point_of_its_axis_only(made):
+    sines = angles_to(made.pixels, vanishing_points(made.camera.matrix, made.frame.rotation))
+    every = np.arange(len(made.axis))
+    assert sines[made.axis, every].max() < 1e-12
+    assert sines[(made.axis + 1) % 3, every].min() > 0.01
+
+
+def test_direction_to_a_vanishing_point_at_infinity():
+    directions = directions_to(np.array([[10.0, 20.0]]), np.array([[-3.0, 4.0, 0.0]]))
+    np.testing.assert_allclose(directions, [[-0.6, 0.8]])
+
+
+def test_direction_to_a_finite_vanishing_point():
+    directions = directions_to(np.array([[10.0, 20.0]]), np.array([[26.0, 40.0, 2.0]]))
+    np.testing.assert_allclose(directions, [[1.0, 0.0]], atol=1e-15)
+
+
+def test_angle_of_a_segment_is_measured_at_its_middle():
+    sines = angles_to(np.array([[[0.0, 0.0], [10.0, 0.0]]]), np.array([[5.0 + 3.0, 3.0, 1.0]]))
+    np.testing.assert_allclose(sines, [[np.sin(np.pi / 4)]])
+
+
+def test_plane_normals_are_square_to_both_rays_and_to_the_true_axis(made):
+    normals = plane_normals(made.pixels, made.camera.matrix)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1)
+    axes = made.frame.rotation[:, made.axis].T
+    np.testing.assert_allclose((normals * axes).sum(axis=1), 0, atol=1e-12)
+
+
+@given(st.tuples(small, small, small))
+def test_rotation_about_a_vector_agrees_with_scipy(vector):
+    np.testing.assert_allclose(rotation_about(np.array(vector)), Rotation.from_rotvec(vector).as_matrix(), atol=1e-9)
+
+
+def test_rotation_about_nothing_is_the_identity():
+    assert rotation_about(np.zeros(3)).tolist() == np.eye(3).tolist()
+
+
+@pytest.mark.parametrize("angle", [1e-14, 1e-8, np.pi])
+def test_rotation_stays_orthogonal_for_tiny_and_half_turns(angle):
+    turned = rotation_about(angle * np.array([0.6, 0.0, 0.8]))
+    np.testing.assert_allclose(turned @ turned.T, np.eye(3), atol=1e-14)

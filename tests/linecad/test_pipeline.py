@@ -1,0 +1,303 @@
+"""A drawn photo of the made scene, and a sample photo, from pixels to a scene."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import networkx as nx
+import numpy as np
+import pytest
+
+from linecad.errors import ReconstructionError
+from linecad.evaluation import rotation_error
+from linecad.geometry import project
+from linecad.graph import build_line_graph
+from linecad.lifting import lift
+from linecad.photo import Photo, read_photo
+from linecad.pipeline import TYPICAL_DEPTH, ReconstructOptions, _scene, _within_groups, reconstruct
+from linecad.scene import Camera, ManhattanFrame, Segments, Solution
+from linecad.scenefile import read_scene, write_scene
+from solver.problem import SolveOptions
+
+# The made scene is two boxes of two faces each. The whole program of the paper cuts them apart at their edges: its
+# 3-cycles forbid a true corner, and mu_2 = 10 outweighs the crossings at an edge that is kept off the boundary.
+WHOLE_BOXES = ReconstructOptions(solve=SolveOptions(without=frozenset({"cycles", "boundary"})))
+
+SAMPLES = Path(__file__).resolve().parents[2] / "samples"
+
+
+@pytest.fixture(scope="module")
+def drawn(made):
+    return Photo("drawn.png", np.repeat(made.image()[..., None], 3, axis=2), made.camera)
+
+
+@pytest.fixture(scope="module")
+def scene(drawn):
+    return reconstruct(drawn, WHOLE_BOXES)
+
+
+@pytest.fixture(scope="module")
+def room():
+    return read_photo(SAMPLES / "room.jpg", SAMPLES / "room.json")
+
+
+@pytest.fixture(scope="module")
+def room_scene(room):
+    return reconstruct(room, ReconstructOptions(solve=SolveOptions(time_limit_s=20)))
+
+
+@pytest.fixture(params=["scene", "room_scene"])
+def any_scene(request):
+    return request.getfixturevalue(request.param)
+
+
+def without_seconds(scene):
+    return replace(scene, solve=replace(scene.solve, seconds=0.0))
+
+
+def written(scene, path):
+    write_scene(scene, path)
+    return path.read_bytes()
+
+
+def true_line(made, scene, line):
+    """The true line whose image a line of the scene lies on, or None."""
+    segment, axis = scene.lines.segment[line], scene.lines.axis[line]
+    for true in np.flatnonzero(made.axis == axis):
+        start, end = made.pixels[true]
+        along = (end - start) / np.linalg.norm(end - start)
+        off = np.abs((segment - start) @ np.array([-along[1], along[0]])).max()
+        position = (segment - start) @ along
+        if off < 2 and position.min() > -10 and position.max() < np.linalg.norm(end - start) + 10:
+            return true
+    return None
+
+
+def test_the_drawn_photo_gives_the_true_frame(made, scene):
+    error, names = rotation_error(scene.rotation, made.frame.rotation)
+    assert np.degrees(error) < 0.1
+    assert names == (0, 1, 2)
+
+
+def test_the_drawn_photo_gives_every_true_line(made, scene):
+    found = [true_line(made, scene, line) for line in range(len(scene.lines))]
+    assert {true for true in found if true is not None} == set(range(len(made.axis)))
+    assert found.count(None) <= 2
+
+
+def test_the_drawn_photo_gives_the_true_depths(made, scene):
+    assert len(set(scene.lines.component.tolist())) == 2
+    for component in (0, 1):
+        ratio = []
+        for line in np.flatnonzero(scene.lines.component == component):
+            true = true_line(made, scene, line)
+            if true is not None:
+                across = np.arange(3) != made.axis[true]
+                there = scene.lines.ends[line, 0, across]
+                ratio.append(np.linalg.norm(there) / np.linalg.norm(made.ends[true, 0, across]))
+        assert len(ratio) >= 14
+        assert np.abs(ratio / np.median(ratio) - 1).max() < 0.02
+
+
+def test_the_drawn_photo_gives_the_true_faces(made, scene):
+    # The front and the side of each box, as planes that hold at least six of its lines.
+    component = dict(zip(scene.lines.id.tolist(), scene.lines.component.tolist(), strict=True))
+    large = {(component[plane.lines[0]], plane.axis) for plane in scene.planes if len(plane.lines) >= 6}
+    assert {(0, 0), (0, 1), (1, 0), (1, 1)} <= large
+
+
+def test_component_0_has_a_handy_size(scene):
+    own = scene.lines.component == 0
+    in_camera = scene.lines.ends[own] @ scene.rotation.T
+    assert np.median(in_camera[..., 2]) == pytest.approx(TYPICAL_DEPTH, rel=0.2)
+
+
+def test_ends_are_seen_where_the_segments_are(any_scene):
+    scene = any_scene
+    back = project(scene.lines.ends, scene.camera.matrix, scene.rotation)
+    along = scene.lines.segment[:, 1] - scene.lines.segment[:, 0]
+    along /= np.linalg.norm(along, axis=1)[:, None]
+    off = back - scene.lines.segment[:, :1]
+    across = np.abs(off[..., 0] * along[:, None, 1] - off[..., 1] * along[:, None, 0])
+    assert np.quantile(across, 0.9) < 2.0  # px
+
+
+def test_lines_run_along_their_axes(any_scene):
+    lines = any_scene.lines
+    across = np.arange(3) != lines.axis[:, None]
+    assert (lines.ends[:, 0][across] == lines.ends[:, 1][across]).all()
+
+
+def test_real_crossings_coincide(any_scene):
+    lines, real = any_scene.lines, any_scene.intersections.real
+    i, j = any_scene.intersections.lines[real].T  # ids are positions in a fresh scene
+    shared = 3 - lines.axis[i] - lines.axis[j]
+    size = np.ptp(lines.ends.reshape(-1, 3), axis=0).max()
+    assert np.abs(lines.ends[i, 0, shared] - lines.ends[j, 0, shared]).max() <= 1e-9 * size
+
+
+def test_lines_lie_in_their_planes(any_scene):
+    lines = any_scene.lines
+    assert any_scene.planes
+    for plane in any_scene.planes:
+        own = list(plane.lines)
+        assert (lines.ends[own, :, plane.axis] == plane.offset).all()
+        assert len(set(lines.component[own].tolist())) == 1
+        for face in plane.faces:
+            assert (face.outline[:, plane.axis] == plane.offset).all()
+
+
+def test_components_are_numbered_by_size_and_held_together_by_real_crossings(any_scene):
+    lines, crossings = any_scene.lines, any_scene.intersections
+    net = nx.Graph()
+    net.add_nodes_from(lines.id.tolist())
+    net.add_edges_from(crossings.lines[crossings.real].tolist())
+    parts = {frozenset(part) for part in nx.connected_components(net)}
+    count = int(lines.component.max()) + 1
+    named = [frozenset(lines.id[lines.component == number].tolist()) for number in range(count)]
+    assert set(named) == parts
+    assert count > 1
+    sizes = [len(part) for part in named]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[-1] >= 4
+
+
+def test_the_spanning_tree_spans_each_component(any_scene):
+    lines, crossings = any_scene.lines, any_scene.intersections
+    assert not (crossings.in_tree & ~crossings.real).any()
+    tree = nx.Graph()
+    tree.add_edges_from(crossings.lines[crossings.in_tree].tolist())
+    assert nx.is_forest(tree)
+    assert nx.number_connected_components(tree) == lines.component.max() + 1
+    assert len(tree) == len(lines)
+
+
+def test_confidence_says_what_the_documentation_promises(any_scene):
+    lines, crossings = any_scene.lines, any_scene.intersections
+    assert any_scene.solve.status == "optimal"
+    assert ((lines.confidence == "weak") == (lines.component != 0)).all()
+    net = nx.Graph()
+    net.add_edges_from(crossings.lines[crossings.real].tolist())
+    for line in lines.id[lines.component == 0].tolist():
+        # A line closes cycles when it lies on one, that is, when some neighbour is reached without their own crossing.
+        in_cycle = any(
+            nx.has_path(nx.restricted_view(net, [], [(line, other)]), line, other) for other in list(net[line])
+        )
+        assert (lines.confidence[line] == "proven") <= in_cycle
+        if net.degree(line) == 1:
+            assert lines.confidence[line] == "supported"
+
+
+def test_without_a_proof_nothing_is_called_proven(drawn):
+    stopped = reconstruct(drawn, ReconstructOptions(solve=SolveOptions(gap=0.5)))
+    if stopped.solve.status == "optimal":
+        stopped = reconstruct(drawn, ReconstructOptions(solve=SolveOptions(time_limit_s=1e-6)))
+    assert stopped.solve.status in ("gap limit", "time limit")
+    assert set(stopped.lines.confidence.tolist()) == {"supported", "weak"}
+    assert any(stopped.solve.status in note and "not proven" in note for note in stopped.notes)
+
+
+def test_smaller_components_are_mentioned(scene):
+    assert any("1 smaller group" in note for note in scene.notes)
+
+
+def test_largest_component_alone(made, drawn, scene):
+    alone = reconstruct(drawn, replace(WHOLE_BOXES, largest_component=True))
+    assert set(alone.lines.component.tolist()) == {0}
+    assert len(alone.lines) == (scene.lines.component == 0).sum()
+    middle = alone.lines.segment.mean(axis=(0, 1))
+    assert middle[0] < made.camera.width / 2  # the left box has more edges
+
+
+def test_scene_files_give_the_scene_back(any_scene, tmp_path):
+    first = written(any_scene, tmp_path / "a.json")
+    assert written(read_scene(tmp_path / "a.json"), tmp_path / "b.json") == first
+
+
+def test_two_runs_give_the_same_bytes(room, room_scene, tmp_path):
+    again = reconstruct(room, ReconstructOptions(solve=SolveOptions(time_limit_s=20)))
+    first = written(without_seconds(room_scene), tmp_path / "a.json")
+    assert written(without_seconds(again), tmp_path / "b.json") == first
+
+
+def test_focal_length_comes_from_the_vanishing_points_when_nothing_tells_it(made, drawn):
+    scene = reconstruct(Photo("drawn.png", drawn.pixels, None), ReconstructOptions())
+    assert scene.camera.source == "vanishing points"
+    assert scene.camera.focal == pytest.approx(made.camera.focal, rel=0.02)
+    assert any(note.startswith("focal length guessed from the vanishing points") for note in scene.notes)
+
+
+def frontal_photo():
+    """A wall of windows seen straight on: two vanishing points at infinity."""
+    image = np.full((600, 800, 3), 230, np.uint8)
+    for i in range(4):
+        for j in range(3):
+            image[80 + 150 * j : 230 + 150 * j, 100 + 150 * i : 250 + 150 * i] = 60 if (i + j) % 2 else 140
+    return Photo("wall.png", image, None)
+
+
+def test_focal_length_is_assumed_and_noted_when_it_cannot_be_told():
+    scene = reconstruct(frontal_photo(), ReconstructOptions())
+    assert scene.camera.source == "default"
+    assert scene.camera.focal == pytest.approx(28 / 43.27 * 1000)
+    assert any("not to be told" in note for note in scene.notes)
+
+
+def test_stages_are_reported_in_order(drawn):
+    stages = []
+    reconstruct(drawn, ReconstructOptions(largest_component=True), on_stage=stages.append)
+    words = ["finding segments", "finding the Manhattan frame", "solving", "lifting"]
+    assert [word for word, stage in zip(words, stages, strict=True) if stage.startswith(word)] == words
+
+
+def test_a_flat_photo_holds_too_little():
+    flat = Photo("flat.png", np.full((300, 400, 3), 128, np.uint8), None)
+    with pytest.raises(ReconstructionError, match="0 straight segments found"):
+        reconstruct(flat, ReconstructOptions())
+
+
+def test_groups_that_only_the_horizon_ties_keep_scales_of_their_own():
+    # Two rectangles, and a line of each at the height of the eye. The crossing of these two lines says nothing about
+    # depth; were their height one number for both groups, it would be two after scaling.
+    camera = Camera(3840, 2880, np.array([[2500.0, 0, 1919.5], [0, 2500, 1439.5], [0, 0, 1]]), "file")
+    turn = np.array([[np.cos(0.4), -np.sin(0.4), 0], [np.sin(0.4), np.cos(0.4), 0], [0, 0, 1]])
+    frame = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]) @ turn, 0.0, 1.0)
+    eye = 1e-4
+    rows = [  # axis, ends
+        (0, (-1, 8, eye), (2, 8, eye)), (0, (-1, 8, 2), (2, 8, 2)),
+        (2, (-1, 8, eye), (-1, 8, 2)), (2, (0.5, 8, eye), (0.5, 8, 2)),
+        (1, (2.02, 8, eye), (2.02, 11, eye)), (1, (2.02, 8, -2), (2.02, 11, -2)),
+        (2, (2.02, 9, -2), (2.02, 9, eye)), (2, (2.02, 11, -2), (2.02, 11, eye)),
+    ]  # fmt: skip
+    ends = np.array([row[1:] for row in rows], float)
+    segments = Segments(project(ends, camera.matrix, frame.rotation), [row[0] for row in rows])
+    graph = build_line_graph(segments, camera, frame)
+    assert len(graph.segments) == len(rows)
+    tie = np.flatnonzero((graph.edges == [0, 4]).all(axis=1))
+    assert graph.possible[tie].tolist() == [True]
+    assert graph.informative[tie].tolist() == [False]
+    sides = graph.edges < 4
+    within = sides[:, 0] == sides[:, 1]
+    within[tie] = True
+    rays = graph.rays.copy()
+    rays[np.arange(len(rows)), graph.axis] = 0
+    depth = (rays * ends[:, 0]).sum(axis=1) / (rays**2).sum(axis=1)
+    depth[4:] *= 3  # nothing says how large the second group is
+    solution = Solution(
+        status="optimal", solver="by hand", formulation="paper", objective=0.0, bound=0.0, gap=0.0, seconds=0.0,
+        nodes=0, connected=within, is_boundary=np.zeros(len(rows), bool), planar_pairs=[], log_depth=np.log(depth),
+    )  # fmt: skip
+    solution = _within_groups(graph, solution)
+    assert not solution.connected[tie].any()
+    photo = Photo("two.png", np.zeros((2880, 3840, 3), np.uint8), camera)
+    scene = _scene(photo, camera, frame, graph, solution, lift(graph, solution), [], ReconstructOptions())
+    assert scene.lines.component.tolist() == [0] * 4 + [1] * 4
+    for plane in scene.planes:
+        assert (scene.lines.ends[list(plane.lines), :, plane.axis] == plane.offset).all()
+
+
+def test_notes_are_plain_text_on_one_line(any_scene):
+    assert any_scene.notes
+    for note in any_scene.notes:
+        assert json.loads(json.dumps(note)) == note
+        assert len(note.splitlines()) == 1

@@ -1,0 +1,126 @@
+"""Segments found, labelled and joined on the made scene."""
+
+import cv2
+import numpy as np
+import pytest
+
+from linecad.geometry import angles_to, vanishing_points
+from linecad.scene import Segments
+from linecad.segments import (
+    GROUP_ACROSS,
+    GROUP_ALONG,
+    REFERENCE_WIDTH,
+    find_segments,
+    group_segments,
+    label_segments,
+)
+
+
+@pytest.fixture
+def fragments(made):
+    """A function that gives a true x segment cut in two, with a gap in px and the second half moved across."""
+    ends = made.pixels[np.flatnonzero(made.axis == 0)[0]]
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    middle, normal = ends.mean(axis=0), np.array([-along[1], along[0]])
+
+    def cut(gap, across=0.0):
+        halves = np.array([[ends[0], middle - gap / 2 * along], [middle + gap / 2 * along, ends[1]]])
+        halves[1] += across * normal
+        return Segments(halves, [0, 0])
+
+    return cut
+
+
+@pytest.mark.parametrize("width", [500, 1600])
+def test_the_edges_of_a_drawn_rectangle_are_found(width):
+    image = np.full((width * 3 // 4, width), 220, np.uint8)
+    low, high = (width // 5, width // 6), (width * 3 // 5, width // 2)
+    cv2.rectangle(image, low, high, 60, -1)
+    found = find_segments(image)
+    assert (found.axis == -1).all()
+    long = found.ends[found.length > 0.2 * width]
+    assert len(long) == 4
+    expected = {(low[0], 0), (high[0], 0), (low[1], 1), (high[1], 1)}
+    for place, column in expected:
+        off = np.abs(long[:, :, column] - place).max(axis=1)
+        assert (off < 1.5).sum() == 1
+
+
+def test_texture_is_no_segment():
+    image = np.full((600, 800), 220, np.uint8)
+    for x in range(20, 780, 20):
+        image[300:304, x : x + 4] = 60
+    assert len(find_segments(image)) == 0
+
+
+def test_a_flat_photo_has_no_segments():
+    assert len(find_segments(np.full((300, 400), 128, np.uint8))) == 0
+
+
+def test_labels_are_the_true_axes(made):
+    labelled = label_segments(made.noisy(0.3), made.camera, made.frame)
+    assert labelled.axis.tolist() == made.axis.tolist()
+
+
+def test_segments_of_no_axis_are_left_out(made):
+    stray = np.array([[[1400.0, 1000.0], [1500.0, 900.0]]])
+    labelled = label_segments(Segments(stray, [-1]), made.camera, made.frame)
+    assert len(labelled) == 0
+
+
+def test_labelled_ends_stay_as_they_were(made):
+    noisy = made.noisy(0.3)
+    assert label_segments(noisy, made.camera, made.frame).ends.tobytes() == noisy.ends.tobytes()
+
+
+def test_grouped_segments_pass_exactly_through_their_vanishing_points(made):
+    labelled = label_segments(made.noisy(0.5), made.camera, made.frame)
+    grouped = group_segments(labelled, made.camera, made.frame)
+    sines = angles_to(grouped.ends, vanishing_points(made.camera.matrix, made.frame.rotation))
+    assert sines[grouped.axis, np.arange(len(grouped))].max() < 1e-9
+
+
+def test_grouping_leaves_exact_segments_where_they_are(made):
+    grouped = group_segments(made.segments, made.camera, made.frame)
+    assert len(grouped) == len(made.axis)
+    for ends, axis in zip(grouped.ends, grouped.axis, strict=True):
+        same = np.array([ends, ends[::-1]])
+        candidates = made.pixels[made.axis == axis]
+        assert min(np.abs(candidates - one).max(axis=(1, 2)).min() for one in same) < 1e-9
+
+
+@pytest.mark.parametrize(("share", "pieces"), [(-0.5, 1), (0.1, 1), (0.9, 1), (1.1, 2), (2.0, 2)])
+def test_fragments_are_joined_over_short_gaps_only(made, fragments, share, pieces):
+    gap = share * GROUP_ALONG * made.camera.width / REFERENCE_WIDTH
+    grouped = group_segments(fragments(gap), made.camera, made.frame)
+    assert len(grouped) == pieces
+    if pieces == 1:
+        whole = made.pixels[np.flatnonzero(made.axis == 0)[0]]
+        assert grouped.length[0] == pytest.approx(np.linalg.norm(whole[1] - whole[0]), abs=1e-9)
+
+
+@pytest.mark.parametrize(("share", "pieces"), [(0.8, 1), (1.3, 2)])
+def test_fragments_side_by_side_are_joined_only_when_near(made, fragments, share, pieces):
+    across = share * GROUP_ACROSS * made.camera.width / REFERENCE_WIDTH
+    grouped = group_segments(fragments(2.0, across), made.camera, made.frame)
+    assert len(grouped) == pieces
+
+
+def test_a_chain_of_fragments_becomes_one_segment(made):
+    ends = made.pixels[np.flatnonzero(made.axis == 2)[0]]
+    at = np.linspace(0, 1, 11)
+    pieces = np.array([ends[0] + np.array([[a], [a + 0.09]]) * (ends[1] - ends[0]) for a in at[:-1]])
+    grouped = group_segments(Segments(pieces, np.full(10, 2)), made.camera, made.frame)
+    assert len(grouped) == 1
+    assert grouped.length[0] == pytest.approx(0.99 * np.linalg.norm(ends[1] - ends[0]))
+
+
+def test_fragments_of_different_axes_are_never_joined(made, fragments):
+    halves = fragments(1.0)
+    grouped = group_segments(Segments(halves.ends, [0, 2]), made.camera, made.frame)
+    assert sorted(grouped.axis.tolist()) == [0, 2]
+
+
+def test_nothing_to_group_gives_nothing(made):
+    grouped = group_segments(Segments([], []), made.camera, made.frame)
+    assert len(grouped) == 0
