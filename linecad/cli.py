@@ -86,7 +86,11 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     camera.add_argument(
         "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
     )
-    convert.add_argument("--formulation", choices=["paper"], default="paper", help="how the program is stated (paper)")
+    convert.add_argument(
+        "--formulation", choices=["gain", "paper"], default="gain",
+        help="how the program is stated: gain, fast, or as printed in the paper (gain)",
+    )  # fmt: skip
+    convert.add_argument("--backend", choices=["scip", "highs"], default="scip", help="the solver (scip)")
     convert.add_argument(
         "--without", type=_families, default=frozenset(), metavar="FAMILY[,FAMILY]",
         help="leave out families of constraints: cycles, planarity, boundary",
@@ -95,9 +99,7 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.add_argument(
         "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
     )
-    convert.add_argument(
-        "--mu-boundary", type=_not_negative, default=10.0, metavar="MU2", help="reward of non-boundary lines (10)"
-    )
+    convert.add_argument("--mu-boundary", type=_not_negative, metavar="MU2", help="reward of non-boundary lines (10)")
     convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
     convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
@@ -106,6 +108,10 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.add_argument(
         "--extension", type=_positive, default=30.0, metavar="PX",
         help="how far segments are extended to find crossings, px on a photo 3840 px wide (30)",
+    )  # fmt: skip
+    convert.add_argument(
+        "--collinear", action=argparse.BooleanOptionalAction, default=None,
+        help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     _add_loudness(convert)
@@ -175,17 +181,21 @@ def _convert(parsed: argparse.Namespace) -> int:
     _check_outputs(parsed.output, [parsed.photo, parsed.camera])
     from linecad.photo import read_photo
     from linecad.pipeline import ReconstructOptions, reconstruct
-    from solver.problem import SolveOptions
+    from solver.problem import DEFAULT_MU_BOUNDARY, SolveOptions
 
+    is_gain = parsed.formulation == "gain"
+    mu_boundary = DEFAULT_MU_BOUNDARY[parsed.formulation] if parsed.mu_boundary is None else parsed.mu_boundary
     options = ReconstructOptions(
         extension=parsed.extension,
         weights=parsed.weights,
+        collinear=is_gain if parsed.collinear is None else parsed.collinear,
         largest_component=parsed.largest_component,
         solve=SolveOptions(
             formulation=parsed.formulation,
             without=parsed.without,
             mu_planarity=parsed.mu_planarity,
-            mu_boundary=parsed.mu_boundary,
+            mu_boundary=mu_boundary,
+            backend=parsed.backend,
             time_limit_s=parsed.time_limit,
             gap=parsed.gap,
             seed=parsed.seed,

@@ -47,6 +47,7 @@ class ReconstructOptions:
 
     extension: float = EXTENSION  # px at 3840 px width by which segments are extended to find crossings
     weights: Weights = "junctions"
+    collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
     solve: SolveOptions = field(default_factory=SolveOptions)
 
@@ -66,7 +67,9 @@ def reconstruct(
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
     segments = group_segments(label_segments(raw, camera, frame), camera, frame)
-    graph = _kept(build_line_graph(segments, camera, frame, options.extension, options.weights), options)
+    graph = _kept(
+        build_line_graph(segments, camera, frame, options.extension, options.weights, options.collinear), options
+    )
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = _within_groups(graph, solve(graph, options.solve, on_progress))
     on_stage("lifting the lines into space")
@@ -176,7 +179,7 @@ def _scene(
         planes=find_planes(ends[kept], offset[kept], lifted.shared[kept], lines.id),
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
-            solution.seconds,
+            solution.seconds, solution.cuts, solution.nodes,
         ),
         notes=tuple(notes),
     )  # fmt: skip

@@ -354,6 +354,8 @@ class SolveReport:
     bound: float
     gap: float
     seconds: float
+    cuts: int = 0  # rows added while solving
+    nodes: int = 0  # branch-and-bound nodes
 
 
 @dataclass(frozen=True, eq=False)

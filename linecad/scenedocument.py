@@ -91,6 +91,8 @@ def document_of(scene: Scene) -> dict[str, object]:
             "bound": _finite_or_null(solve.bound),
             "gap": _finite_or_null(solve.gap),
             "seconds": float(solve.seconds),
+            "cuts": int(solve.cuts),
+            "nodes": int(solve.nodes),
         },
         "notes": list(scene.notes),
     }
@@ -215,7 +217,14 @@ def _solve_report(node: Node) -> SolveReport:
         bound=_number_or_unknown(node["bound"]),
         gap=_number_or_unknown(node["gap"]),
         seconds=node["seconds"].number(),
+        cuts=_count(node.get("cuts")),
+        nodes=_count(node.get("nodes")),
     )
+
+
+def _count(node: Node | None) -> int:
+    """A count that files written before it was known do not have."""
+    return 0 if node is None else node.integer()
 
 
 def _number_or_unknown(node: Node) -> float:

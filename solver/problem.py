@@ -12,6 +12,8 @@ from linecad.scene import Formulation, LineGraph, Solution
 
 Family = Literal["cycles", "planarity", "boundary"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
+# The paper's mu_2 keeps so many lines off the boundary that one wall remains of most buildings (CONTRIBUTING).
+DEFAULT_MU_BOUNDARY: dict[Formulation, float] = {"gain": 1.0, "paper": 10.0}
 BackendName = Literal["scip", "highs"]
 BACKENDS: tuple[BackendName, ...] = get_args(BackendName)
 FORMULATIONS: tuple[Formulation, ...] = get_args(Formulation)

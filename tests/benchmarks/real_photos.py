@@ -16,7 +16,7 @@ from linecad.photo import read_photo
 from linecad.pipeline import ReconstructOptions, reconstruct
 from linecad.segments import find_segments
 from linecad.vanishing import find_frame
-from solver.problem import SolveOptions
+from solver.problem import DEFAULT_MU_BOUNDARY, SolveOptions
 
 
 def measure_depth(truth_file: Path, options: ReconstructOptions) -> tuple[float, ...]:
@@ -83,9 +83,10 @@ def main() -> None:
     parser.add_argument("--data", type=Path, default=Path(__file__).resolve().parents[3] / "shared" / "data")
     parser.add_argument("--extension", type=float, default=30.0)
     parser.add_argument("--weights", default="junctions")
-    parser.add_argument("--formulation", default="paper")
+    parser.add_argument("--formulation", default="gain")
+    parser.add_argument("--collinear", action=argparse.BooleanOptionalAction, default=None)
     parser.add_argument("--mu-planarity", type=float, default=SolveOptions.mu_planarity)
-    parser.add_argument("--mu-boundary", type=float, default=SolveOptions.mu_boundary)
+    parser.add_argument("--mu-boundary", type=float, default=None)
     parser.add_argument("--without", default="")
     parser.add_argument("--time-limit", type=float, default=60.0)
     chosen = parser.parse_args()
@@ -104,11 +105,12 @@ def main() -> None:
     options = ReconstructOptions(
         extension=chosen.extension,
         weights=chosen.weights,
+        collinear=chosen.formulation == "gain" if chosen.collinear is None else chosen.collinear,
         largest_component=True,
         solve=SolveOptions(
             formulation=chosen.formulation,
             mu_planarity=chosen.mu_planarity,
-            mu_boundary=chosen.mu_boundary,
+            mu_boundary=DEFAULT_MU_BOUNDARY[chosen.formulation] if chosen.mu_boundary is None else chosen.mu_boundary,
             without=frozenset(filter(None, chosen.without.split(","))),
             time_limit_s=chosen.time_limit,
         ),

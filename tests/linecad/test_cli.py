@@ -293,14 +293,16 @@ def test_a_file_that_hides_a_package_is_named(folder, name):
     assert [path.name for path in folder.iterdir() if path.name != "__pycache__"] == [f"{name}.py"]
 
 
-def test_progress_goes_to_stderr_a_line_a_stage(folder, scene_file, capsys):
+@pytest.mark.usefixtures("folder")
+def test_progress_goes_to_stderr_a_line_a_stage(scene_file, capsys):
     assert main(["export", str(scene_file), "-o", "a.obj", "-o", "b.json"]) == 0
     out, err = capsys.readouterr()
     assert out == ""
     assert err.splitlines() == ["reading the scene", "writing a.obj", "writing b.json"]
 
 
-def test_quiet_says_nothing_and_verbose_the_times(folder, scene_file, capsys):
+@pytest.mark.usefixtures("folder")
+def test_quiet_says_nothing_and_verbose_the_times(scene_file, capsys):
     assert main(["export", str(scene_file), "-o", "a.obj", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
     assert main(["export", str(scene_file), "-o", "a.obj", "--verbose"]) == 0

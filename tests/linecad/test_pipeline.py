@@ -99,7 +99,7 @@ def test_the_drawn_photo_gives_the_true_depths(made, scene):
         assert np.abs(ratio / np.median(ratio) - 1).max() < 0.02
 
 
-def test_the_drawn_photo_gives_the_true_faces(made, scene):
+def test_the_drawn_photo_gives_the_true_faces(scene):
     # The front and the side of each box, as planes that hold at least six of its lines.
     component = dict(zip(scene.lines.id.tolist(), scene.lines.component.tolist(), strict=True))
     large = {(component[plane.lines[0]], plane.axis) for plane in scene.planes if len(plane.lines) >= 6}
