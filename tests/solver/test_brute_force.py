@@ -8,6 +8,8 @@ import pytest
 from hypothesis import Phase, find, given, settings
 from hypothesis import strategies as st
 
+import solver.gain
+import solver.separation
 from solver.problem import FAMILIES, FORMULATIONS, SolveOptions, solve
 
 ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
@@ -166,6 +168,27 @@ def test_the_optimum_is_that_of_brute_force(build_graph, formulation, without, p
     assert solution.objective == pytest.approx(value.max(), abs=1e-6)
     assert value[number] == pytest.approx(value.max(), abs=1e-6)
     assert solution.bound == pytest.approx(value.max(), abs=1e-6)
+
+
+@pytest.mark.parametrize("without", ALL_WITHOUT, ids=lambda families: "-".join(sorted(families)) or "none")
+@given(problem=problems())
+@settings(max_examples=40, deadline=None)
+def test_branch_and_cut_alone_finds_it_too(build_graph, without, problem):
+    """Without relaxations, seeds and a good start before it, which decide most graphs of this size."""
+    graph = build_graph(**problem[0])
+    options = SolveOptions(formulation="gain", without=without, **problem[1])
+    find = solver.gain.find_start
+
+    def find_nothing(*arguments, real, **_):
+        return find(*arguments, real=real, fake=~real)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(solver.gain, "ROUNDS", 0)
+        patch.setattr(solver.gain, "find_start", find_nothing)
+        patch.setattr(solver.separation, "find_short_cycles", lambda _: [])
+        solution = solve(graph, options)
+    assert solution.status == "optimal"
+    assert solution.objective == pytest.approx(values(graph, options).max(), abs=1e-6)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
