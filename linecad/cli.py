@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from solver.problem import Progress
 
 SCENE_SUFFIX = ".json"
+LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -99,14 +100,17 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.add_argument(
         "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
     )
-    convert.add_argument("--mu-boundary", type=_not_negative, metavar="MU2", help="reward of non-boundary lines (10)")
+    convert.add_argument(
+        "--mu-boundary", type=_not_negative, metavar="MU2",
+        help="reward of non-boundary lines (1, but 10 with --formulation paper)",
+    )  # fmt: skip
     convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
     convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
     )
     convert.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
     convert.add_argument(
-        "--extension", type=_positive, default=30.0, metavar="PX",
+        "--extension", type=_extension, default=30.0, metavar="PX",
         help="how far segments are extended to find crossings, px on a photo 3840 px wide (30)",
     )  # fmt: skip
     convert.add_argument(
@@ -164,6 +168,15 @@ def _not_negative(text: str) -> float:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
+    return value
+
+
+def _extension(text: str) -> float:
+    value = _positive(text)
+    if value > LARGEST_EXTENSION:
+        raise argparse.ArgumentTypeError(
+            f"{text} px would let all lines cross; at most {LARGEST_EXTENSION:.0f} make sense"
+        )
     return value
 
 
@@ -239,8 +252,10 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     path = parsed.photo if parsed.photo is not None else beside if beside.is_file() else None
     if path is None:
         return None
-    if scene.camera.distortion and parsed.camera is None:
-        raise LinecadError(f"{scene.photo} was undistorted; give its calibration with --camera")
+    # Only the camera file can say how its pixels were made square; that it did is told by a note alone.
+    resampled = bool(scene.camera.distortion) or any("pixels made square" in note for note in scene.notes)
+    if resampled and parsed.camera is None:
+        raise LinecadError(f"{scene.photo} was straightened by its calibration; give that with --camera")
     return read_photo(path, parsed.camera, None if parsed.camera else scene.camera.focal)
 
 

@@ -20,6 +20,7 @@ from PIL import Image
 from exporters.formats import FORMATS
 from linecad import __version__
 from linecad.cli import main
+from solver.problem import BACKENDS, FORMULATIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
@@ -347,6 +348,7 @@ import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 from linecad.cli import main
+from solver.problem import BACKENDS, FORMULATIONS
 sys.exit(main(sys.argv[1:]))
 """
 
@@ -416,3 +418,22 @@ def test_ctrl_c_before_the_solver_writes_nothing(folder):
     assert lines[-1].startswith("linecad: interrupted")
     assert not any("Traceback" in line for line in lines)
     assert list(folder.iterdir()) == []
+
+
+def test_choices_are_those_of_the_solver(capsys):
+    # The command line spells them out so that --help need not load the solver.
+    assert main_code(["convert", "--help"]) == 0
+    text = capsys.readouterr().out
+    assert "{" + ",".join(FORMULATIONS) + "}" in text
+    assert "{" + ",".join(BACKENDS) + "}" in text
+
+
+def test_an_extension_that_lets_all_lines_cross_is_refused(capsys):
+    assert main_code(["convert", "a.jpg", "-o", "a.dxf", "--extension", "1e9"]) == 2
+    assert "at most 500" in capsys.readouterr().err
+
+
+def main_code(arguments):
+    with pytest.raises(SystemExit) as ended:
+        main(arguments)
+    return ended.value.code

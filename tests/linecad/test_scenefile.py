@@ -237,7 +237,10 @@ REQUIRED = [
     *(f"planes[0].faces[0].{key}" for key in ("id", "outline")),
     *(f"solve.{key}" for key in ("solver", "formulation", "status", "objective", "bound", "gap", "seconds")),
 ]
-OPTIONAL = ["camera.distortion", "metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"]
+OPTIONAL = [
+    *("camera.distortion", "metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
+    *("solve.cuts", "solve.nodes"),
+]
 
 
 def place_in(document: Any, place: str) -> tuple[Any, Any]:
