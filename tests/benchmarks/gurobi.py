@@ -33,7 +33,9 @@ def solve_by_gurobi(graph: LineGraph, options: SolveOptions) -> tuple[str, float
     if max(model.getNVars(), model.getNConss()) > MOST:
         raise SkippedError(f"{model.getNVars()} variables and {model.getNConss()} rows, its licence takes {MOST}")
     with tempfile.TemporaryDirectory() as folder:
-        file = str(Path(folder) / "paper.lp")
+        file = str(
+            Path(folder) / "paper.mps"
+        )  # SCIP writes the constant of the objective to LP files as Gurobi does not read it
         model.writeProblem(file, verbose=False)
         try:
             environment = gurobi.Env(params={"OutputFlag": 0, "Threads": 1, "MIPGap": 0.0})
