@@ -101,6 +101,7 @@ class Watch(Eventhdlr):
         self.bound_only = bound_only
         self.nodes_before = reporter.nodes if bound_only else 0
         self.failure: Exception | None = None
+        self.is_over = False
         model.includeEventhdlr(self, "linecad_watch", "notes progress")
 
     def eventinit(self) -> None:
@@ -110,6 +111,10 @@ class Watch(Eventhdlr):
 
     def eventexec(self, event: object) -> None:  # noqa: ARG002 - the signature that SCIP calls
         """Note the numbers of the moment."""
+        if (
+            self.is_over
+        ):  # freeing a stopped search sends events too; with no open node left the bound would look proven
+            return
         try:
             self.note(self.model)
         except Exception as failure:  # PySCIPOpt would print it and go on; it is raised after the solve instead
@@ -148,6 +153,7 @@ def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event
     except Exception as failure:  # PySCIPOpt has no narrower class for the return codes of SCIP
         raise SolverError(f"SCIP failed: {failure}; try another seed") from failure
     watch.note(model)
+    watch.is_over = True
     return Outcome(status_of(model.getStatus()), model.getNSols() > 0)
 
 

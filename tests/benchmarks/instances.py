@@ -41,6 +41,7 @@ class Size:
 
 PAPER_SIZE = Size(lines=215, buildings=6, bay=0.76, shortest=36, extension=26)
 LADDER = {
+    "small": Size(lines=26, buildings=6, bay=0.76, shortest=36, extension=26),  # fits a size-limited licence
     "paper": PAPER_SIZE,
     "640": Size(lines=640, buildings=6, bay=0.44, shortest=22, extension=22),
     "2000": Size(lines=2000, buildings=8, bay=0.26, shortest=9, extension=12),

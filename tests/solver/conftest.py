@@ -1,6 +1,10 @@
 """Line graphs of made scenes: lines in space, a camera, and the records that an honest front end would hand over."""
 
+import importlib.util
+import sys
 from dataclasses import replace
+from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -111,3 +115,14 @@ def street(build_graph):
 def alley(build_graph):
     """36 lines with 52 crossings, most of them fake: without P and B formulation "gain" takes hundreds of nodes."""
     return build_graph(*street_lines(36), tolerance=0.004)
+
+
+@pytest.fixture(scope="session")
+def street_graph():
+    """The line graph of a made street of the benchmarks, by seed and number of lines; each is drawn once."""
+    path = Path(__file__).parents[1] / "benchmarks" / "instances.py"
+    spec = importlib.util.spec_from_file_location("benchmark_instances", path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # dataclasses look their module up there
+    spec.loader.exec_module(module)
+    return cache(lambda seed, lines: module.make_instance(seed, replace(module.PAPER_SIZE, lines=lines)).graph)

@@ -3,6 +3,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from itertools import pairwise
 from pathlib import Path
@@ -13,9 +14,12 @@ import pytest
 
 from linecad.errors import SolverError
 from linecad.scene import Status
+from solver.depths import end_ratios
+from solver.families import find_families
+from solver.milp import build_model
 from solver.problem import SolveOptions, solve
 from solver.progress import Reporter
-from solver.scip import SCIP_STATUSES, status_of
+from solver.scip import SCIP_STATUSES, Watch, run, status_of
 
 HERE = Path(__file__).parent
 HARD = frozenset({"planarity", "boundary"})  # off: what is left keeps SCIP busy for minutes on the street
@@ -127,6 +131,9 @@ INTERRUPTED_SOLVE = """
 import json, sys
 sys.path.insert(0, sys.argv[1])
 from conftest import line_graph, street_lines
+from solver.depths import end_ratios
+from solver.families import find_families
+from solver.milp import build_model
 from solver.problem import SolveOptions, solve
 def told(progress):
     if progress.seconds > 0.3:
@@ -159,6 +166,18 @@ def test_ctrl_c_keeps_the_best_solution_and_prints_nothing():
     assert crossings > 20
     assert is_open
     assert seconds < 20
+
+
+def test_freeing_a_stopped_search_proves_nothing(street):
+    """SCIP sends events while it frees its tree; the bound of the emptied tree once ended in "optimal"."""
+    options = SolveOptions(formulation="paper", without=HARD, node_limit=1)
+    ratios, families = end_ratios(street), find_families(street, HARD)
+    reporter = Reporter(time.monotonic(), 0.0, 1e6, None)
+    model = build_model(street, families, options, ratios).model
+    run(model, options, Watch(model, reporter), threading.Event())
+    bound = reporter.bound
+    model.freeTransform()
+    assert reporter.bound == bound > reporter.objective
 
 
 def test_options_reach_scip(corner, monkeypatch):
