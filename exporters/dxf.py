@@ -66,6 +66,9 @@ def _build_document(scene: Scene) -> Drawing:
         _add_face(document, face)
     _add_properties(document, scene, model)
     _set_view(document, model)
+    # ezdxf takes these from a set, whose order differs from run to run; what is there already stays where it is.
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
     return document
 
 

@@ -20,6 +20,7 @@ from OCP.Interface import Interface_Static
 from OCP.Message import Message, Message_Gravity
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
 from OCP.Standard import Standard_Failure
+from OCP.StdFail import StdFail_NotDone
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_Controller, STEPControl_StepModelType
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
@@ -50,8 +51,11 @@ def write(scene: Scene, path: Path) -> None:
     with _silence():
         try:
             data = _written(_build_document(model), model)
-        except Standard_Failure as error:
-            raise OSError(f"the STEP library failed with {type(error).__name__}") from error
+        except (Standard_Failure, StdFail_NotDone) as error:
+            # The binding does not derive the second from the first; it ends edges of no length in its own tolerance.
+            raise OSError(
+                f"the STEP library failed with {type(error).__name__}; are lengths of the scene far off metres?"
+            ) from error
     path.write_text(canonical(data.decode()), encoding="utf-8", newline="\n")
 
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from solver.problem import Progress
 
 SCENE_SUFFIX = ".json"
+SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibration
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
 
 
@@ -248,7 +249,7 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     """The photo of a scene: as named, else beside the scene file, else none (the picture then says so)."""
     from linecad.photo import read_photo
 
-    beside = parsed.scene.parent / scene.photo
+    beside = parsed.scene.parent / Path(scene.photo).name  # a scene file does not send us to other folders
     path = parsed.photo if parsed.photo is not None else beside if beside.is_file() else None
     if path is None:
         return None
@@ -256,7 +257,17 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     resampled = bool(scene.camera.distortion) or any("pixels made square" in note for note in scene.notes)
     if resampled and parsed.camera is None:
         raise LinecadError(f"{scene.photo} was straightened by its calibration; give that with --camera")
-    return read_photo(path, parsed.camera, None if parsed.camera else scene.camera.focal)
+    photo = read_photo(path, parsed.camera, None if parsed.camera else scene.camera.focal)
+    if (photo.width, photo.height) != (scene.camera.width, scene.camera.height):
+        raise LinecadError(
+            f"{path} has {photo.width} x {photo.height} px, the scene's photo {scene.camera.width} x "
+            f"{scene.camera.height}; name the right one with --photo"
+        )
+    if photo.camera is not None and parsed.camera is not None:
+        same = abs(photo.camera.matrix - scene.camera.matrix).max() <= SAME_CAMERA * scene.camera.focal
+        if not same or photo.camera.distortion != scene.camera.distortion:
+            raise LinecadError(f"{parsed.camera} is not the calibration that the scene was made with; give that one")
+    return photo
 
 
 def _check_outputs(outputs: list[Path], inputs: list[Path | None]) -> None:

@@ -67,9 +67,10 @@ def reconstruct(
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
     segments = group_segments(label_segments(raw, camera, frame), camera, frame)
-    graph = _kept(
-        build_line_graph(segments, camera, frame, options.extension, options.weights, options.collinear), options
-    )
+    whole = build_line_graph(segments, camera, frame, options.extension, options.weights, options.collinear)
+    graph = _kept(whole, options)
+    if len(graph.segments) < len(whole.segments):
+        notes.append(_left_out(len(whole.segments) - len(graph.segments), "touch too few others in the photo", options))
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = _within_groups(graph, solve(graph, options.solve, on_progress))
     on_stage("lifting the lines into space")
@@ -169,7 +170,9 @@ def _scene(
         in_tree=spanning_tree(graph, real & telling, lifted.residual)[inside],
         weight=graph.weight[inside],
     )
-    notes += _doubts(solution, parts, dropped, lifted.shift[kept])
+    if dropped:
+        notes.append(_left_out(dropped, "meet too few others in space", options))
+    notes += _doubts(solution, parts, lifted.shift[kept])
     return Scene(
         photo=photo.name,
         camera=camera,
@@ -212,18 +215,23 @@ def _confidence(solution: Solution, component: Int, hinged: Bool) -> Text:
     return np.asarray(np.where(component == 0, word, "weak"), np.str_)
 
 
-def _doubts(solution: Solution, parts: list[Int], dropped: int, shift: Float) -> list[str]:
+def _left_out(count: int, why: str, options: ReconstructOptions) -> str:
+    other = ", or not the largest group," if options.largest_component else ""
+    return f"{count} lines {why}{other} and are left out: a group has at least {MIN_COMPONENT}"
+
+
+def _doubts(solution: Solution, parts: list[Int], shift: Float) -> list[str]:
     notes = []
-    if solution.status != "optimal":
+    if solution.status == "heuristic":
+        notes.append(f"the time was over before the exact search began; the gap is {solution.gap:.1%}")
+    elif solution.status != "optimal":
         ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"
         notes.append(f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal")
     if len(parts) > 1:
         notes.append(
-            f"{len(parts) - 1} smaller groups of lines have a scale of their own; they are placed at the depth of "
+            f"{len(parts) - 1} smaller groups of lines, each with a scale of its own, are placed at the depth of "
             "their neighbours in the photo and marked weak"
         )
-    if dropped:
-        notes.append(f"{dropped} lines meet none of the others in space and are left out")
     moved = int((shift > SHIFT_NOTED).sum())
     if moved:
         notes.append(f"{moved} lines moved by up to {np.degrees(shift.max()):.1f} degrees to meet the others exactly")

@@ -126,3 +126,11 @@ def test_the_setting_of_ezdxf_is_as_before(scene, tmp_path):
     before = ezdxf.options.write_fixed_meta_data_for_testing
     export(scene, tmp_path / "a.dxf")
     assert ezdxf.options.write_fixed_meta_data_for_testing == before
+
+
+def test_classes_stand_in_an_order_that_no_hash_decides(document):
+    # ezdxf adds those in use from a set of strings, so that two runs wrote different files.
+    names = [entry.dxf.name for entry in document.classes]
+    used = [name for name in names if name in document.entitydb.dxf_types_in_use()]
+    assert len(used) > 1
+    assert used == sorted(used)

@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTo
 from exporters.colours import FACE, line_colour
 from exporters.formats import export
 from exporters.model import FREE_UNIT, build_model, signed_area
+from linecad.errors import OutputError
 
 MILLIMETRES = 1000.0  # per metre
 
@@ -162,3 +164,11 @@ def test_lines_alone_keep_their_names(no_faces, tmp_path):
 def test_nothing_is_printed(scene, tmp_path, capfd):
     export(scene, tmp_path / "a.step")
     assert capfd.readouterr() == ("", "")
+
+
+def test_lengths_that_the_library_takes_for_zero_are_an_error_of_one_line(scene, tmp_path):
+    # It ended in a traceback: StdFail_NotDone does not derive from Standard_Failure in Python.
+    with pytest.raises(OutputError, match="STEP library failed") as raised:
+        export(replace(scene, metres_per_unit=1e-12), tmp_path / "tiny.step")
+    assert "\n" not in str(raised.value)
+    assert list(tmp_path.iterdir()) == []

@@ -433,6 +433,30 @@ def test_an_extension_that_lets_all_lines_cross_is_refused(capsys):
     assert "at most 500" in capsys.readouterr().err
 
 
+def test_a_photo_of_another_size_is_refused_for_the_picture(scene_file, folder, capsys):
+    Image.new("RGB", (400, 300)).save("other.png")
+    assert main(["export", str(scene_file), "--photo", "other.png", "-o", "a.png", "--quiet"]) == 1
+    assert "has 400 x 300 px, the scene's photo 1600 x 1067" in capsys.readouterr().err
+    assert not (folder / "a.png").exists()
+
+
+def test_a_calibration_that_is_not_the_scenes_is_refused_for_the_picture(scene_file, folder, capsys):
+    arguments = ["--photo", str(SAMPLES / "courtyard.jpg"), "--camera", str(SAMPLES / "courtyard.json")]
+    assert main(["export", str(scene_file), *arguments, "-o", "a.png", "--quiet"]) == 1
+    assert "not the calibration that the scene was made with" in capsys.readouterr().err
+    assert not (folder / "a.png").exists()
+
+
+def test_a_scene_file_sends_nobody_to_another_folder(scene_file, folder):
+    (folder / "inside").mkdir()
+    shutil.copy(ROOM, folder / "secret.jpg")
+    text = scene_file.read_text(encoding="utf-8").replace('"room.jpg"', '"../secret.jpg"')
+    (folder / "inside" / "scene.json").write_text(text, encoding="utf-8")
+    assert main(["export", "inside/scene.json", "-o", "without.png", "--quiet"]) == 0
+    assert main(["export", "inside/scene.json", "--photo", "secret.jpg", "-o", "with.png", "--quiet"]) == 0
+    assert (folder / "without.png").read_bytes() != (folder / "with.png").read_bytes()
+
+
 def main_code(arguments):
     with pytest.raises(SystemExit) as ended:
         main(arguments)
