@@ -8,10 +8,18 @@ import numpy as np
 
 from linecad.scene import Float
 
+REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
+DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
+
 
 def homogeneous(points: Float) -> Float:
     """(..., 2) points as (..., 3) with a one appended."""
     return np.concatenate([points, np.ones((*points.shape[:-1], 1))], axis=-1)
+
+
+def central_camera(focal: float, width: int, height: int) -> Float:
+    """Camera matrix (3, 3) with the principal point in the middle of a photo of `width` x `height` px."""
+    return np.array([[focal, 0.0, (width - 1) / 2], [0.0, focal, (height - 1) / 2], [0.0, 0.0, 1.0]])
 
 
 def world_rays(pixels: Float, K: Float, R: Float) -> Float:

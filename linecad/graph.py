@@ -11,10 +11,9 @@ from typing import Literal
 import networkx as nx
 import numpy as np
 
-from linecad.geometry import directions_to, vanishing_points, world_rays
+from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points, world_rays
 from linecad.scene import Bool, Camera, Float, Int, LineGraph, ManhattanFrame, Segments, Text
 
-REFERENCE_WIDTH = 3840.0  # px, the paper's photos; `extension` and the lengths below are scaled with the width
 EXTENSION = 30.0  # px at the reference width, the paper's value
 EXTENSION_FLOOR = 5.0  # px in any photo: the ends of a segment are not known better
 MIN_LENGTH = 25.0  # px at the reference width; shorter segments are no lines of the graph

@@ -14,9 +14,9 @@ from PIL import ExifTags
 from linecad.calibration import FOCAL_RANGE, Calibration, check_focal, read_calibration, undistort_photo
 from linecad.decoding import Decoded, decode_image
 from linecad.errors import CameraError
+from linecad.geometry import DIAGONAL_35MM, central_camera
 from linecad.scene import Camera, CameraSource
 
-DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
 ASPECT_TOLERANCE = 0.01  # relative; rounding to whole pixels changes the aspect of a scaled photo by less
 SCALE_TOLERANCE = 0.002  # relative; below it a photo counts as not resized
 RESOLUTION_TOLERANCE = 0.02  # relative; sensor resolutions that differ by more along x and y contradict each other
@@ -144,8 +144,7 @@ def _positive(value: Any) -> float:
 
 def _centred_camera(width: int, height: int, focal: float, source: CameraSource) -> Camera:
     """A camera with its principal point in the middle of the photo."""
-    matrix = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
-    return Camera(width, height, matrix, source)
+    return Camera(width, height, central_camera(focal, width, height), source)
 
 
 def _check_belongs(calibration: Calibration, camera_name: str, decoded: Decoded, photo_name: str) -> None:

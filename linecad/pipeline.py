@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linecad.errors import ReconstructionError
+from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
 from linecad.lifting import Lifted, lift
 from linecad.photo import Photo
@@ -26,7 +27,7 @@ from linecad.scene import (
     Text,
 )  # fmt: skip
 from linecad.segments import find_segments, group_segments, label_segments
-from linecad.vanishing import FOCAL_SIGMA, central_camera, default_focal, find_focal, find_frame
+from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import DEFAULT_MU_BOUNDARY, Progress, SolveOptions, solve
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing

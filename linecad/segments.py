@@ -8,11 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.geometry import angles_to, directions_to, vanishing_points
+from linecad.geometry import REFERENCE_WIDTH, angles_to, directions_to, vanishing_points
 from linecad.scene import Camera, Float, Int, ManhattanFrame, Segments
-
-# Lengths below are for a photo of this width and are scaled with the photo's own.
-REFERENCE_WIDTH = 3840.0  # px, the paper's photos
 
 SMALL_PHOTO_WIDTH = 1200  # px; below it the detector looks at an enlarged photo, for its noise floor is in pixels
 DETECTOR_SCALE = 0.8
@@ -46,9 +43,7 @@ def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) ->
     """The segments that point to one of the three vanishing points, labelled by it (the paper's D_i)."""
     limit = LABEL_ANGLE_SMALL if camera.width < SMALL_PHOTO_WIDTH else LABEL_ANGLE
     sines = angles_to(segments.ends, vanishing_points(camera.matrix, frame.rotation))
-    return Segments(segments.ends, np.where(sines.min(axis=0) < np.sin(limit), sines.argmin(axis=0), -1)).subset(
-        sines.min(axis=0) < np.sin(limit)
-    )
+    return Segments(segments.ends, sines.argmin(axis=0)).subset(sines.min(axis=0) < np.sin(limit))
 
 
 def group_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:

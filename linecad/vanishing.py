@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.errors import ReconstructionError
-from linecad.geometry import angles_to, plane_normals, rotation_about
+from linecad.geometry import DIAGONAL_35MM, angles_to, central_camera, plane_normals, rotation_about
 from linecad.scene import Float, Int, ManhattanFrame, Segments
 
 MIN_SEGMENTS = 12
@@ -23,7 +23,7 @@ SECOND_DIRECTION_SHARE = 0.02  # of the explained length that the second and thi
 FOCAL_RANGE = (0.4, 4.0)  # of the larger side of the photo
 FOCAL_CANDIDATES = 24
 FOCAL_DRAWS = 600
-DEFAULT_FOCAL_DIAGONALS = 28.0 / 43.27  # 28 mm equivalent: a phone's or compact's main lens
+DEFAULT_FOCAL_DIAGONALS = 28.0 / DIAGONAL_35MM  # 28 mm equivalent: a phone's or compact's main lens
 FOCAL_STEP = 1e-5  # relative, for the derivative
 LARGEST_FOCAL_STEP = 0.1  # relative, in one iteration
 FOCAL_SIGMA = 0.10  # relative standard error above which the vanishing points do not tell the focal length
@@ -66,11 +66,6 @@ def find_focal(segments: Segments, width: int, height: int, seed: int = 0) -> Fo
         if score > best[0]:
             best = (score, float(focal), axes)
     return _refine_focal(ends, weight, best[1], best[2], width, height)
-
-
-def central_camera(focal: float, width: int, height: int) -> Float:
-    """Camera matrix (3, 3) with the principal point in the middle of the photo."""
-    return np.array([[focal, 0.0, (width - 1) / 2], [0.0, focal, (height - 1) / 2], [0.0, 0.0, 1.0]])
 
 
 def default_focal(width: int, height: int) -> float:

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from linecad.geometry import (
     angles_to,
+    central_camera,
     directions_to,
     homogeneous,
     plane_normals,
@@ -84,3 +85,7 @@ def test_rotation_about_nothing_is_the_identity():
 def test_rotation_stays_orthogonal_for_tiny_and_half_turns(angle):
     turned = rotation_about(angle * np.array([0.6, 0.0, 0.8]))
     np.testing.assert_allclose(turned @ turned.T, np.eye(3), atol=1e-14)
+
+
+def test_central_camera_looks_through_the_middle_of_the_photo():
+    assert central_camera(500, 640, 481).tolist() == [[500, 0, 319.5], [0, 500, 240], [0, 0, 1]]

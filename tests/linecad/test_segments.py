@@ -4,12 +4,11 @@ import cv2
 import numpy as np
 import pytest
 
-from linecad.geometry import angles_to, vanishing_points
+from linecad.geometry import REFERENCE_WIDTH, angles_to, vanishing_points
 from linecad.scene import Segments
 from linecad.segments import (
     GROUP_ACROSS,
     GROUP_ALONG,
-    REFERENCE_WIDTH,
     find_segments,
     group_segments,
     label_segments,

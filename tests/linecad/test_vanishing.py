@@ -8,7 +8,6 @@ from linecad.geometry import rotation_about, vanishing_points
 from linecad.scene import Segments
 from linecad.vanishing import (
     MIN_SEGMENTS,
-    central_camera,
     default_focal,
     find_focal,
     find_frame,
@@ -120,10 +119,6 @@ def test_focal_length_of_a_frontal_photo_cannot_be_told(made):
     ends = np.stack([start, start + along], axis=1) + rng.normal(0, 0.2, (40, 2, 2))
     guess = find_focal(Segments(ends, np.full(40, -1)), made.camera.width, made.camera.height)
     assert guess.relative_error > 0.1
-
-
-def test_central_camera_looks_through_the_middle_of_the_photo():
-    assert central_camera(500, 640, 481).tolist() == [[500, 0, 319.5], [0, 500, 240], [0, 0, 1]]
 
 
 def test_default_focal_is_that_of_a_28_mm_lens():
