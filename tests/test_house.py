@@ -24,7 +24,7 @@ FLOORS = [
     ["linecad"],
     ["linecad.errors"],
     ["linecad.scene", "linecad.strictjson", "linecad.files"],
-    ["linecad.scenedocument", "linecad.geometry"],
+    ["linecad.scenedocument", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
     ["linecad.scenefile"],
     ["linecad.calibration", "linecad.decoding"],  # parts of the photo stage
     ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph", "linecad.lifting", "linecad.planes"],
