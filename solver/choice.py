@@ -8,7 +8,7 @@ import numpy as np
 from linecad.errors import SolverError
 from linecad.scene import Bool, Float, Int, LineGraph
 from solver.depths import end_ratios
-from solver.families import Families, find_two_sides
+from solver.families import Families
 from solver.problem import SolveOptions
 
 RECHECK_TOLERANCE = 1e-6  # log depth, what rounding may add to an edge's own tolerance
@@ -26,28 +26,25 @@ class Choice:
 
 def boundaries(graph: LineGraph, connected: Bool) -> Bool:
     """(N,) the lines that meet lines of both other axes: the smallest B that (19) allows for these crossings."""
-    found = np.zeros(len(graph.segments), bool)
-    for line in find_two_sides(graph):
-        lower, higher = line.sides
-        found[line.line] = connected[list(lower)].any() and connected[list(higher)].any()
+    i, j = graph.edges[connected & (graph.kind != "collinear")].T
+    met = np.zeros((len(graph.segments), 3), bool)
+    met[i, graph.axis[j]] = True
+    met[j, graph.axis[i]] = True
+    found: Bool = met.sum(axis=1) == 2
     return found
 
 
 def planar_pairs(families: Families, connected: Bool) -> Int:
     """(P, 3) every pair that fits one of its planes, (12) to (17), with the first of the two that it fits."""
-    if not families.pairs:
+    pairs = families.pairs
+    if len(pairs) == 0:
         return np.zeros((0, 3), np.int64)
-    members = [(m.first, m.second, m.axis == pair.axes[0]) for pair in families.pairs for m in pair.shared]
-    first, second, along = np.array(members, np.int64).T
-    start = np.concatenate([[0], np.cumsum([len(pair.shared) for pair in families.pairs])[:-1]])
-    unequal = connected[first] != connected[second]
-    both = connected[first] & connected[second]
+    unequal = connected[pairs.first] != connected[pairs.second]
+    both = connected[pairs.first] & connected[pairs.second]
+    along, start = pairs.along, pairs.start[:-1]
     fits = [~np.logical_or.reduceat(np.where(along == (plane == 0), unequal, both), start) for plane in range(2)]
-    rows = [
-        (*families.pairs[k].lines, families.pairs[k].axes[0 if fits[0][k] else 1])
-        for k in np.flatnonzero(fits[0] | fits[1]).tolist()
-    ]
-    return np.array(rows, np.int64).reshape(-1, 3)
+    rows = np.column_stack([pairs.lines, np.where(fits[0], pairs.axes[:, 0], pairs.axes[:, 1])])
+    return rows[fits[0] | fits[1]]
 
 
 def objective_of(graph: LineGraph, options: SolveOptions, choice: Choice) -> float:

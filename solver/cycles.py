@@ -21,7 +21,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra, minimum_spanning_tree
 
 from linecad.scene import Bool, Float, Int, LineGraph
-from solver.families import find_four_cycles, find_three_cycles
+from solver.families import find_three_cycles, four_cycle_table
 from solver.potentials import SLACK, fit_near_depths
 
 LEAST_VIOLATION = 1e-3  # by which a fractional choice must break a cycle's row
@@ -56,11 +56,9 @@ def find_short_cycles(graph: LineGraph) -> list[Cycle]:
     All four crossings of an xyxy cycle speak about one coordinate; the c are differences of log|d_i| there and cancel.
     """
     found: list[Cycle] = []
-    for cycles in (find_three_cycles(graph), find_four_cycles(graph)):
-        if cycles:
-            table = np.array(cycles)
-            off, width = _around(graph, table)
-            found += [tuple(sorted(cycle)) for cycle in table[np.abs(off) > width].tolist()]
+    for table in (np.array(find_three_cycles(graph), np.int64).reshape(-1, 3), four_cycle_table(graph)):
+        off, width = _around(graph, table)
+        found += [tuple(cycle) for cycle in np.sort(table[np.abs(off) > width], axis=1).tolist()]
     return found
 
 

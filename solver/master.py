@@ -63,21 +63,17 @@ class Planes:
 
     def __init__(self, families: Families, mu: float) -> None:
         self.mu = mu
-        self.pairs = [pair for pair in families.pairs if len(pair.shared) > 1]
+        self.pairs = families.pairs.subset(np.diff(families.pairs.start) > 1)
         self.column: dict[int, int] = {}  # of the pairs that have a column
-        members = [(number, m) for number, pair in enumerate(self.pairs) for m in pair.shared]
-        self.first = np.array([m.first for _, m in members], np.int64)
-        self.second = np.array([m.second for _, m in members], np.int64)
-        self.along = np.array([m.axis == self.pairs[number].axes[0] for number, m in members], bool)
-        sizes = [len(pair.shared) for pair in self.pairs]
-        self.start = np.concatenate([[0], np.cumsum(sizes)[:-1]]).astype(np.int64) if sizes else np.zeros(0, np.int64)
+        self.first, self.second, self.along = self.pairs.first, self.pairs.second, self.pairs.along
+        self.start = self.pairs.start[:-1]
 
     def broken(self, x: Float, least: float = LEAST_VIOLATION) -> list[tuple[int, Row]]:
         """Pairs whose z is too large for the b in `x`, most broken first, each with its tightest row (z's place is -1).
 
         `x` are the values of all columns; a pair without a column has z = 1.
         """
-        if not self.pairs:
+        if len(self.pairs) == 0:
             return []
         one, other = x[self.first], x[self.second]
         unequal, both = 1 - np.abs(one - other), 2 - one - other
@@ -90,7 +86,7 @@ class Planes:
         found = []
         for number in np.flatnonzero(excess > least).tolist():
             begin = int(self.start[number])
-            end = begin + len(self.pairs[number].shared)
+            end = int(self.pairs.start[number + 1])
             sides = [begin + int(np.argmin(bound[begin:end])) for bound in bounds]
             found.append((number, self._row(sides, x)))
         found.sort(key=lambda entry: -excess[entry[0]])
@@ -189,6 +185,7 @@ def fill(program: Program, connected: Bool, planes: Planes, families: Families, 
         x[column] = all(met)
         column += 1
     known = {(first, second) for first, second, _ in planar.tolist()}
+    lines = [(first, second) for first, second in planes.pairs.lines.tolist()]
     for number, place in planes.column.items():
-        x[place] = planes.pairs[number].lines in known
+        x[place] = lines[number] in known
     return x
