@@ -37,7 +37,7 @@ from solver.potentials import fit_near_depths
 from solver.problem import Progress, SolveOptions, relative_gap
 from solver.progress import Reporter, catch_interrupt
 from solver.separation import Separation
-from solver.start import find_start
+from solver.start import Starter
 
 ROUNDS = 200  # of the relaxation, at most
 TAIL = 8  # rounds
@@ -111,7 +111,8 @@ class _Search:
         self.families: Families = find_families(graph, options.without | {"cycles"})
         self.real, self.fake = read_facts(graph, options)
         check_facts(graph, self.families, options, self.real, self.ratios)
-        self.best: Choice = self._guess(None)
+        self.starter = Starter(graph, self.families, options, self.ratios, self.real, self.fake)
+        self.best: Choice = self.starter.find()
         self.value = objective_of(graph, options, self.best)
         bound = trivial_bound(graph, self.families, options)
         self.reporter = Reporter(began, self.value, bound, on_progress)
@@ -173,12 +174,7 @@ class _Search:
         evidence = np.clip(x[: len(self.graph.edges)], 0, 1) + TIE * self.graph.weight / self.graph.weight.max(
             initial=1
         )
-        self._offer(self._guess(evidence))
-
-    def _guess(self, evidence: Float | None) -> Choice:
-        return find_start(
-            self.graph, self.families, self.options, self.ratios, evidence, real=self.real, fake=self.fake
-        )
+        self._offer(self.starter.find(evidence))
 
     def _fix(self, program: Program, last: Relaxed) -> None:
         """Fix Booleans whose reduced cost says that the other value cannot be better than what is known."""

@@ -19,7 +19,7 @@ from solver.potentials import fit_near_depths
 from solver.problem import Progress, SolveOptions, relative_gap
 from solver.progress import Reporter, catch_interrupt
 from solver.scip import Outcome, Watch, run, version
-from solver.start import find_start
+from solver.start import Starter
 
 
 def solve_paper(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progress], None] | None) -> Solution:
@@ -31,7 +31,7 @@ def solve_paper(graph: LineGraph, options: SolveOptions, on_progress: Callable[[
         families = find_families(graph, options.without)
         real, fake = read_facts(graph, options)
         check_facts(graph, families, options, real, ratios)
-        start = find_start(graph, families, options, ratios, real=real, fake=fake)
+        start = Starter(graph, families, options, ratios, real, fake).find()
         recheck(graph, families, options, start)
         paper = build_model(graph, families, options, ratios)
         least, most = objective_of(graph, options, start), trivial_bound(graph, families, options)

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 import solver.gain
 import solver.separation
 from solver.problem import FAMILIES, FORMULATIONS, SolveOptions, solve
+from solver.start import Starter
 
 ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
 MOST_EDGES = 10
@@ -177,14 +178,9 @@ def test_branch_and_cut_alone_finds_it_too(build_graph, without, problem):
     """Without relaxations, seeds and a good start before it, which decide most graphs of this size."""
     graph = build_graph(**problem[0])
     options = SolveOptions(formulation="gain", without=without, **problem[1])
-    find = solver.gain.find_start
-
-    def find_nothing(*arguments, real, **_):
-        return find(*arguments, real=real, fake=~real)
-
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(solver.gain, "ROUNDS", 0)
-        patch.setattr(solver.gain, "find_start", find_nothing)
+        patch.setattr(solver.gain, "Starter", lambda *model: Starter(*model[:-1], ~model[-2]))
         patch.setattr(solver.separation, "find_short_cycles", lambda _: [])
         solution = solve(graph, options)
     assert solution.status == "optimal"

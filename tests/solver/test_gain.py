@@ -17,6 +17,7 @@ from solver.choice import Choice, recheck
 from solver.cycles import find_short_cycles
 from solver.families import find_families
 from solver.problem import FAMILIES, FORMULATIONS, SolveOptions, solve
+from solver.start import Starter
 
 HERE = Path(__file__).parent
 OFF = frozenset(FAMILIES)
@@ -113,12 +114,7 @@ def search_by_scip_alone(monkeypatch):
     """Take away what usually decides small graphs before branch and cut: relaxations, seeds, and the good start."""
     monkeypatch.setattr(solver.gain, "ROUNDS", 0)
     monkeypatch.setattr(solver.separation, "find_short_cycles", lambda _: [])
-    weak = solver.gain.find_start
-
-    def nothing(graph, families, options, ratios, evidence=None, real=None, fake=None):  # noqa: ARG001 - the same names
-        return weak(graph, families, options, ratios, evidence, real, fake=~real)
-
-    monkeypatch.setattr(solver.gain, "find_start", nothing)
+    monkeypatch.setattr(solver.gain, "Starter", lambda *model: Starter(*model[:-1], ~model[-2]))
 
 
 @pytest.mark.parametrize("mu_boundary", [0.4, 1.0])

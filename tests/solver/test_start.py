@@ -6,11 +6,12 @@ from solver.depths import end_ratios
 from solver.families import find_families
 from solver.milp import add_start, build_model
 from solver.problem import FAMILIES, SolveOptions
-from solver.start import find_start
+from solver.start import Starter
 
 
 def start_of(graph, options):
-    return find_start(graph, find_families(graph, options.without), options, end_ratios(graph))
+    none = np.zeros(len(graph.edges), bool)
+    return Starter(graph, find_families(graph, options.without), options, end_ratios(graph), none, none).find()
 
 
 @pytest.mark.parametrize("mu_boundary", [0.3, 1.0, 10.0])
@@ -28,7 +29,7 @@ def test_the_start_passes_the_re_check_and_beats_the_empty_choice(street, off, m
 def test_scip_finds_the_start_feasible(street, depth_range):
     options = SolveOptions(formulation="paper", depth_range=depth_range)
     ratios, families = end_ratios(street), find_families(street, options.without)
-    start = find_start(street, families, options, ratios)
+    start = start_of(street, options)
     paper = build_model(street, families, options, ratios)
     add_start(paper, start, ratios)
     paper.model.setParam("limits/solutions", 1)
