@@ -11,6 +11,9 @@ from solver.depths import end_ratios
 from solver.families import Families
 from solver.problem import SolveOptions
 
+MEASURES = (1.0, 0.5, 0.25, 0.1, 0.05)  # of weights and rewards
+MEASURE_ROUNDING = 1e-9  # relative to the measure, of a weight
+BOUND_ROUNDING = 0.01  # relative to the measure, what the arithmetic of a solver may take from its bound
 RECHECK_TOLERANCE = 1e-6  # log depth, what rounding may add to an edge's own tolerance
 
 
@@ -65,6 +68,23 @@ def trivial_bound(graph: LineGraph, families: Families, options: SolveOptions) -
     return bound
 
 
+def common_measure(graph: LineGraph, options: SolveOptions) -> float:
+    """The largest of a few round numbers that all weights and rewards are multiples of, or 0.
+
+    Then every objective is a multiple of it, and nothing lies between two of them.
+    """
+    terms = np.concatenate([graph.weight, [options.mu_planarity, options.mu_boundary]])
+    for measure in MEASURES:
+        if np.abs(terms / measure - np.rint(terms / measure)).max() < MEASURE_ROUNDING:
+            return measure
+    return 0.0
+
+
+def round_down(bound: float, measure: float) -> float:
+    """The largest objective that a bound allows, with room for what a solver's arithmetic may have taken from it."""
+    return float(np.floor(bound / measure + BOUND_ROUNDING) * measure) if measure else bound
+
+
 def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice: Choice) -> None:
     """Raise SolverError unless the choice keeps every promise of the model: depths, cycles, planes, boundaries.
 
@@ -99,17 +119,21 @@ def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice:
 
 
 def _recheck_planes(families: Families, choice: Choice) -> None:
-    known = {pair.lines: pair for pair in families.pairs}
-    seen = set()
-    for first, second, plane in choice.planar_pairs.tolist():
-        pair = known.get((first, second))
-        if pair is None or plane not in pair.axes or pair.lines in seen:
+    pairs = families.pairs
+    known = {(first, second): k for k, (first, second) in enumerate(pairs.lines.tolist())}
+    plane = np.full(len(pairs), -1)
+    for first, second, axis in choice.planar_pairs.tolist():
+        k = known.pop((first, second), None)
+        if k is None or axis not in pairs.axes[k]:
             _fail(f"names lines {first} and {second} as a planar pair, which they cannot be or are already")
-        seen.add(pair.lines)
-        for m in pair.shared:
-            both = int(choice.connected[m.first]) + int(choice.connected[m.second])
-            if both == (1 if m.axis == plane else 2):
-                _fail(f"breaks the plane of lines {first} and {second} at edges {m.first} and {m.second}")
+        plane[k] = axis
+    both = choice.connected[pairs.first].astype(int) + choice.connected[pairs.second]
+    of = plane[pairs.pair]
+    broken = np.flatnonzero((of >= 0) & (both == np.where(pairs.neighbour_axis == of, 1, 2)))
+    if len(broken):
+        m = int(broken[0])
+        first, second = pairs.lines[pairs.pair[m]].tolist()
+        _fail(f"breaks the plane of lines {first} and {second} at edges {pairs.first[m]} and {pairs.second[m]}")
 
 
 def _fail(what: str) -> NoReturn:

@@ -28,7 +28,17 @@ import numpy as np
 
 from linecad.scene import Bool, Float, LineGraph, Solution, Status
 from solver.backend import Backend, Relaxed
-from solver.choice import Choice, boundaries, objective_of, planar_pairs, recheck, trivial_bound
+from solver.choice import (
+    BOUND_ROUNDING,
+    Choice,
+    boundaries,
+    common_measure,
+    objective_of,
+    planar_pairs,
+    recheck,
+    round_down,
+    trivial_bound,
+)
 from solver.depths import end_ratios, near_log_ratio
 from solver.facts import check_facts, read_facts
 from solver.families import Families, find_families
@@ -36,7 +46,7 @@ from solver.master import Program, add_plane_column, build_master, fill
 from solver.potentials import fit_near_depths
 from solver.problem import Progress, SolveOptions, relative_gap
 from solver.progress import Reporter, catch_interrupt
-from solver.separation import Separation
+from solver.separation import Separation, is_integral
 from solver.start import Starter
 
 ROUNDS = 200  # of the relaxation, at most
@@ -114,6 +124,7 @@ class _Search:
         self.starter = Starter(graph, self.families, options, self.ratios, self.real, self.fake)
         self.best: Choice = self.starter.find()
         self.value = objective_of(graph, options, self.best)
+        self.measure = common_measure(graph, options)
         bound = trivial_bound(graph, self.families, options)
         self.reporter = Reporter(began, self.value, bound, on_progress)
         self.separation: Separation | None = None
@@ -158,9 +169,11 @@ class _Search:
                 return last
             last = solved
             values.append(solved.value)
-            self.reporter.note(self.value, solved.value, 0)
+            self.reporter.note(self.value, round_down(solved.value, self.measure), 0)
             rows = separation.extend(program, solved.x)
-            if turn % HEURISTIC_EVERY == 0 or not rows:
+            if not rows and is_integral(solved.x[: program.integers]):
+                self._take(solved.x[: program.integers] > 0.5)
+            elif not rows or turn % HEURISTIC_EVERY == HEURISTIC_EVERY - 1:
                 self._round(solved.x)
             self.reporter.report()
             gap = solved.value - self.value
@@ -174,11 +187,12 @@ class _Search:
         evidence = np.clip(x[: len(self.graph.edges)], 0, 1) + TIE * self.graph.weight / self.graph.weight.max(
             initial=1
         )
-        self._offer(self.starter.find(evidence))
+        self._offer(self.starter.round(evidence))
 
     def _fix(self, program: Program, last: Relaxed) -> None:
         """Fix Booleans whose reduced cost says that the other value cannot be better than what is known."""
-        allowed = last.value - self.value + SAFETY * max(1.0, abs(self.value))
+        least_step = (1 - BOUND_ROUNDING) * self.measure  # by which anything better is better
+        allowed = last.value - self.value - least_step + SAFETY * max(1.0, abs(self.value))
         b = last.x[: program.integers]
         decided = np.abs(last.reduced[: program.integers]) > allowed
         for edge in np.flatnonzero(decided & (b > 1 - SAFETY)).tolist():

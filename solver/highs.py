@@ -91,7 +91,7 @@ class HighsBackend:
             reporter.report()
             if answer.x is None:
                 return Integral(answer.status, None)
-            rows = separation.broken_rows(answer.x, is_integral=True)
+            rows = separation.broken_rows(answer.x, exact=True)
             if not rows:
                 return Integral(answer.status, answer.x)
             if answer.status not in ("optimal", "gap limit"):

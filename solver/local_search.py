@@ -35,9 +35,9 @@ class LocalSearch:
         self.weight = graph.weight
         self.mu_planarity, self.mu_boundary = options.mu_planarity, options.mu_boundary
         self.pairs, self.pair, self.along = families.pairs, families.pairs.pair, families.pairs.along
-        every: list[list[int]] = [[] for _ in range(len(graph.edges))]
+        edges = range(len(graph.edges))
         self.cycles = families.cycles
-        self.cycles_of = [list(each) for each in every]
+        self.cycles_of: list[list[int]] = [[] for _ in edges]
         for number, cycle in enumerate(families.cycles):
             for edge in cycle:
                 self.cycles_of[edge].append(number)
@@ -47,20 +47,24 @@ class LocalSearch:
         sizes = np.array([len(members) for members in self.sides], np.int64)
         self.side_edge = np.array([edge for members in self.sides for edge in members], np.int64)
         self.side = np.repeat(np.arange(len(sizes)), sizes)
-        self.sides_of = [list(each) for each in every]
+        self.sides_of: list[list[int]] = [[] for _ in edges]
         for edge, side in zip(self.side_edge.tolist(), self.side.tolist(), strict=True):
             self.sides_of[edge].append(side)
-        self.partners_of: list[list[tuple[int, int, int]]] = every  # pair, plane that needs both or none, other edge
+        # Of each edge: a pair, the plane that needs it and another edge to be both or none, that other edge.
+        self.partners_of: list[list[tuple[int, int, int]]] = [[] for _ in edges]
         members = np.column_stack([self.pair, np.where(self.along, 0, 1), self.pairs.first, self.pairs.second])
         for pair, plane, first, second in members.tolist():
             self.partners_of[first].append((pair, plane, second))
             self.partners_of[second].append((pair, plane, first))
         self.removals = self._find_removals(graph, families)
 
-    def run(self, agrees: Bool, real: Bool) -> Bool:
-        """(E,) the edges to connect, among those that agree with the depths; the real ones always."""
+    def run(self, agrees: Bool, real: Bool, begin: Bool) -> Bool:
+        """(E,) the edges to connect, among those that agree with the depths; the real ones always.
+
+        The search begins with the edges in `begin`, as far as no cycle closes.
+        """
         self.agrees, self.real = (agrees | real).tolist(), real.tolist()
-        self._begin(agrees, real)
+        self._begin(begin, real)
         for _ in range(PASSES):
             gain = 0.0
             gains = self._side_gains()
@@ -75,9 +79,9 @@ class LocalSearch:
                 break
         return np.array(self.chosen, bool)
 
-    def _begin(self, agrees: Bool, real: Bool) -> None:
-        """Every edge that agrees, heaviest first, as far as no cycle closes; and what follows from that."""
-        chosen = agrees | real
+    def _begin(self, edges: Bool, real: Bool) -> None:
+        """Take the edges, heaviest first, as far as no cycle closes; and what follows from that."""
+        chosen = edges | real
         if self.cycles:
             taken = real.tolist()
             self.missing = [sum(not taken[edge] for edge in cycle) for cycle in self.cycles]

@@ -24,7 +24,9 @@ class Fit:
     contradiction: Int  # edges, ascending
 
 
-def fit_near_depths(graph: LineGraph, step: Float, connected: Bool, log_range: float, guess: Float) -> Fit:
+def fit_near_depths(
+    graph: LineGraph, step: Float, connected: Bool, log_range: float, guess: Float, slack: float = SLACK
+) -> Fit:
     """The depths next to `guess` from below that fit the connected edges; `step` of `solver.depths.near_log_ratio`.
 
     A contradiction is a cycle of edges whose log ratios do not cancel within their tolerances, or a path between two
@@ -33,7 +35,7 @@ def fit_near_depths(graph: LineGraph, step: Float, connected: Bool, log_range: f
     lines = len(graph.segments)
     edges = np.flatnonzero(connected & graph.informative)
     i, j = graph.edges[edges].T
-    c, tolerance = step[edges], graph.tolerance[edges] + SLACK
+    c, tolerance = step[edges], graph.tolerance[edges] + slack
     every, ground = np.arange(lines), np.full(lines, lines)
     # n[head] <= n[tail] + width; the ground stands for depth 0
     head = np.concatenate([i, j, every, ground])

@@ -124,7 +124,7 @@ class LazyRows(Conshdlr):
 
     def consenfolp(self, *_: object) -> dict[str, int]:
         """Cut off an integral relaxation that breaks a row."""
-        return self._guard(lambda: SCIP_RESULT.CONSADDED if self._add(is_integral=True) else SCIP_RESULT.FEASIBLE)
+        return self._guard(lambda: SCIP_RESULT.CONSADDED if self._add(exact=True) else SCIP_RESULT.FEASIBLE)
 
     def consenfops(self, *_: object) -> dict[str, int]:
         """The same where the relaxation was not solved."""
@@ -133,7 +133,7 @@ class LazyRows(Conshdlr):
     def conssepalp(self, *_: object) -> dict[str, int]:
         """Cut off a fractional relaxation, if that can be done."""
         nothing = SCIP_RESULT.DIDNOTFIND
-        return self._guard(lambda: SCIP_RESULT.CONSADDED if self._add(is_integral=False) else nothing, nothing)
+        return self._guard(lambda: SCIP_RESULT.CONSADDED if self._add(exact=False) else nothing, nothing)
 
     def conslock(self, _constraint: Constraint, _kind: int, positive: int, negative: int) -> None:
         """A row may hold any variable back in either direction."""
@@ -146,8 +146,8 @@ class LazyRows(Conshdlr):
     def _breaks(self, solution: object) -> bool:
         return self.separation.breaks(self._values(solution))
 
-    def _add(self, is_integral: bool) -> int:
-        rows = self.separation.broken_rows(self._values(None), is_integral)
+    def _add(self, exact: bool) -> int:
+        rows = self.separation.broken_rows(self._values(None), exact)
         for row in rows:
             self.rows += 1
             add_row(self.model, self.x, row, f"lazy_{self.rows}")

@@ -17,6 +17,11 @@ LEAST_VIOLATION = 1e-3  # by which a point must break a seed
 MOST_PATH_WORK = 40_000_000  # roots times edges of one round of shortest paths
 
 
+def is_integral(b: Float) -> bool:
+    """Whether all values are 0 or 1 but for rounding."""
+    return bool(np.abs(b - np.rint(b)).max(initial=0) < ROUNDING)
+
+
 class Separation:
     """Knows the rows that a program has, and finds more."""
 
@@ -38,31 +43,34 @@ class Separation:
         self.roots = np.arange(0, len(graph.segments), max(1, len(graph.segments) * work // MOST_PATH_WORK))
 
     def extend(self, program: Program, x: Float) -> int:
-        """Add to a relaxed program rows that its optimum x breaks, with the columns that they need; how many."""
+        """Add to a relaxed program rows that its optimum x breaks, with the columns that they need; how many.
+
+        Where b is integral the answer is exact, as that of `broken_rows`.
+        """
         b = np.clip(x[: self.edges], 0, 1)
         found = self._broken_seeds(b)
         found += self._new(self.cycles.along_forest(b, MOST_CYCLES))
         if len(found) < FEW:
             found += self._new(self.cycles.along_paths(b, self.roots, MOST_CYCLES))
+        if not found and is_integral(b):
+            found = self._contradiction(b)
         planes = self.planes.broken(x)[:MOST_PLANES]
         program.rows += [cycle_row(cycle) for cycle in found]
         add_planes(program, self.planes, planes)
         self.cuts += len(found) + len(planes)
         return len(found) + len(planes)
 
-    def broken_rows(self, x: Float, is_integral: bool) -> list[Row]:
+    def broken_rows(self, x: Float, exact: bool) -> list[Row]:
         """Rows that x breaks and that the solver does not have; x has a column for every pair (`join_planes`).
 
-        For an integral x the answer is exact: there is none only if depths fit the crossings and every pair counted as
+        If `exact`, x must be integral: then there is none only if depths fit the crossings and every pair counted as
         planar is planar.
         """
         b = np.clip(x[: self.edges], 0, 1)
         found = self._broken_seeds(b) + self._new(self.cycles.along_forest(b, MOST_CYCLES))
-        if is_integral and not found:
-            contradiction = find_contradiction(self.graph, b > 0.5)
-            if len(contradiction):
-                found = self._new([tuple(contradiction.tolist())], repeat=True)
-        broken = self.planes.broken(x, ROUNDING if is_integral else LEAST_VIOLATION)
+        if exact and not found:
+            found = self._contradiction(b)
+        broken = self.planes.broken(x, ROUNDING if exact else LEAST_VIOLATION)
         planes = join_planes(self.planes, broken[:MOST_PLANES])
         self.cuts += len(found) + len(planes)
         return [cycle_row(cycle) for cycle in found] + planes
@@ -75,6 +83,11 @@ class Separation:
             or len(find_contradiction(self.graph, b > 0.5))
             or self.planes.broken(x, ROUNDING)
         )
+
+    def _contradiction(self, b: Float) -> list[Cycle]:
+        """A cycle that an integral b breaks, if depths do not fit it."""
+        contradiction = find_contradiction(self.graph, b > 0.5)
+        return self._new([tuple(contradiction.tolist())], repeat=True) if len(contradiction) else []
 
     def _broken_seeds(self, b: Float) -> list[Cycle]:
         excess = self.table @ b - self.allowed

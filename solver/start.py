@@ -14,6 +14,7 @@ from solver.potentials import fit_near_depths
 from solver.problem import SolveOptions
 
 SAFETY = 1e-9  # log depth, kept from every limit so that rounding cannot push the start over it
+HALF = 0.5  # of a crossing in a relaxation, from which a choice begins with it
 CERTAIN = 1e6  # evidence of a crossing that a person called real
 
 
@@ -34,23 +35,38 @@ class Starter:
         self.log_range = float(np.log(options.depth_range)) if options.formulation == "paper" else np.inf
         self.search = LocalSearch(graph, families, options)
 
-    def find(self, evidence: Float | None = None) -> Choice:
-        """A choice; `evidence` (E,), the weights if None, says how much each crossing is believed for the depths."""
+    def find(self) -> Choice:
+        """A choice made from the weights alone."""
         graph, real, fake = self.graph, self.real, self.fake
-        believed = graph.weight if evidence is None else evidence
-        believed = np.where(real, CERTAIN, np.where(fake, 0.0, believed))
-        near = _greedy_near_depths(graph, self.step, self.log_range, believed)
-        _settle(near, graph, self.step, self.log_range, believed)
+        evidence = np.where(real, CERTAIN, np.where(fake, 0.0, graph.weight))
+        near = _greedy_near_depths(graph, self.step, self.log_range, evidence)
+        _settle(near, graph, self.step, self.log_range, evidence)
         if real.any():
             near = fit_near_depths(graph, self.step, real, self.log_range, near).near
-        return self._best_for(near)
+        return self._best_for(near, None)
 
-    def _best_for(self, near: Float) -> Choice:
+    def round(self, value: Float) -> Choice:
+        """A choice near the values (E,) of a relaxation.
+
+        The edges above one half, less the weakest of each cycle that contradicts itself, fix the depths.
+        """
+        graph, real = self.graph, self.real
+        value = np.where(real, CERTAIN, np.where(self.fake | ~graph.possible, 0.0, value))
+        near = _greedy_near_depths(graph, self.step, self.log_range, value)
+        likely = value > HALF
+        while True:
+            fit = fit_near_depths(graph, self.step, likely, self.log_range, near, slack=-2 * SAFETY)
+            if len(fit.contradiction) == 0:
+                return self._best_for(fit.near, likely)
+            cycle = fit.contradiction
+            likely[cycle[np.argmin(value[cycle])]] = False
+
+    def _best_for(self, near: Float, likely: Bool | None) -> Choice:
         graph = self.graph
         i, j = graph.edges.T
         off = np.abs(near[i] - near[j] - self.step)
         agrees = ~self.fake & graph.possible & (~graph.informative | (off <= graph.tolerance - SAFETY))
-        connected = self.search.run(agrees, self.real)
+        connected = self.search.run(agrees, self.real, agrees if likely is None else agrees & likely)
         return Choice(
             connected=connected,
             is_boundary=boundaries(graph, connected),

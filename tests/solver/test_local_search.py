@@ -72,7 +72,7 @@ def test_toggling_adds_up_to_the_change_of_the_objective(street, search):
 def test_no_single_edge_improves_the_result(street, search):
     local, families, options = search
     agrees = np.random.default_rng(2).random(len(street.edges)) < 0.8
-    found = local.run(agrees, np.zeros(len(agrees), bool))
+    found = local.run(agrees, np.zeros(len(agrees), bool), agrees)
     assert not (found & ~agrees).any()
     best = value(street, families, options, found)
     for edge in np.flatnonzero(agrees):
@@ -87,7 +87,7 @@ def test_cycles_of_the_paper_are_kept_open(build_graph):
     families = find_families(graph, frozenset({"planarity", "boundary"}))
     assert len(families.three_cycles) == 1
     none, every = np.zeros(3, bool), np.ones(3, bool)
-    assert LocalSearch(graph, families, SolveOptions(formulation="paper")).run(every, none).tolist() == [
+    assert LocalSearch(graph, families, SolveOptions(formulation="paper")).run(every, none, every).tolist() == [
         False,
         True,
         True,
