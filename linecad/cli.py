@@ -195,10 +195,9 @@ def _convert(parsed: argparse.Namespace) -> int:
     _check_outputs(parsed.output, [parsed.photo, parsed.camera])
     from linecad.photo import read_photo
     from linecad.pipeline import ReconstructOptions, reconstruct
-    from solver.problem import DEFAULT_MU_BOUNDARY, SolveOptions
+    from solver.problem import SolveOptions
 
     is_gain = parsed.formulation == "gain"
-    mu_boundary = DEFAULT_MU_BOUNDARY[parsed.formulation] if parsed.mu_boundary is None else parsed.mu_boundary
     options = ReconstructOptions(
         extension=parsed.extension,
         weights=parsed.weights,
@@ -208,7 +207,7 @@ def _convert(parsed: argparse.Namespace) -> int:
             formulation=parsed.formulation,
             without=parsed.without,
             mu_planarity=parsed.mu_planarity,
-            mu_boundary=mu_boundary,
+            mu_boundary=parsed.mu_boundary,
             backend=parsed.backend,
             time_limit_s=parsed.time_limit,
             gap=parsed.gap,

@@ -28,7 +28,7 @@ from linecad.scene import (
 )  # fmt: skip
 from linecad.segments import find_segments, group_segments, label_segments
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
-from solver.problem import DEFAULT_MU_BOUNDARY, Progress, SolveOptions, solve
+from solver.problem import Progress, SolveOptions, solve
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
@@ -50,7 +50,7 @@ class ReconstructOptions:
     weights: Weights = "junctions"
     collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
-    solve: SolveOptions = field(default_factory=lambda: SolveOptions(mu_boundary=DEFAULT_MU_BOUNDARY["gain"]))
+    solve: SolveOptions = field(default_factory=SolveOptions)
 
 
 def reconstruct(

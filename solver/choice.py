@@ -56,7 +56,7 @@ def objective_of(graph: LineGraph, options: SolveOptions, choice: Choice) -> flo
     if "planarity" not in options.without:
         value += options.mu_planarity * len(choice.planar_pairs)
     if "boundary" not in options.without:
-        value += options.mu_boundary * int((~choice.is_boundary).sum())
+        value += options.boundary_reward * int((~choice.is_boundary).sum())
     return value
 
 
@@ -64,7 +64,7 @@ def trivial_bound(graph: LineGraph, families: Families, options: SolveOptions) -
     """A value that no choice exceeds: every possible crossing real, every pair planar, no line a boundary."""
     bound = float(graph.weight[graph.possible].sum()) + options.mu_planarity * len(families.pairs)
     if "boundary" not in options.without:
-        bound += options.mu_boundary * len(graph.segments)
+        bound += options.boundary_reward * len(graph.segments)
     return bound
 
 
@@ -73,7 +73,7 @@ def common_measure(graph: LineGraph, options: SolveOptions) -> float:
 
     Then every objective is a multiple of it, and nothing lies between two of them.
     """
-    terms = np.concatenate([graph.weight, [options.mu_planarity, options.mu_boundary]])
+    terms = np.concatenate([graph.weight, [options.mu_planarity, options.boundary_reward]])
     for measure in MEASURES:
         if np.abs(terms / measure - np.rint(terms / measure)).max() < MEASURE_ROUNDING:
             return measure

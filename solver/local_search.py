@@ -33,7 +33,7 @@ class LocalSearch:
 
     def __init__(self, graph: LineGraph, families: Families, options: SolveOptions) -> None:
         self.weight = graph.weight
-        self.mu_planarity, self.mu_boundary = options.mu_planarity, options.mu_boundary
+        self.mu_planarity, self.mu_boundary = options.mu_planarity, options.boundary_reward
         self.pairs, self.pair, self.along = families.pairs, families.pairs.pair, families.pairs.along
         edges = range(len(graph.edges))
         self.cycles = families.cycles

@@ -120,7 +120,7 @@ def build_master(graph: LineGraph, families: Families, options: SolveOptions, up
         offset=options.mu_planarity * len(families.pairs),
     )
     if "boundary" not in options.without:
-        program.offset += options.mu_boundary * len(graph.segments)
+        program.offset += options.boundary_reward * len(graph.segments)
     for line in families.two_sides:
         sides = []
         for members in line.sides:
@@ -130,7 +130,7 @@ def build_master(graph: LineGraph, families: Families, options: SolveOptions, up
             u = add_column(program, 0.0)
             program.rows += [Row((edge, u), (1.0, -1.0), 0.0) for edge in members]
             sides.append(u)
-        boundary = add_column(program, -options.mu_boundary)
+        boundary = add_column(program, -options.boundary_reward)
         program.rows.append(Row((*sides, boundary), (1.0, 1.0, -1.0), 1.0))
     return program
 

@@ -193,7 +193,7 @@ def set_objective(paper: PaperModel, graph: LineGraph, options: SolveOptions) ->
     """(21): the weighted crossings (3), mu_1 times the planar pairs (18), mu_2 times the lines off a boundary (20)."""
     crossings = quicksum(w * b for w, b in zip(graph.weight.tolist(), paper.connected, strict=True))
     planes = options.mu_planarity * quicksum(paper.planar.values())
-    inner = options.mu_boundary * quicksum(1 - boundary for boundary in paper.boundary)
+    inner = options.boundary_reward * quicksum(1 - boundary for boundary in paper.boundary)
     paper.model.setObjective(crossings + planes + inner, "maximize")
 
 

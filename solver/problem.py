@@ -30,7 +30,8 @@ class SolveOptions:
     formulation: Formulation = "gain"
     without: frozenset[Family] = frozenset()  # families of constraints switched off, with their term of the objective
     mu_planarity: float = 0.5  # the paper's mu_1, reward of a pair of parallel lines in one Manhattan plane
-    mu_boundary: float = 10.0  # the paper's mu_2, reward of a line that is not at the meeting of two planes
+    # The paper's mu_2, reward of a line that is not at the meeting of two planes; if None, that of the formulation.
+    mu_boundary: float | None = None
     time_limit_s: float = 60.0  # s, for the whole of `solve`
     gap: float = 0.0  # (bound - objective) / |objective| at which the solver may stop
     seed: int = 0
@@ -50,7 +51,7 @@ class SolveOptions:
         if unknown:
             raise SolverError(f"family {unknown[0]!r} is unknown; use {', '.join(FAMILIES)}")
         object.__setattr__(self, "without", frozenset(self.without))
-        for name, reward in (("mu_planarity", self.mu_planarity), ("mu_boundary", self.mu_boundary)):
+        for name, reward in (("mu_planarity", self.mu_planarity), ("mu_boundary", self.boundary_reward)):
             self._require(name, 0 <= reward <= LARGEST_REWARD, f"a number from 0 to {LARGEST_REWARD:.0f}")
         self._require(
             "time_limit_s",
@@ -62,6 +63,11 @@ class SolveOptions:
         self._require("depth_range", self.depth_range > 1, "more than 1")
         self._require("memory_limit_mb", self.memory_limit_mb > 0, "more than zero megabytes")
         self._require("node_limit", self.node_limit is None or self.node_limit > 0, "more than zero nodes, or none")
+
+    @property
+    def boundary_reward(self) -> float:
+        """The paper's mu_2 in use."""
+        return DEFAULT_MU_BOUNDARY[self.formulation] if self.mu_boundary is None else self.mu_boundary
 
     def _require(self, name: str, holds: bool, expected: str) -> None:
         value = getattr(self, name)

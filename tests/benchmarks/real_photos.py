@@ -16,7 +16,7 @@ from linecad.photo import read_photo
 from linecad.pipeline import ReconstructOptions, reconstruct
 from linecad.segments import find_segments
 from linecad.vanishing import find_frame
-from solver.problem import DEFAULT_MU_BOUNDARY, SolveOptions
+from solver.problem import SolveOptions
 
 
 def measure_depth(truth_file: Path, options: ReconstructOptions) -> tuple[float, ...]:
@@ -110,7 +110,7 @@ def main() -> None:
         solve=SolveOptions(
             formulation=chosen.formulation,
             mu_planarity=chosen.mu_planarity,
-            mu_boundary=DEFAULT_MU_BOUNDARY[chosen.formulation] if chosen.mu_boundary is None else chosen.mu_boundary,
+            mu_boundary=chosen.mu_boundary,
             without=frozenset(filter(None, chosen.without.split(","))),
             time_limit_s=chosen.time_limit,
         ),

@@ -151,7 +151,7 @@ def values(graph, options):
     if "planarity" not in options.without:
         value = value + options.mu_planarity * planar_count(graph, subsets)
     if "boundary" not in options.without:
-        value = value + options.mu_boundary * inner_count(graph, subsets)
+        value = value + options.boundary_reward * inner_count(graph, subsets)
     return np.where(allowed, value, -np.inf)
 
 

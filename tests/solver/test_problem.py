@@ -32,6 +32,12 @@ def test_an_option_that_cannot_be_used_is_named_in_one_line(name, value):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(("formulation", "reward"), [("gain", 1.0), ("paper", 10.0)])
+def test_each_formulation_has_its_own_reward_of_a_line_off_the_boundary(formulation, reward):
+    assert SolveOptions(formulation=formulation).boundary_reward == reward
+    assert SolveOptions(formulation=formulation, mu_boundary=0.0).boundary_reward == 0.0
+
+
 def test_the_gap_of_a_bound_below_the_objective_is_zero():
     assert relative_gap(10.0, 10.0 - 1e-9) == 0.0
     assert relative_gap(10.0, 11.0) == pytest.approx(0.1)
