@@ -190,14 +190,18 @@ class _Search:
         self._offer(self.starter.round(evidence))
 
     def _fix(self, program: Program, last: Relaxed) -> None:
-        """Fix Booleans whose reduced cost says that the other value cannot be better than what is known."""
+        """Fix Booleans whose reduced cost says that the other value cannot be better than what is known.
+
+        Only at the value of the best known choice, which so stays a solution of what is left.
+        """
         least_step = (1 - BOUND_ROUNDING) * self.measure  # by which anything better is better
         allowed = last.value - self.value - least_step + SAFETY * max(1.0, abs(self.value))
         b = last.x[: program.integers]
         decided = np.abs(last.reduced[: program.integers]) > allowed
-        for edge in np.flatnonzero(decided & (b > 1 - SAFETY)).tolist():
+        known = self.best.connected
+        for edge in np.flatnonzero(decided & known & (b > 1 - SAFETY)).tolist():
             program.lower[edge] = program.upper[edge]
-        for edge in np.flatnonzero(decided & (b < SAFETY)).tolist():
+        for edge in np.flatnonzero(decided & ~known & (b < SAFETY)).tolist():
             program.upper[edge] = program.lower[edge]
 
     def _take(self, connected: Bool) -> None:

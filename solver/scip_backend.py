@@ -16,6 +16,7 @@ from pyscipopt import LP, Conshdlr, Constraint, Model, Variable, quicksum
 from pyscipopt.scip import PY_SCIP_LPPARAM as SCIP_LPPARAM
 from pyscipopt.scip import PY_SCIP_PARAMSETTING as SCIP_PARAMSETTING
 from pyscipopt.scip import PY_SCIP_RESULT as SCIP_RESULT
+from pyscipopt.scip import Solution
 
 from linecad.scene import Float
 from solver.backend import Integral, Relaxed
@@ -65,14 +66,11 @@ class ScipBackend:
         """
         model = Model("linecad")
         model.hideOutput()
-        bounds = list(zip(program.lower, program.upper, strict=True))
-        x = [model.addVar(f"x_{k}", vtype="I", lb=lower, ub=upper) for k, (lower, upper) in enumerate(bounds)]
-        for variable in x[: program.integers]:
-            model.chgVarBranchPriority(variable, 1)  # the others follow from these
+        x = Columns(model, program)
         for number, row in enumerate(program.rows):
-            add_row(model, x, row, f"row_{number}")
-        model.setObjective(quicksum(c * v for c, v in zip(program.objective, x, strict=True)), "maximize")
-        model.addObjoffset(program.offset)
+            x.add_row(row, f"row_{number}")
+        model.setObjective(quicksum(program.objective[k] * v for k, v in x.free.items()), "maximize")
+        model.addObjoffset(program.offset + float(np.dot(program.objective, x.fixed)))
         for name, value in (BLIND | LEAN).items():
             model.setParam(name, value)
         model.setHeuristics(SCIP_PARAMSETTING.OFF)  # they know a part of the rows only; `solver.start` knows all
@@ -91,34 +89,65 @@ class ScipBackend:
             needscons=False,
         )
         first = model.createSol()
-        for variable, at in zip(x, start.tolist(), strict=True):
-            model.setSolVal(first, variable, at)
+        for k, variable in x.free.items():
+            model.setSolVal(first, variable, float(start[k]))
         model.addSol(first)
         outcome = run(model, options, Watch(model, reporter), stop)
         if handler.failure is not None:
             raise handler.failure
         if not outcome.has_solution:
             return Integral(outcome.status, None)
-        best = model.getBestSol()
-        return Integral(outcome.status, np.array([model.getSolVal(best, variable) for variable in x]))
+        return Integral(outcome.status, x.values(model.getBestSol()))
 
 
-def add_row(model: Model, x: list[Variable], row: Row, name: str) -> None:
-    """Write a row of the program as a linear constraint."""
-    terms = quicksum(a * x[k] for k, a in zip(row.columns, row.coefficients, strict=True))
-    model.addCons(terms <= row.right, name, removable=True)
+class Columns:
+    """The columns of a program in a SCIP model; those that are fixed are numbers there, not variables."""
+
+    def __init__(self, model: Model, program: Program) -> None:
+        self.model = model
+        lower, upper = np.array(program.lower), np.array(program.upper)
+        is_fixed = lower == upper
+        self.fixed: Float = np.where(is_fixed, lower, 0.0)  # 0 for the others
+        self.free: dict[int, Variable] = {
+            k: model.addVar(f"x_{k}", vtype="I", lb=program.lower[k], ub=program.upper[k])
+            for k in np.flatnonzero(~is_fixed).tolist()
+        }
+        for k, variable in self.free.items():
+            if k < program.integers:
+                model.chgVarBranchPriority(variable, 1)  # the others follow from these
+
+    def add_row(self, row: Row, name: str) -> None:
+        """Write a row of the program as a linear constraint, unless nothing in it is free.
+
+        Such a row holds: the fixed columns have the values of the start, which breaks none.
+        """
+        terms, right = [], row.right
+        for k, coefficient in zip(row.columns, row.coefficients, strict=True):
+            if k in self.free:
+                terms.append(coefficient * self.free[k])
+            else:
+                right -= coefficient * float(self.fixed[k])
+        if terms:
+            self.model.addCons(quicksum(terms) <= right, name, removable=True)
+
+    def values(self, solution: Solution | None) -> Float:
+        """The values of all columns in a solution, or in the relaxation for None."""
+        found = self.fixed.copy()
+        for k, variable in self.free.items():
+            found[k] = self.model.getSolVal(solution, variable)
+        return found
 
 
 class LazyRows(Conshdlr):
     """Adds the rows that a solution or a relaxation breaks while SCIP searches."""
 
-    def __init__(self, separation: Separation, x: list[Variable]) -> None:
+    def __init__(self, separation: Separation, x: Columns) -> None:
         self.separation = separation
         self.x = x
         self.failure: Exception | None = None
         self.rows = 0
 
-    def conscheck(self, _constraints: object, solution: object, *_: object) -> dict[str, int]:
+    def conscheck(self, _constraints: object, solution: Solution, *_: object) -> dict[str, int]:
         """Whether a solution breaks no row."""
         return self._guard(lambda: SCIP_RESULT.INFEASIBLE if self._breaks(solution) else SCIP_RESULT.FEASIBLE)
 
@@ -137,20 +166,17 @@ class LazyRows(Conshdlr):
 
     def conslock(self, _constraint: Constraint, _kind: int, positive: int, negative: int) -> None:
         """A row may hold any variable back in either direction."""
-        for variable in self.x:
+        for variable in self.x.free.values():
             self.model.addVarLocks(variable, positive + negative, positive + negative)
 
-    def _values(self, solution: object) -> Float:
-        return np.array([self.model.getSolVal(solution, variable) for variable in self.x])
-
-    def _breaks(self, solution: object) -> bool:
-        return self.separation.breaks(self._values(solution))
+    def _breaks(self, solution: Solution) -> bool:
+        return self.separation.breaks(self.x.values(solution))
 
     def _add(self, exact: bool) -> int:
-        rows = self.separation.broken_rows(self._values(None), exact)
+        rows = self.separation.broken_rows(self.x.values(None), exact)
         for row in rows:
             self.rows += 1
-            add_row(self.model, self.x, row, f"lazy_{self.rows}")
+            self.x.add_row(row, f"lazy_{self.rows}")
         return len(rows)
 
     def _guard(self, answer: Callable[[], int], after_failure: int = SCIP_RESULT.INFEASIBLE) -> dict[str, int]:
