@@ -1,8 +1,9 @@
 """Line graphs of made streets with the paper's statistics: boxes with windows, one camera, noise, no hidden lines.
 
 The paper's graphs have 215 lines and 867 crossings on average, of which 13 % are fake (its data: 751.78 of 867.22 are
-real). `make_instance` draws a street from a seed, keeps the lines that the camera sees, and returns a
-connected part of their line graph, of the size asked for, together with the truth about each crossing.
+real). `make_instance` draws a street from a seed, keeps the lines that the camera sees, and returns a connected part
+of their line graph, of the size asked for, together with the truth about each crossing: the meeting of two lines in
+space, never a draw. `describe.py` prints what the sizes come to.
 """
 
 from dataclasses import dataclass
@@ -10,6 +11,8 @@ from itertools import pairwise
 
 import networkx as nx
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from linecad.scene import Bool, Float, Int, LineGraph, Segments
 
@@ -24,28 +27,28 @@ UNINFORMATIVE = np.log(1.6)  # log depth, a tolerance beyond which a crossing sa
 MISSED = 0.08  # share of the lines that the detector does not see
 WINDOWS = 0.15  # share of the bays of a facade with a window of its own
 COURSES = 0.75  # share of the storeys and bays that a line across the whole facade divides
-SPAN = 14  # bays or storeys that a line runs on at most
 REACH = 1.0  # m by which a line may be extended to a real junction
 
 
 @dataclass(frozen=True)
 class Size:
-    """How large a street is drawn."""
+    """How large a street is drawn, and what of it is kept."""
 
     lines: int  # of the graph, where the street has as many in one connected part
     buildings: int
     bay: float  # m, width of a window with its share of wall; storeys are as high
-    shortest: float  # px, of a segment
+    span: int  # bays or storeys that a line runs on at most
+    shortest: float  # px, of a segment; the graph keeps the longest, so that this only bounds the work
     extension: float  # px, of each end, to find crossings
 
 
-PAPER_SIZE = Size(lines=215, buildings=6, bay=0.76, shortest=36, extension=26)
+PAPER_SIZE = Size(lines=215, buildings=6, bay=0.55, span=15, shortest=20, extension=27)
 LADDER = {
-    "small": Size(lines=26, buildings=6, bay=0.76, shortest=36, extension=26),  # fits a size-limited licence
+    "small": Size(lines=26, buildings=4, bay=2.5, span=15, shortest=20, extension=27),  # fits a size-limited licence
     "paper": PAPER_SIZE,
-    "640": Size(lines=640, buildings=6, bay=0.44, shortest=22, extension=22),
-    "2000": Size(lines=2000, buildings=8, bay=0.26, shortest=9, extension=12),
-    "5000": Size(lines=5000, buildings=8, bay=0.21, shortest=8, extension=9),
+    "640": Size(lines=640, buildings=6, bay=0.3, span=19, shortest=14, extension=22),
+    "2000": Size(lines=2000, buildings=8, bay=0.22, span=17, shortest=9, extension=12),
+    "5000": Size(lines=5000, buildings=8, bay=0.15, span=17, shortest=8, extension=9),
 }
 
 
@@ -58,23 +61,52 @@ class Instance:
 
 
 def make_instance(seed: int, size: Size = PAPER_SIZE) -> Instance:
-    """The lines nearest to some line in the line graph of a made street; the same for the same arguments."""
+    """The longest lines of a made street that are one part of its line graph; the same for the same arguments."""
     rng = np.random.default_rng(seed)
     rotation = _camera(rng)
     low, high = _buildings(rng, size.buildings)
-    lines = np.concatenate([_facade_lines(rng, low[k], high[k], size.bay) for k in range(len(low))])
+    lines = np.concatenate([_facade_lines(rng, low[k], high[k], size.bay, size.span) for k in range(len(low))])
     ends, axis, true_ends = _photograph(rng, lines, low, high, rotation, size.shortest)
     ends = _through_vanishing_points(ends, axis, rotation)
     edges, crossing, gap = _crossings(ends, axis, size.extension)
     real = _meet(edges, axis, true_ends)
     graph = _line_graph(ends, axis, edges, crossing, gap, rotation)
-    network = nx.Graph(graph.edges.tolist())
-    largest = max(nx.connected_components(network), key=len)
-    middle = int(rng.choice(sorted(largest)))
-    near = [middle, *(line for _, line in nx.bfs_edges(network, middle))]
-    keep = np.array(sorted(near[: size.lines]))
+    keep = _longest_connected(rng, graph, size.lines)
     inside = np.isin(graph.edges, keep).all(axis=1)
     return Instance(graph.subset(keep), real[inside])
+
+
+def _longest_connected(rng: np.random.Generator, graph: LineGraph, wanted: int) -> Int:
+    """Indices of `wanted` lines in one part, ascending: the shortest go as long as so many remain in one part.
+
+    The last to go may have split off lines with it; then those nearest to some line of the larger part are kept.
+    """
+    count = len(graph.segments)
+    rank = np.empty(count, np.int64)
+    rank[np.argsort(-graph.segments.length, kind="stable")] = np.arange(count)
+    # The largest part grows with the number of lines, so the least number that suffices is found by halving.
+    fewest, enough = 0, count
+    while fewest < enough:
+        half = (fewest + enough) // 2
+        if len(_largest_part(graph, rank < half)) >= wanted:
+            enough = half
+        else:
+            fewest = half + 1
+    part = _largest_part(graph, rank < enough)
+    edges = graph.edges[np.isin(graph.edges, part).all(axis=1)]
+    middle = int(rng.choice(part))
+    near = [middle, *(line for _, line in nx.bfs_edges(nx.Graph(edges.tolist()), middle))]
+    return np.array(sorted(near[:wanted]))
+
+
+def _largest_part(graph: LineGraph, chosen: Bool) -> Int:
+    """Indices of the lines in the largest connected part of the graph of the chosen ones, ascending."""
+    edges = graph.edges[chosen[graph.edges].all(axis=1)]
+    count = len(chosen)
+    joined = coo_array((np.ones(len(edges)), edges.T), shape=(count, count))
+    _, part = connected_components(joined, directed=False)
+    members: Int = np.flatnonzero(part == np.bincount(part).argmax())
+    return members
 
 
 def _camera(rng: np.random.Generator) -> Float:
@@ -102,7 +134,7 @@ def _buildings(rng: np.random.Generator, count: int) -> tuple[Float, Float]:
     return np.array(low), np.array(high)
 
 
-def _facade_lines(rng: np.random.Generator, low: Float, high: Float, bay: float) -> Float:
+def _facade_lines(rng: np.random.Generator, low: Float, high: Float, bay: float, span: int) -> Float:
     """(L, 2, 3) both ends of the edges of one building and of the windows and courses of its two visible facades."""
     lines = []
     for axis in range(3):
@@ -125,16 +157,16 @@ def _facade_lines(rng: np.random.Generator, low: Float, high: Float, bay: float)
                     lines += _rectangle(corner, along, *box)
         for height in rows[1:-1]:
             if rng.random() < COURSES:
-                lines += _pieces(rng, _at(corner, 2, height), along, columns)
+                lines += _pieces(rng, _at(corner, 2, height), along, columns, span)
         for place in columns[1:-1]:
             if rng.random() < COURSES:
-                lines += _pieces(rng, _at(corner, along, place), 2, rows)
+                lines += _pieces(rng, _at(corner, along, place), 2, rows, span)
     return np.array(lines)
 
 
-def _pieces(rng: np.random.Generator, start: Float, axis: int, joints: Float) -> list:
-    """A line along `axis` through all joints, in pieces of at most SPAN of them, as blinds and pipes break it."""
-    cuts = [0, *range(int(rng.integers(1, SPAN + 1)), len(joints) - 1, SPAN), len(joints) - 1]
+def _pieces(rng: np.random.Generator, start: Float, axis: int, joints: Float, span: int) -> list:
+    """A line along `axis` through all joints, in pieces of at most `span` of them, as blinds and pipes break it."""
+    cuts = [0, *range(int(rng.integers(1, span + 1)), len(joints) - 1, span), len(joints) - 1]
     return [(_at(start, axis, joints[first]), _at(start, axis, joints[last])) for first, last in pairwise(cuts)]
 
 
@@ -156,7 +188,7 @@ def _photograph(
     """Ends in px with noise, axis and true ends in m of the longest visible piece of each line that is detected."""
     steps = np.linspace(0, 1, SAMPLES)[:, None]
     found = []
-    for start, end in lines:
+    for start, end in lines[_may_show(lines, rotation, shortest)]:
         points = start + (end - start) * steps
         pixels = _project(points, rotation)
         inside = (pixels >= 0).all(axis=1) & (pixels < [WIDTH, HEIGHT]).all(axis=1)
@@ -179,6 +211,14 @@ def _photograph(
     short = np.minimum(rng.uniform(-6, 12, (len(ends), 2)), 0.2 * length)  # px by which the detector falls short
     ends = ends + direction[:, None] * (short * [1, -1])[:, :, None]
     return ends, axis, np.array([piece[2] for piece in found])
+
+
+def _may_show(lines: Float, rotation: Float, shortest: float) -> Bool:
+    """(L,) False where a look at both ends already says that no piece of `shortest` px is in the photo; saves time."""
+    pixels = _project(lines.reshape(-1, 3), rotation).reshape(-1, 2, 2)
+    beyond = ((pixels < 0).all(axis=1) | (pixels >= [WIDTH, HEIGHT]).all(axis=1)).any(axis=1)
+    # An end behind the camera is not a number, and no comparison with it holds.
+    return ~(beyond | (np.linalg.norm(pixels[:, 1] - pixels[:, 0], axis=1) < shortest))
 
 
 def _project(points: Float, rotation: Float) -> Float:

@@ -118,11 +118,17 @@ def alley(build_graph):
 
 
 @pytest.fixture(scope="session")
-def street_graph():
-    """The line graph of a made street of the benchmarks, by seed and number of lines; each is drawn once."""
+def streets():
+    """The module of the benchmarks that draws made streets."""
     path = Path(__file__).parents[1] / "benchmarks" / "instances.py"
     spec = importlib.util.spec_from_file_location("benchmark_instances", path)
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # dataclasses look their module up there
     spec.loader.exec_module(module)
-    return cache(lambda seed, lines: module.make_instance(seed, replace(module.PAPER_SIZE, lines=lines)).graph)
+    return module
+
+
+@pytest.fixture(scope="session")
+def street_graph(streets):
+    """The line graph of a made street of the benchmarks, by seed and number of lines; each is drawn once."""
+    return cache(lambda seed, lines: streets.make_instance(seed, replace(streets.PAPER_SIZE, lines=lines)).graph)
