@@ -43,8 +43,9 @@ class Size:
 
 
 PAPER_SIZE = Size(lines=215, buildings=6, bay=0.55, span=15, shortest=20, extension=27)
+SMALL_SIZE = Size(lines=26, buildings=4, bay=2.5, span=15, shortest=20, extension=27)
 LADDER = {
-    "small": Size(lines=26, buildings=4, bay=2.5, span=15, shortest=20, extension=27),  # fits a size-limited licence
+    "small": SMALL_SIZE,  # fits a size-limited licence
     "paper": PAPER_SIZE,
     "640": Size(lines=640, buildings=6, bay=0.3, span=19, shortest=14, extension=22),
     "2000": Size(lines=2000, buildings=8, bay=0.22, span=17, shortest=9, extension=12),

@@ -131,4 +131,11 @@ def streets():
 @pytest.fixture(scope="session")
 def street_graph(streets):
     """The line graph of a made street of the benchmarks, by seed and number of lines; each is drawn once."""
-    return cache(lambda seed, lines: streets.make_instance(seed, replace(streets.PAPER_SIZE, lines=lines)).graph)
+    small = streets.SMALL_SIZE
+
+    def draw(seed, lines):
+        # Of a street with many more lines the longest lie on one facade, and hardly any crossing is fake.
+        bay = small.bay * (small.lines / lines) ** 0.5
+        return streets.make_instance(seed, replace(small, lines=lines, bay=bay)).graph
+
+    return cache(draw)
