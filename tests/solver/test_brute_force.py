@@ -1,5 +1,6 @@
 """The optimum of every small graph, found a second time by trying all sets of real crossings."""
 
+from functools import lru_cache
 from itertools import chain, combinations, permutations
 from random import Random
 
@@ -14,7 +15,8 @@ from solver.problem import FAMILIES, FORMULATIONS, SolveOptions, solve
 from solver.start import Starter
 
 ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
-MOST_EDGES = 10
+MOST_EDGES = 10  # here, for time; tests/benchmarks/brute_force.py draws up to 12
+MOST_COLLINEAR = 3
 GRID = 0.37  # keeps every line off the coordinate planes of the camera
 
 # Uneven numbers, so that no sum of logarithms of grid coordinates comes to lie on the border of an interval.
@@ -39,15 +41,16 @@ WOBBLES = [(0, 0, 0), (0, 0, 0), (0.0031, -0.0043, 0.0017), (-0.011, 0.023, 0.01
 
 
 @st.composite
-def problems(draw):
+def problems(draw, most_edges=MOST_EDGES):
     """Arguments for `build_graph` and for SolveOptions."""
     lines = draw(lines_in_space())
     pairs = [(i, j) for i in range(len(lines)) for j in range(i + 1, len(lines))]
     crossings = [(i, j) for i, j in pairs if lines[i][0] != lines[j][0]]
     collinear = [(i, j) for i, j in pairs if lines[i][0] == lines[j][0]]
-    edges = list(draw(st.permutations(crossings)))[:MOST_EDGES]
+    edges = list(draw(st.permutations(crossings)))[:most_edges]
     if collinear and draw(st.booleans()):
-        edges[-1:] = [draw(st.sampled_from(collinear))]
+        added = draw(st.lists(st.sampled_from(collinear), min_size=1, max_size=MOST_COLLINEAR, unique=True))
+        edges = edges[: most_edges - len(added)] + added
     each = {"min_size": len(edges), "max_size": len(edges)}
     graph = {
         "lines": lines,
@@ -65,12 +68,27 @@ def problems(draw):
     return graph, options
 
 
+def remembered(table):
+    """Of the last graphs: what follows depends on the graph alone, and all combinations of families ask for it."""
+
+    @lru_cache(maxsize=4)
+    def compute(*arguments):
+        array = table(*arguments)
+        array.flags.writeable = False
+        return array
+
+    return compute
+
+
+@remembered
 def all_subsets(n):
     return (np.arange(2**n)[:, None] >> np.arange(n)) & 1 == 1
 
 
-def fits_depths(graph, subsets, depth_range):
-    """Which subsets have depths: shortest paths between all lines and the ground, no negative cycle among them."""
+@remembered
+def fits_depths(graph, depth_range):
+    """Which sets of edges have depths: shortest paths between all lines and the ground, no negative cycle."""
+    subsets = all_subsets(len(graph.edges))
     n = len(graph.segments)
     axis = np.eye(3)[graph.axis]
     flat = np.linalg.norm(np.cross(graph.rays, axis), axis=1)  # of the ray, across the line's axis
@@ -94,7 +112,10 @@ def edge_table(graph, allowed):
     return {tuple(pair): e for e, (i, j) in enumerate(graph.edges.tolist()) if allowed[e] for pair in ((i, j), (j, i))}
 
 
-def keeps_cycles_open(graph, subsets):
+@remembered
+def keeps_cycles_open(graph):
+    """Which sets of edges hold no cycle of 3 or 4 lines of all three axes."""
+    subsets = all_subsets(len(graph.edges))
     edge = edge_table(graph, (graph.kind != "collinear") & graph.informative)
     axis = graph.axis.tolist()
     keeps = np.ones(len(subsets), bool)
@@ -106,8 +127,10 @@ def keeps_cycles_open(graph, subsets):
     return keeps
 
 
-def planar_count(graph, subsets):
-    """For each subset, how many pairs of parallel lines can be given a plane."""
+@remembered
+def planar_count(graph):
+    """For each set of edges, how many pairs of parallel lines can be given a plane."""
+    subsets = all_subsets(len(graph.edges))
     edge = edge_table(graph, graph.kind != "collinear")
     axis = graph.axis.tolist()
     count = np.zeros(len(subsets), int)
@@ -126,8 +149,10 @@ def planar_count(graph, subsets):
     return count
 
 
-def inner_count(graph, subsets):
-    """For each subset, how many lines meet lines of at most one other axis."""
+@remembered
+def inner_count(graph):
+    """For each set of edges, how many lines meet lines of at most one other axis."""
+    subsets = all_subsets(len(graph.edges))
     edge = edge_table(graph, graph.kind != "collinear")
     axis = graph.axis.tolist()
     count = np.zeros(len(subsets), int)
@@ -145,13 +170,13 @@ def values(graph, options):
     subsets = all_subsets(len(graph.edges))
     value = subsets @ graph.weight
     depth_range = options.depth_range if options.formulation == "paper" else np.inf
-    allowed = fits_depths(graph, subsets, depth_range)
+    allowed = fits_depths(graph, depth_range)
     if options.formulation == "paper" and "cycles" not in options.without:
-        allowed &= keeps_cycles_open(graph, subsets)
+        allowed = allowed & keeps_cycles_open(graph)
     if "planarity" not in options.without:
-        value = value + options.mu_planarity * planar_count(graph, subsets)
+        value = value + options.mu_planarity * planar_count(graph)
     if "boundary" not in options.without:
-        value = value + options.boundary_reward * inner_count(graph, subsets)
+        value = value + options.boundary_reward * inner_count(graph)
     return np.where(allowed, value, -np.inf)
 
 
