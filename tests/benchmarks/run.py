@@ -4,8 +4,10 @@ One table over seeded instances and, with --real, over the line graphs of real p
 graphs, each solve in a process of its own so that its peak memory can be told, one after another. A run that reaches
 its limit counts with the limit. "paper" forbids true corners and bounds depths, so that its objective may be lower
 than that of "gain" at the optimum of both. "gurobi" is "paper" under the licence that comes with gurobipy, where that
-is installed and the instance fits (size "small"). The castle of issue 3: --real DIR --only castle/0012 --extension 75
---longest 800.
+is installed and the instance fits (size "small").
+
+Castle and South Building: --real DIR. The castle of issue 3: --real DIR --only castle/0012 --extension 75
+--longest 800. Growth with size: --sizes small paper 640 2000 5000 --count 2 --mu-boundary 1 --plot growth.png
 """
 
 import argparse
@@ -93,14 +95,15 @@ def main() -> None:
                     continue
                 print(f"| {what} | {mu:g} | {column} | {found.cells()} |", flush=True)
                 results.setdefault((size, mu, column), {})[name] = found
-                dots.append(Dot(column, len(graph.edges), found.seconds, found.megabytes, found.status == "optimal"))
+                proven = found.status == "optimal"
+                dots.append(Dot(column, size, len(graph.edges), found.seconds, found.megabytes, proven))
     _summary(results, arguments.limit)
     if arguments.plot and dots:
-        draw_growth(arguments.plot, dots)
+        draw_growth(arguments.plot, dots, tuple(LADDER))
 
 
 def _instances(arguments: argparse.Namespace) -> Iterator[tuple[str, str, LineGraph, str]]:
-    """Size, name, graph and share of fakes as text (unknown for real photos)."""
+    """Size or dataset, seed or photo, graph and share of fakes as text (unknown for real photos)."""
     sizes = arguments.sizes if arguments.sizes is not None else [] if arguments.real else ["paper"]
     for size in sizes:
         for seed in range(arguments.count):
@@ -109,7 +112,8 @@ def _instances(arguments: argparse.Namespace) -> Iterator[tuple[str, str, LineGr
     if arguments.real:
         chosen = arguments.extension, arguments.longest, arguments.collinear, arguments.only
         for name, graph in real_graphs(arguments.real, *chosen):
-            yield "real", name, graph, ""
+            dataset, _, photo = name.partition("/")
+            yield dataset, photo, graph, ""
 
 
 def _apart(column: str, graph: LineGraph, options: SolveOptions) -> Measured:
