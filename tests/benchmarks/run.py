@@ -12,7 +12,6 @@ Castle and South Building: --real DIR. The castle of issue 3: --real DIR --only 
 
 import argparse
 import multiprocessing
-import resource
 import statistics
 import sys
 from collections.abc import Iterator
@@ -130,8 +129,14 @@ def _measure(column: str, graph: LineGraph, options: SolveOptions) -> Measured:
         found = solve(graph, options)
         status, objective, gap, nodes, seconds = found.status, found.objective, found.gap, found.nodes, found.seconds
         cuts = found.cuts
-    megabytes = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-    return Measured(status, objective, gap, nodes, cuts, seconds, megabytes)
+    return Measured(status, objective, gap, nodes, cuts, seconds, _peak_megabytes())
+
+
+def _peak_megabytes() -> float:
+    """Largest memory of this process since it began, as Linux reports it; getrusage counts the parent's before."""
+    status = Path("/proc/self/status").read_text()
+    (peak,) = (line for line in status.splitlines() if line.startswith("VmHWM:"))
+    return int(peak.split()[1]) / 1024
 
 
 def _summary(results: dict[tuple[str, float, str], dict[str, Measured]], limit: float) -> None:
