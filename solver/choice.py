@@ -121,10 +121,11 @@ def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice:
 def _recheck_planes(families: Families, choice: Choice) -> None:
     pairs = families.pairs
     known = {(first, second): k for k, (first, second) in enumerate(pairs.lines.tolist())}
+    axes = pairs.axes.tolist()
     plane = np.full(len(pairs), -1)
     for first, second, axis in choice.planar_pairs.tolist():
         k = known.pop((first, second), None)
-        if k is None or axis not in pairs.axes[k]:
+        if k is None or axis not in axes[k]:
             _fail(f"names lines {first} and {second} as a planar pair, which they cannot be or are already")
         plane[k] = axis
     both = choice.connected[pairs.first].astype(int) + choice.connected[pairs.second]

@@ -19,21 +19,24 @@ def end_ratios(graph: LineGraph) -> Float:
     the two other coordinates beta, solved by least squares. Raises ValueError where a segment does not pass through the
     vanishing point of its axis (the two coordinates disagree) or ends in it.
     """
-    ratios = np.empty((len(graph.segments), 2))
-    for i, axis in enumerate(graph.axis.tolist()):
-        middle = np.delete(graph.rays[i], axis)
-        ends = np.delete(graph.end_rays[i], axis, axis=1)
-        scale = float(np.linalg.norm(middle))
-        lengths = (ends**2).sum(axis=1)
-        if scale == 0 or not (lengths > 0).all():
-            raise ValueError(f"segment {i} of the line graph ends in the vanishing point of its axis")
-        ratio = ends @ middle / lengths
-        missed = np.abs(middle - ratio[:, None] * ends).max() / scale
-        if missed > VANISHING_TOLERANCE or not (ratio > 0).all():
-            raise ValueError(
-                f"segment {i} of the line graph misses the vanishing point of its axis by {missed:.3g} of its ray"
-            )
-        ratios[i] = ratio
+    lines = np.arange(len(graph.segments))
+    across = np.stack([np.where(graph.axis == 0, 1, 0), np.where(graph.axis == 2, 1, 2)], axis=1)  # the other axes
+    middle = graph.rays[lines[:, None], across]
+    ends = graph.end_rays[lines[:, None, None], [[0], [1]], across[:, None, :]]
+    scale = np.linalg.norm(middle, axis=1)
+    lengths = (ends**2).sum(axis=2)
+    ends_there = (scale == 0) | (lengths == 0).any(axis=1)
+    if ends_there.any():
+        i = int(np.argmax(ends_there))
+        raise ValueError(f"segment {i} of the line graph ends in the vanishing point of its axis")
+    ratios: Float = (ends * middle[:, None, :]).sum(axis=2) / lengths
+    missed = np.abs(middle[:, None, :] - ratios[:, :, None] * ends).max(axis=(1, 2), initial=0) / scale
+    misses = (missed > VANISHING_TOLERANCE) | (ratios <= 0).any(axis=1)
+    if misses.any():
+        i = int(np.argmax(misses))
+        raise ValueError(
+            f"segment {i} of the line graph misses the vanishing point of its axis by {missed[i]:.3g} of its ray"
+        )
     return ratios
 
 

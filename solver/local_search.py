@@ -164,10 +164,10 @@ class LocalSearch:
     def _find_removals(self, graph: LineGraph, families: Families) -> _Removals:
         """Also sets `opposite`, the side of an edge at its other line, -1 where that line has not two sides."""
         side_at = np.full((len(graph.segments), 3), -1, np.int64)  # of each line, by the axis of the lines it meets
-        for number, two in enumerate(families.two_sides):
-            lower, higher = (a for a in range(3) if a != graph.axis[two.line])
-            side_at[two.line, lower], side_at[two.line, higher] = 2 * number, 2 * number + 1
-        owner = np.repeat([two.line for two in families.two_sides], 2).astype(np.int64)[self.side]
+        lines = np.array([two.line for two in families.two_sides], np.int64)
+        side_at[lines, np.where(graph.axis[lines] == 0, 1, 0)] = 2 * np.arange(len(lines))
+        side_at[lines, np.where(graph.axis[lines] == 2, 1, 2)] = 2 * np.arange(len(lines)) + 1
+        owner = np.repeat(lines, 2)[self.side]
         other = graph.edges[self.side_edge].sum(axis=1) - owner
         self.opposite = side_at[other, graph.axis[owner]]
         pairs = families.pairs

@@ -4,6 +4,7 @@ SCIP works in a thread of its own without Python's lock; the calling thread wait
 SCIP's own handling of SIGINT is off, since it prints to stdout and would act on threads that have no part in it.
 """
 
+import functools
 import math
 import threading
 import time
@@ -157,6 +158,7 @@ def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event
     return Outcome(status_of(model.getStatus()), model.getNSols() > 0)
 
 
+@functools.cache
 def version() -> str:
     """Name and version of the solver, as solutions state it."""
     model = Model()

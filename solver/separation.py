@@ -50,10 +50,10 @@ class Separation:
         b = np.clip(x[: self.edges], 0, 1)
         found = self._broken_seeds(b)
         found += self._new(self.cycles.along_forest(b, MOST_CYCLES))
-        if len(found) < FEW:
+        if is_integral(b):
+            found = found or self._contradiction(b)
+        elif len(found) < FEW:
             found += self._new(self.cycles.along_paths(b, self.roots, MOST_CYCLES))
-        if not found and is_integral(b):
-            found = self._contradiction(b)
         planes = self.planes.broken(x)[:MOST_PLANES]
         program.rows += [cycle_row(cycle) for cycle in found]
         add_planes(program, self.planes, planes)
