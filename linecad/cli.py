@@ -61,6 +61,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
     _add_export(commands)
+    _add_evaluate(commands)
     return parser
 
 
@@ -142,6 +143,42 @@ def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_loudness(export)
 
 
+def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    evaluate = commands.add_parser(
+        "evaluate",
+        help="the paper's tables and more on photos with ground truth",
+        description="Measure reconstructions of the photos of a dataset against their truth (docs/evaluation.md).",
+        epilog="example: linecad evaluate streets --json streets.json --report streets.html --workers 4",
+    )
+    evaluate.set_defaults(run=_evaluate)
+    evaluate.add_argument(
+        "dataset", type=Path, metavar="DATASET",
+        help="a folder: our own dataset, York Urban, points with depth, or labels made by hand",
+    )  # fmt: skip
+    evaluate.add_argument("--json", type=Path, metavar="OUT", help="write everything that was measured")
+    evaluate.add_argument("--markdown", type=Path, metavar="OUT", help="write the tables as Markdown")
+    evaluate.add_argument(
+        "--report", type=Path, metavar="OUT", help="write a page (HTML) with plots and the worst photos"
+    )
+    evaluate.add_argument("--workers", type=_count, default=1, metavar="N", help="photos measured at a time (1)")
+    evaluate.add_argument("--limit", type=_count, metavar="N", help="only the first N photos")
+    evaluate.add_argument("--formulation", choices=["gain", "paper", "both"], default="both", help="for table 1 (both)")
+    evaluate.add_argument(
+        "--ablation", action=argparse.BooleanOptionalAction, default=True,
+        help="solve every row of table 1 (on), or only the default settings",
+    )  # fmt: skip
+    evaluate.add_argument("--weights", choices=["ones", "junctions"], default="junctions", help="weights of crossings")
+    evaluate.add_argument(
+        "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
+    )
+    evaluate.add_argument(
+        "--mu-boundary", type=_not_negative, metavar="MU2",
+        help="reward of non-boundary lines (1 for gain, 10 for paper)",
+    )  # fmt: skip
+    evaluate.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for each solve (60)")
+    _add_loudness(evaluate)
+
+
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
@@ -170,6 +207,12 @@ def _not_negative(text: str) -> float:
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
     return value
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 1 or more")
+    return int(text)
 
 
 def _extension(text: str) -> float:
@@ -241,6 +284,47 @@ def _export(parsed: argparse.Namespace) -> int:
         scene = read_scene(parsed.scene)
         photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
         _write(scene, photo, parsed.output, show)
+    return 0
+
+
+def _evaluate(parsed: argparse.Namespace) -> int:
+    from linecad.evaluation.datasets import find_dataset
+    from linecad.evaluation.document import markdown, write_json, write_markdown
+    from linecad.evaluation.methods import Settings
+    from linecad.evaluation.report import write_report
+    from linecad.evaluation.run import evaluate
+    from linecad.evaluation.tables import all_tables
+    from linecad.files import check_output
+
+    for path in filter(None, (parsed.json, parsed.markdown, parsed.report)):
+        check_output(path)
+    settings = Settings(
+        formulations=("paper", "gain") if parsed.formulation == "both" else (parsed.formulation,),
+        ablation=parsed.ablation,
+        time_limit_s=parsed.time_limit,
+        weights=parsed.weights,
+        mu_planarity=parsed.mu_planarity,
+        mu_boundary=parsed.mu_boundary,
+        pictures=parsed.report is not None,
+    )
+    dataset = find_dataset(parsed.dataset)
+    with _Shown(parsed) as show:
+        show.stage(f"measuring {len(dataset.cases[: parsed.limit])} photos of {dataset.name}")
+        results = evaluate(
+            dataset.cases[: parsed.limit], settings, parsed.workers,
+            lambda done, total, last: show.stage(f"{done} of {total} photos, {last.name}: {last.error or 'measured'}"),
+        )  # fmt: skip
+    failed = [result for result in results if result.error is not None]
+    if len(failed) == len(results):
+        raise LinecadError(f"none of {len(results)} photos could be measured; the first: {failed[0].error}")
+    tables = all_tables(results, settings)
+    if parsed.json is not None:
+        write_json(parsed.json, dataset.name, settings, results, tables)
+    if parsed.markdown is not None:
+        write_markdown(parsed.markdown, dataset.name, results, tables)
+    if parsed.report is not None:
+        write_report(parsed.report, dataset.name, results, tables)
+    print(markdown(dataset.name, results, tables), end="")
     return 0
 
 

@@ -4,6 +4,7 @@ LinecadError
 ├── InputError         a file that cannot be used: photo, camera, scene
 │   ├── PhotoError     not an image, truncated, too large, too small
 │   ├── CameraError    a calibration that is malformed or of another size
+│   ├── DatasetError   photos with ground truth that are missing, damaged or of an unknown format
 │   └── SceneFileError a scene file that does not say what its format promises
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
@@ -27,6 +28,10 @@ class PhotoError(InputError):
 
 class CameraError(InputError):
     """The calibration is malformed or does not belong to the photo."""
+
+
+class DatasetError(InputError):
+    """A dataset for evaluation is missing, damaged or of an unknown format."""
 
 
 class SceneFileError(InputError):

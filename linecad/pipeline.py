@@ -53,6 +53,16 @@ class ReconstructOptions:
     solve: SolveOptions = field(default_factory=SolveOptions)
 
 
+@dataclass(frozen=True, eq=False)
+class FoundLines:
+    """What a photo shows before anything is connected: its camera, its axes and the segments that run along them."""
+
+    camera: Camera
+    frame: ManhattanFrame
+    segments: Segments  # labelled; each passes exactly through the vanishing point of its axis
+    notes: tuple[str, ...]  # doubts so far
+
+
 def reconstruct(
     photo: Photo,
     options: ReconstructOptions,
@@ -60,6 +70,16 @@ def reconstruct(
     on_stage: StageReport = _silent,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
+    found = find_lines(photo, on_stage)
+    whole, graph = connect(found, options)
+    on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
+    solution = solve(graph, options.solve, on_progress)
+    on_stage("lifting the lines into space")
+    return place(photo, found, graph, solution, options, len(whole.segments) - len(graph.segments))
+
+
+def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
+    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame."""
     on_stage("finding segments")
     raw = find_segments(photo.grey)
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
@@ -68,14 +88,31 @@ def reconstruct(
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
     segments = group_segments(label_segments(raw, camera, frame), camera, frame)
-    whole = build_line_graph(segments, camera, frame, options.extension, options.weights, options.collinear)
-    graph = _kept(whole, options)
-    if len(graph.segments) < len(whole.segments):
-        notes.append(_left_out(len(whole.segments) - len(graph.segments), "touch too few others in the photo", options))
-    on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
-    solution = _within_groups(graph, solve(graph, options.solve, on_progress))
-    on_stage("lifting the lines into space")
-    return _scene(photo, camera, frame, graph, solution, lift(graph, solution), notes, options)
+    return FoundLines(camera, frame, segments, tuple(notes))
+
+
+def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
+    """The line graph of all found lines, and the part of it that is solved; ReconstructionError when that is none."""
+    whole = build_line_graph(
+        found.segments, found.camera, found.frame, options.extension, options.weights, options.collinear
+    )
+    return whole, _kept(whole, options)
+
+
+def place(
+    photo: Photo,
+    found: FoundLines,
+    graph: LineGraph,
+    solution: Solution,
+    options: ReconstructOptions,
+    left_out: int = 0,
+) -> Scene:
+    """The scene of a solved graph; `left_out` lines of the photo are not in it. May raise ReconstructionError."""
+    notes = list(found.notes)
+    if left_out:
+        notes.append(_left_out(left_out, "touch too few others in the photo", options))
+    solution = _within_groups(graph, solution)
+    return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options)
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:

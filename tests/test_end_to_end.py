@@ -12,7 +12,8 @@ import pytest
 import trimesh
 
 from linecad.calibration import undistort_points
-from linecad.evaluation import nearest_axes, rotation_error, score_depth
+from linecad.evaluation.depth import score_depth
+from linecad.evaluation.frames import nearest_axes, rotation_error
 from linecad.photo import read_photo
 from linecad.pipeline import ReconstructOptions, reconstruct
 from linecad.scenefile import read_scene

@@ -18,7 +18,7 @@ import numpy as np
 from real_photos import surveyed_points
 
 from linecad.calibration import undistort_points
-from linecad.evaluation import rotation_error
+from linecad.evaluation.frames import rotation_error
 from linecad.geometry import world_rays
 from linecad.graph import CORNER_FACTOR, JUNCTION_WEIGHT, build_line_graph, components, spanning_tree
 from linecad.lifting import lift

@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 
 from linecad.calibration import undistort_points
-from linecad.evaluation import nearest_axes, rotation_error, score_depth
+from linecad.evaluation.depth import score_depth
+from linecad.evaluation.frames import nearest_axes, rotation_error
 from linecad.photo import read_photo
 from linecad.pipeline import ReconstructOptions, reconstruct
 from linecad.segments import find_segments

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from linecad.errors import ReconstructionError
-from linecad.evaluation import rotation_error
+from linecad.evaluation.frames import rotation_error
 from linecad.geometry import project
 from linecad.graph import build_line_graph
 from linecad.lifting import lift

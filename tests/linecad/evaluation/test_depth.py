@@ -5,7 +5,8 @@ from itertools import permutations
 import numpy as np
 import pytest
 
-from linecad.evaluation import REACH, line_depths, nearest_axes, rotation_error, score_depth
+from linecad.evaluation.depth import REACH, line_depths, score_depth
+from linecad.evaluation.frames import nearest_axes, rotation_error
 from linecad.geometry import rotation_about, world_rays
 from linecad.scene import Camera, Intersections, Lines, Scene, SolveReport
 

@@ -1,0 +1,1 @@
+"""How good a reconstruction is: truth of several kinds, the paper's tables, depths, planes, a report."""

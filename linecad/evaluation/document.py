@@ -1,0 +1,89 @@
+"""The results of an evaluation as JSON and as Markdown (docs/evaluation.md)."""
+
+import json
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from linecad import __version__
+from linecad.evaluation.bootstrap import Estimate
+from linecad.evaluation.measure import PhotoResult
+from linecad.evaluation.methods import Settings
+from linecad.evaluation.tables import Row, Table
+from linecad.files import write_atomically
+
+FORMAT, VERSION = "linecad-evaluation", 1
+NOTHING = "-"
+
+
+def write_json(
+    path: Path, dataset: str, settings: Settings, results: Sequence[PhotoResult], tables: Sequence[Table]
+) -> None:
+    """Write everything that was measured; OutputError when the file cannot be written."""
+    document: dict[str, Any] = {
+        "format": FORMAT,
+        "version": VERSION,
+        "linecad": __version__,
+        "dataset": dataset,
+        "settings": {name: value for name, value in asdict(settings).items() if name != "pictures"},
+        "tables": [asdict(table) for table in tables],
+        "photos": [result.document() for result in results],
+    }
+    text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    write_atomically(path, lambda file: _write(file, text))
+
+
+def write_markdown(path: Path, dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> None:
+    """Write the tables as Markdown; OutputError when the file cannot be written."""
+    text = markdown(dataset, results, tables)
+    write_atomically(path, lambda file: _write(file, text))
+
+
+def _write(file: Path, text: str) -> None:
+    file.write_text(text, encoding="utf-8", newline="\n")
+
+
+def markdown(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> str:
+    """The tables as Markdown, with the intervals in brackets."""
+    parts = [f"# {dataset}\n\n{summary(results)}\n"]
+    for table in tables:
+        heads = [f"{column.name}{' ' + column.unit if column.unit else ''}" for column in table.columns]
+        lines = [
+            f"## {table.title}",
+            "",
+            table.note,
+            "",
+            "| | " + " | ".join(heads) + " |",
+            "| --- |" + " --- |" * len(heads),
+        ]
+        for row in table.rows:
+            lines.append(f"| {row.name} | " + " | ".join(cells_of(table, row)) + " |")
+        parts.append("\n".join(lines) + "\n")
+    return "\n".join(parts)
+
+
+def summary(results: Sequence[PhotoResult]) -> str:
+    """One or more sentences on what was measured and what failed."""
+    failed = [result for result in results if result.error is not None]
+    text = f"{len(results) - len(failed)} photos measured; in brackets the 95 % interval of a bootstrap over photos."
+    for result in failed:
+        text += f" {result.name} failed: {result.error}."
+    return text
+
+
+def cells_of(table: Table, row: Row) -> list[str]:
+    """The cells of a row as text; the unit follows where it is the row's own."""
+    if row.unit is None:
+        return [shown(cell, column.unit) for cell, column in zip(row.cells, table.columns, strict=True)]
+    return [f"{shown(cell, row.unit)} {row.unit}".rstrip() for cell in row.cells]
+
+
+def shown(cell: Estimate | None, unit: str) -> str:
+    """A figure with its interval, percentages with one digit."""
+    if cell is None:
+        return NOTHING
+    if unit == "%":
+        return f"{100 * cell.value:.1f} ({100 * cell.low:.1f} to {100 * cell.high:.1f})"
+    digits = 2 if abs(cell.value) < 100 else 0
+    return f"{cell.value:.{digits}f} ({cell.low:.{digits}f} to {cell.high:.{digits}f})"

@@ -1,0 +1,203 @@
+"""Everything that is measured on one photo, in one record."""
+
+import base64
+from dataclasses import asdict, dataclass, field
+from typing import Any
+
+import cv2
+import numpy as np
+
+from linecad.errors import LinecadError
+from linecad.evaluation.datasets import Case
+from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
+from linecad.evaluation.depth import DepthScore, score_dense, score_depth
+from linecad.evaluation.frames import nearest_axes, rotation_error, true_axes
+from linecad.evaluation.labels import FAKE, REAL
+from linecad.evaluation.methods import ROWS, Run, Settings, run_method
+from linecad.evaluation.overlap import find_overlaps, union_length
+from linecad.evaluation.planes import PlaneScore, score_planes
+from linecad.evaluation.references import MarkedLines, Reference, open_case
+from linecad.lifting import lift
+from linecad.photo import Photo
+from linecad.pipeline import FoundLines, connect, find_lines, place
+from linecad.scene import Bool, Formulation, Int, LineGraph, Scene
+from solver.problem import solve
+
+MARKED_REACH = 3.0  # px between a line marked by hand and a reconstructed one
+MARKED_ANGLE = np.radians(3.0)
+PICTURE_WIDTH = 720  # px
+PICTURE_QUALITY = 75
+
+
+@dataclass(frozen=True)
+class MarkedScore:
+    """Reconstructed lines against lines marked by hand."""
+
+    right_axes: int  # marked lines whose nearest axis is the marked one
+    lines: int
+    covered: float  # px of marked lines along which a reconstructed line of the same axis runs
+    length: float  # px of marked lines
+
+
+@dataclass(frozen=True)
+class WholeResult:
+    """A photo reconstructed at the default settings, against all that is known about it."""
+
+    lines: int
+    planes: int
+    seconds: float  # s, of the solver
+    status: str
+    gap: float
+    decisions: Decisions | None  # None where no crossing has a label
+    rotation_error: float | None  # degrees
+    edges: DepthScore | None  # component 0 alone
+    edges_with_weak: DepthScore | None  # all components
+    dense: DepthScore | None
+    plane_score: PlaneScore | None
+    marked: MarkedScore | None
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What the report shows of a photo, in its own pixels."""
+
+    width: int
+    height: int
+    jpeg: str  # base64
+    lines: list[tuple[int, int, int, int, int]]  # both ends, and the axis
+    fake_taken: list[tuple[int, int]]  # crossings called real that are fake
+    real_missed: list[tuple[int, int]]
+
+
+@dataclass(frozen=True)
+class PhotoResult:
+    """All measures of one photo, or why there are none."""
+
+    name: str
+    error: str | None = None
+    statistics: GraphStatistics | None = None  # of the graph of table 1
+    methods: dict[Formulation, dict[str, Run]] = field(default_factory=dict)  # by formulation, by row of table 1
+    whole: WholeResult | None = None
+    picture: Picture | None = None
+
+    def document(self) -> dict[str, Any]:
+        """The record as JSON, without the picture."""
+        values = asdict(self)
+        del values["picture"]
+        return values
+
+
+def measure_photo(case: Case, settings: Settings) -> PhotoResult:
+    """Measure one photo; a photo that cannot be used or reconstructed gives a result with the error."""
+    try:
+        photo, reference = open_case(case)
+        return measure(case.name, photo, reference, settings)
+    except LinecadError as error:
+        return PhotoResult(case.name, str(error))
+
+
+def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -> PhotoResult:
+    """Measure a photo against its reference. Raises ReconstructionError or SolverError."""
+    found = find_lines(photo)
+    statistics: GraphStatistics | None = None
+    methods: dict[Formulation, dict[str, Run]] = {}
+    if reference.has_labels:
+        everything, graph = connect(found, settings.paper_graph())
+        label = reference.label(graph, found.camera, found.frame.rotation)
+        statistics = count(graph, label)
+        length = float(everything.segments.length.sum())
+        if settings.ablation:
+            methods = {
+                formulation: {
+                    row: run_method(graph, formulation, row, label, length, settings) for row in ROWS[formulation]
+                }
+                for formulation in settings.formulations
+            }
+    whole, picture = _whole(photo, found, reference, settings)
+    return PhotoResult(name, None, statistics, methods, whole, picture)
+
+
+def _whole(
+    photo: Photo, found: FoundLines, reference: Reference, settings: Settings
+) -> tuple[WholeResult, Picture | None]:
+    options = settings.whole_photo()
+    everything, graph = connect(found, options)
+    solution = solve(graph, options.solve)
+    scene = place(photo, found, graph, solution, options)
+    label = reference.label(graph, found.camera, found.frame.rotation)
+    residual = lift(graph, solution).residual
+    length = float(everything.segments.length.sum())
+    edges = reference.edges
+    largest = _score(reference, scene, scene.lines.component == 0)
+    result = WholeResult(
+        lines=len(scene.lines),
+        planes=len(scene.planes),
+        seconds=solution.seconds,
+        status=solution.status,
+        gap=solution.gap,
+        decisions=compare(graph, solution.connected, residual, label, length) if reference.has_labels else None,
+        rotation_error=_rotation_error(reference, scene),
+        edges=largest,
+        edges_with_weak=None if edges is None else score_depth(scene, edges.pixels, edges.depth),
+        dense=(
+            None
+            if reference.dense is None or largest is None or not largest.with_depth
+            else score_dense(scene, reference.dense.pixels, reference.dense.depth, largest.scale)
+        ),
+        plane_score=(
+            None
+            if reference.truth is None or largest is None or not largest.with_depth
+            else score_planes(scene, reference.truth, largest.scale)
+        ),
+        marked=None if reference.lines is None else _marked(reference, reference.lines, scene),
+    )
+    return result, _picture(photo, graph, solution.connected, label) if settings.pictures else None
+
+
+def _score(reference: Reference, scene: Scene, lines: Bool) -> DepthScore | None:
+    edges = reference.edges
+    return None if edges is None else score_depth(scene, edges.pixels, edges.depth, lines)
+
+
+def _rotation_error(reference: Reference, scene: Scene) -> float | None:
+    if reference.rotation is None:
+        return None
+    return float(np.degrees(rotation_error(scene.rotation, reference.rotation)[0]))
+
+
+def _marked(reference: Reference, marked: MarkedLines, scene: Scene) -> MarkedScore:
+    """Coverage and labels of lines that were marked by hand (method: the same axis, within MARKED_REACH)."""
+    assert reference.rotation is not None  # who marks lines by axis knows the axes
+    names = true_axes(scene.rotation, reference.rotation)
+    axis = names[scene.lines.axis]
+    nearest = names[nearest_axes(marked.ends, scene.camera.matrix, scene.rotation)]
+    covered = 0.0
+    for ends, own in zip(marked.ends, marked.axis.tolist(), strict=True):
+        along = find_overlaps(ends, scene.lines.segment[axis == own], MARKED_REACH, MARKED_ANGLE)
+        covered += union_length(along.start, along.end)
+    length = float(np.linalg.norm(marked.ends[:, 1] - marked.ends[:, 0], axis=1).sum())
+    return MarkedScore(int((nearest == marked.axis).sum()), len(marked.axis), covered, length)
+
+
+def _picture(photo: Photo, graph: LineGraph, chosen: Bool, label: Int) -> Picture:
+    scale = min(1.0, PICTURE_WIDTH / photo.width)
+    size = (max(1, round(photo.width * scale)), max(1, round(photo.height * scale)))
+    small = cv2.resize(photo.pixels, size, interpolation=cv2.INTER_AREA)
+    _, data = cv2.imencode(".jpg", small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, PICTURE_QUALITY])
+
+    def points(which: Bool) -> list[tuple[int, int]]:
+        return [(round(x), round(y)) for x, y in (graph.crossing[which] * scale).tolist()]
+
+    return Picture(
+        width=size[0],
+        height=size[1],
+        jpeg=base64.b64encode(data.tobytes()).decode("ascii"),
+        lines=[
+            (round(a), round(b), round(c), round(d), axis)
+            for (a, b, c, d), axis in zip(
+                (graph.segments.ends.reshape(-1, 4) * scale).tolist(), graph.axis.tolist(), strict=True
+            )
+        ],
+        fake_taken=points(chosen & (label == FAKE)),
+        real_missed=points(~chosen & (label == REAL)),
+    )

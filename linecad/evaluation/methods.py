@@ -1,0 +1,86 @@
+"""The rows of the paper's table 1: which families of constraints each method has, and how it is run on a graph."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.evaluation.decisions import Decisions, compare
+from linecad.graph import Weights
+from linecad.lifting import lift
+from linecad.pipeline import ReconstructOptions
+from linecad.scene import Bool, Float, Formulation, Int, LineGraph
+from solver.problem import DEFAULT_MU_BOUNDARY, FAMILIES, Family, SolveOptions, solve
+
+BASELINE = "Baseline"
+PAPER_ROWS = (BASELINE, "B", "C", "P", "B+C", "B+P", "C+P", "B+C+P")
+# Cycles that cannot close are refused by formulation gain itself, so family C cannot be taken from it or added.
+GAIN_ROWS = ("none", "B", "P", "B+P")
+ROWS: dict[Formulation, tuple[str, ...]] = {"paper": PAPER_ROWS, "gain": GAIN_ROWS}
+LETTERS: dict[Family, str] = {"boundary": "B", "cycles": "C", "planarity": "P"}
+
+
+@dataclass(frozen=True)
+class Settings:
+    """How a dataset is evaluated; the same settings give the same figures, except where a time limit ends a search."""
+
+    formulations: tuple[Formulation, ...] = ("paper", "gain")  # for table 1
+    ablation: bool = True  # solve all rows of table 1, or only the default settings
+    time_limit_s: float = 60.0  # s, for each solve
+    weights: Weights = "junctions"
+    mu_planarity: float = 0.5
+    mu_boundary: float | None = None  # None: the default of each formulation
+    pictures: bool = False  # keep what the report shows of each photo
+
+    def options(self, formulation: Formulation, row: str) -> SolveOptions:
+        """The solver's options for a row of table 1 that is no baseline."""
+        return self._options(formulation, frozenset(name for name in FAMILIES if LETTERS[name] not in row.split("+")))
+
+    def _options(self, formulation: Formulation, without: frozenset[Family]) -> SolveOptions:
+        default = DEFAULT_MU_BOUNDARY[formulation]
+        return SolveOptions(
+            formulation=formulation,
+            without=without,
+            mu_planarity=self.mu_planarity,
+            mu_boundary=default if self.mu_boundary is None else self.mu_boundary,
+            time_limit_s=self.time_limit_s,
+        )
+
+    def paper_graph(self) -> ReconstructOptions:
+        """The line graph of table 1: the paper's extension, no collinear edges, the largest component."""
+        return ReconstructOptions(weights=self.weights, collinear=False, largest_component=True)
+
+    def whole_photo(self) -> ReconstructOptions:
+        """What `linecad convert` does with a photo when nothing is said."""
+        return ReconstructOptions(weights=self.weights, solve=self._options("gain", frozenset()))
+
+
+@dataclass(frozen=True)
+class Run:
+    """One method on one photo."""
+
+    decisions: Decisions
+    seconds: float  # s, of the solver
+    status: str
+    gap: float
+
+
+def run_method(
+    graph: LineGraph, formulation: Formulation, row: str, label: Int, total_length: float, settings: Settings
+) -> Run:
+    """Solve a graph by one row of table 1 and compare with the labels (E,). Raises SolverError."""
+    if row == BASELINE:
+        return _run_baseline(graph, label, total_length, settings)
+    solution = solve(graph, settings.options(formulation, row))
+    chosen: Bool = solution.connected
+    residual: Float = lift(graph, solution).residual
+    decisions = compare(graph, chosen, residual, label, total_length)
+    return Run(decisions, solution.seconds, solution.status, solution.gap)
+
+
+def _run_baseline(graph: LineGraph, label: Int, total_length: float, settings: Settings) -> Run:
+    """The baseline chooses nothing: its tree is the minimum spanning tree of all crossings, in order of slack."""
+    from solver.baseline import solve_baseline
+
+    found = solve_baseline(graph, settings.time_limit_s)
+    decisions = compare(graph, np.ones(len(graph.edges), bool), found.slack, label, total_length)
+    return Run(decisions, found.seconds, "optimal", 0.0)

@@ -1,0 +1,173 @@
+"""The results of all photos as tables: the paper's two, and the measures of the default settings."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from linecad.evaluation.bootstrap import Estimate, mean, ratio_of_sums
+from linecad.evaluation.decisions import Decisions
+from linecad.evaluation.measure import PhotoResult, WholeResult
+from linecad.evaluation.methods import BASELINE, ROWS, Run, Settings
+from linecad.scene import Formulation
+
+CHOOSING = ("precision", "recall", "F1")  # columns that only a method that chooses crossings has
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of figures."""
+
+    name: str
+    unit: str  # "%": a share from 0 to 1, shown as a percentage; else a unit, or nothing
+
+
+@dataclass(frozen=True)
+class Row:
+    """A row; a cell is None where nothing is known."""
+
+    name: str
+    cells: tuple[Estimate | None, ...]
+    unit: str | None = None  # of this row's cells, where it is not the column's
+
+
+@dataclass(frozen=True)
+class Table:
+    """Figures with their intervals."""
+
+    title: str
+    note: str
+    columns: tuple[Column, ...]
+    rows: tuple[Row, ...]
+
+
+def all_tables(results: Sequence[PhotoResult], settings: Settings) -> list[Table]:
+    """The tables that these results fill; photos with an error are in none."""
+    good = [result for result in results if result.error is None]
+    tables = []
+    for formulation in settings.formulations:
+        if any(formulation in result.methods for result in good):
+            tables.append(table_1(good, formulation))
+    if any(result.statistics for result in good):
+        tables.append(table_2(good))
+    if any(result.whole for result in good):
+        tables.append(measures([result.whole for result in good if result.whole]))
+    return tables
+
+
+def table_1(results: Sequence[PhotoResult], formulation: Formulation) -> Table:
+    """The paper's ablation: accuracy of the minimum spanning tree by families of constraints."""
+    per_cent = [Column(name, "%") for name in ("mean acc.", "norm. acc.", "length in tree", *CHOOSING)]
+    rows = []
+    for name in ROWS[formulation]:
+        runs = [result.methods[formulation][name] for result in results if name in result.methods.get(formulation, {})]
+        rows.append(Row(name, _run_cells(runs, chooses=name != BASELINE)))
+    note = "Crossings of the largest component at an extension of 30 px (at 3840 px width), no collinear edges. "
+    if formulation == "gain":
+        note += "Family C is part of the formulation itself, so it has no rows."
+    else:
+        note += "The baseline chooses no crossings, so it has no precision, recall and F1."
+    return Table(
+        f"Table 1, formulation {formulation}",
+        note,
+        (*per_cent, Column("solver", "s"), Column("proven optimal", "%")),
+        tuple(rows),
+    )
+
+
+def _run_cells(runs: Sequence[Run], chooses: bool) -> tuple[Estimate | None, ...]:
+    choosing = _choosing([run.decisions for run in runs]) if chooses else (None, None, None)
+    return (
+        *_tree([run.decisions for run in runs]),
+        *choosing,
+        mean([run.seconds for run in runs]),
+        mean([float(run.status == "optimal") for run in runs]),
+    )
+
+
+def _tree(counted: Sequence[Decisions]) -> tuple[Estimate | None, ...]:
+    """Mean accuracy sum n_a / sum N_a, normalised accuracy mean n_a / N_a, share of line length in the tree."""
+    return (
+        ratio_of_sums([d.tree_real for d in counted], [d.tree_real + d.tree_fake for d in counted]),
+        mean([d.tree_share for d in counted]),
+        ratio_of_sums([d.tied_length for d in counted], [d.total_length for d in counted]),
+    )
+
+
+def _choosing(counted: Sequence[Decisions]) -> tuple[Estimate | None, ...]:
+    """Precision, recall and F1 of the crossings, over all crossings of all photos."""
+    right = [d.chosen_real for d in counted]
+    return (
+        ratio_of_sums(right, [d.chosen_real + d.chosen_fake for d in counted]),
+        ratio_of_sums(right, [d.chosen_real + d.missed_real for d in counted]),
+        ratio_of_sums([2 * n for n in right], [2 * d.chosen_real + d.chosen_fake + d.missed_real for d in counted]),
+    )
+
+
+def table_2(results: Sequence[PhotoResult]) -> Table:
+    """The paper's statistics of a dataset, per photo."""
+    counted = [result.statistics for result in results if result.statistics]
+    rows = (
+        ("line segments in the largest connected component", mean([float(s.lines) for s in counted])),
+        ("connections in the line graph", mean([float(s.crossings) for s in counted])),
+        ("correct connections", mean([float(s.real) for s in counted])),
+        ("incorrect connections", mean([float(s.fake) for s in counted])),
+        ("connections undecided or not labelled", mean([float(s.undecided) for s in counted])),
+    )
+    return Table(
+        "Table 2, statistics",
+        f"Mean per photo over {len(counted)} labelled photos; the graph is that of table 1.",
+        (Column("mean", ""),),
+        tuple(Row(name, (cell,)) for name, cell in rows),
+    )
+
+
+def measures(wholes: Sequence[WholeResult]) -> Table:
+    """The measures of the default settings, whole photos."""
+
+    def each(read: Callable[[WholeResult], float | None]) -> Estimate | None:
+        return mean([read(whole) for whole in wholes])
+
+    decisions = [whole.decisions for whole in wholes if whole.decisions]
+    planes = [whole.plane_score for whole in wholes if whole.plane_score]
+    marked = [whole.marked for whole in wholes if whole.marked]
+    tree, choosing = _tree(decisions), _choosing(decisions)
+    rows = [
+        ("crossings: precision", "%", choosing[0]),
+        ("crossings: recall", "%", choosing[1]),
+        ("crossings: F1", "%", choosing[2]),
+        ("tree: mean accuracy", "%", tree[0]),
+        ("tree: normalised accuracy", "%", tree[1]),
+        ("tree: share of line length", "%", tree[2]),
+        ("depth recall at 2 %", "%", each(lambda w: w.edges.recall_2 if w.edges else None)),
+        ("depth recall at 5 %", "%", each(lambda w: w.edges.recall_5 if w.edges else None)),
+        ("depth precision at 2 %", "%", each(lambda w: _precision(w, 2))),
+        ("depth precision at 5 %", "%", each(lambda w: _precision(w, 5))),
+        ("depth recall at 5 %, weak lines too", "%", each(_recall_with_weak)),
+        ("dense recall at 2 %", "%", each(lambda w: w.dense.recall_2 if w.dense else None)),
+        ("dense recall at 5 %", "%", each(lambda w: w.dense.recall_5 if w.dense else None)),
+        ("planes: precision", "%", ratio_of_sums([p.right_lines for p in planes], [p.lines for p in planes])),
+        ("planes: recall", "%", ratio_of_sums([p.found_pixels for p in planes], [p.pixels for p in planes])),
+        ("marked line length covered", "%", ratio_of_sums([m.covered for m in marked], [m.length for m in marked])),
+        ("marked lines of right axis", "%", ratio_of_sums([m.right_axes for m in marked], [m.lines for m in marked])),
+        ("rotation error", "degrees", each(lambda w: w.rotation_error)),
+        ("lines", "", each(lambda w: float(w.lines))),
+        ("planes", "", each(lambda w: float(w.planes))),
+        ("solver", "s", each(lambda w: w.seconds)),
+        ("proven optimal", "%", each(lambda w: float(w.status == "optimal"))),
+    ]  # fmt: skip
+    return Table(
+        "Default settings, whole photos",
+        "Formulation gain, collinear edges, all components; depths, faces and planes are those of the largest one.",
+        (Column("value", ""),),
+        tuple(Row(name, (cell,), unit) for name, unit, cell in rows if cell is not None),
+    )
+
+
+def _recall_with_weak(whole: WholeResult) -> float | None:
+    return None if whole.edges_with_weak is None else whole.edges_with_weak.recall_5
+
+
+def _precision(whole: WholeResult, per_cent: int) -> float | None:
+    """None where no point got a depth: there is nothing that could be wrong."""
+    if whole.edges is None or whole.edges.with_depth == 0:
+        return None
+    return whole.edges.precision_2 if per_cent == 2 else whole.edges.precision_5
