@@ -39,9 +39,9 @@ def find_overlaps(segment: Float, pieces: Float, reach: float, angle: float) -> 
     first, last = _between(position, advance, 0.0, piece_length[near])
     start = np.maximum(np.maximum(low, first), 0.0)
     end = np.minimum(np.minimum(high, last), length)
-    found = end - start > TINY
-    middle = np.abs(offset + (start + end) / 2 * slope)
-    return Overlaps(near[found], start[found], end[found], middle[found])
+    found = np.flatnonzero(end - start > TINY)
+    start, end = start[found], end[found]
+    return Overlaps(near[found], start, end, np.abs(offset[found] + (start + end) / 2 * slope[found]))
 
 
 def _between(value: Float, rate: Float, low: float, high: float | Float) -> tuple[Float, Float]:

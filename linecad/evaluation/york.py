@@ -37,10 +37,14 @@ class York:
 def read_york(folder: Path, name: str) -> York:
     """The truth in the folder of one photo; DatasetError when a file is missing or does not hold what it should."""
     camera = _load(folder.parent / YORK_CAMERA)
-    focal = _array(camera, "focal", 1)[0] / _array(camera, "pixelSize", 1)[0]
+    focal_mm, pixel_mm = _array(camera, "focal", 1)[0], _array(camera, "pixelSize", 1)[0]
     centre = _array(camera, "pp", 2) - FROM_ONE
-    if not (np.isfinite(focal) and focal > 0):
-        raise DatasetError(f"{folder.parent / YORK_CAMERA} gives a focal length of {focal:g} px; download it again")
+    if not (focal_mm > 0 and pixel_mm > 0):
+        raise DatasetError(
+            f"{folder.parent / YORK_CAMERA} gives a focal length of {focal_mm:g} mm and pixels of {pixel_mm:g} mm; "
+            "download it again"
+        )
+    focal = focal_mm / pixel_mm
     lines_file = folder / f"{name}{YORK_LINES}"
     lines = _load(lines_file)
     ends = _array(lines, "lines", None)
@@ -85,6 +89,8 @@ def _array(content: dict[str, Any], name: str, size: int | None) -> Float:
         found = np.asarray(content[name], np.float64).ravel()
     except (TypeError, ValueError) as error:
         raise DatasetError(f"'{name}' in {content[_PATH]} is not made of numbers; download it again") from error
-    if (size is not None and found.size != size) or not np.isfinite(found).all():
-        raise DatasetError(f"'{name}' in {content[_PATH]} has {found.size} numbers, expected {size or 'finite ones'}")
+    if size is not None and found.size != size:
+        raise DatasetError(f"'{name}' in {content[_PATH]} has {found.size} numbers, expected {size}; download it again")
+    if not np.isfinite(found).all():
+        raise DatasetError(f"'{name}' in {content[_PATH]} has numbers that are not finite; download it again")
     return found

@@ -1,0 +1,126 @@
+"""`linecad evaluate` from folder to files: the same figures whatever the number of workers, errors in one line."""
+
+import json
+import multiprocessing
+import os
+
+import pytest
+
+from linecad.cli import main
+from linecad.errors import LinecadError
+from linecad.evaluation.datasets import Case, find_dataset
+from linecad.evaluation.methods import Settings
+from linecad.evaluation.run import THREADS, evaluate
+
+
+def without_seconds(value):
+    """JSON without what a clock told."""
+    if isinstance(value, dict):
+        return {name: without_seconds(each) for name, each in value.items() if name not in ("seconds", "tables")}
+    return [without_seconds(each) for each in value] if isinstance(value, list) else value
+
+
+def test_the_figures_do_not_hang_on_the_number_of_workers(york_folder, tmp_path, capsys):
+    documents = []
+    for workers in (1, 2):
+        out = tmp_path / f"{workers}.json"
+        assert main(["evaluate", str(york_folder), "--json", str(out), "--workers", str(workers), "--quiet"]) == 0
+        documents.append(without_seconds(json.loads(out.read_text())))
+    assert documents[0] == documents[1]
+    assert [photo["name"] for photo in documents[0]["photos"]] == ["P1", "P2"]
+    out, err = capsys.readouterr()
+    assert "marked line length covered" in out
+    assert err == ""
+
+
+def test_labels_made_by_hand_give_the_papers_tables(labels_folder, tmp_path, capsys):
+    files = [tmp_path / name for name in ("a.json", "a.md", "a.html")]
+    names = [
+        option for pair in zip(("--json", "--markdown", "--report"), map(str, files), strict=True) for option in pair
+    ]
+    assert main(["evaluate", str(labels_folder), *names, "--time-limit", "20"]) == 0
+    out, err = capsys.readouterr()
+    assert "boxes: measured" in err
+    assert files[1].read_text() == out
+    assert "## Table 1, formulation paper" in out
+    assert "## Table 1, formulation gain" in out
+    document = json.loads(files[0].read_text())
+    statistics = document["photos"][0]["statistics"]
+    assert statistics["real"] > 20
+    assert document["photos"][0]["methods"]["gain"]["B+P"]["decisions"]["tree_fake"] == 0
+    assert files[2].read_text().startswith("<!DOCTYPE html>")
+
+
+def test_without_ablation_only_the_default_settings_are_solved(labels_folder, tmp_path, capsys):
+    out = tmp_path / "a.json"
+    assert main(["evaluate", str(labels_folder), "--json", str(out), "--no-ablation", "--quiet"]) == 0
+    photo = json.loads(out.read_text())["photos"][0]
+    assert photo["methods"] == {}
+    assert photo["whole"]["decisions"]["chosen_real"] > 20
+    assert "Table 1" not in capsys.readouterr().out
+
+
+def test_one_photo_that_fails_does_not_stop_the_others(york_folder, tmp_path, capsys):
+    (tmp_path / "P1.png").write_bytes(b"")
+    cases = list(find_dataset(york_folder).cases)
+    broken = Case("broken", "york", tmp_path / "P1.png", cases[0].truth)
+    found = evaluate((broken, cases[1]), Settings(), 1)
+    assert "cannot be read" in found[0].error or "P1.png" in found[0].error
+    assert found[1].error is None
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "says"),
+    [
+        ([], 2, "DATASET"),
+        (["none"], 1, "not a folder"),
+        (["."], 1, "no dataset"),
+        ([".", "--json", "none/a.json"], 1, "none"),
+        ([".", "--workers", "0"], 2, "'0' is not a whole number"),
+        ([".", "--limit", "x"], 2, "'x' is not a whole number"),
+        ([".", "--time-limit", "0"], 2, "positive"),
+    ],
+)
+def test_wrong_use_is_told_in_one_line(tmp_path, monkeypatch, capsys, arguments, code, says):
+    monkeypatch.chdir(tmp_path)
+    try:
+        ended = main(["evaluate", *arguments])
+    except SystemExit as leaving:
+        ended = leaving.code
+    err = capsys.readouterr().err
+    assert ended == code
+    assert says in err
+    assert len(err.strip().splitlines()) == 1
+
+
+def test_when_no_photo_can_be_measured_the_command_fails(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    labels = {"format": "linecad-labels", "version": 1, "photo": "none.jpg", "crossings": []}
+    (tmp_path / "a.json").write_text(json.dumps(labels))
+    assert main(["evaluate", ".", "--json", "out.json", "--quiet"]) == 1
+    assert "none.jpg" in capsys.readouterr().err
+    assert not (tmp_path / "out.json").exists()
+
+
+def test_a_report_that_raises_ends_the_processes(york_folder):
+    def interrupt(*_):
+        raise KeyboardInterrupt
+
+    before = {name: os.environ.get(name) for name in THREADS}
+    with pytest.raises(KeyboardInterrupt):
+        evaluate(find_dataset(york_folder).cases, Settings(), 1, interrupt)
+    for process in multiprocessing.active_children():
+        process.join(10)
+    assert multiprocessing.active_children() == []
+    assert {name: os.environ.get(name) for name in THREADS} == before
+
+
+def test_a_process_that_dies_is_an_error(monkeypatch, york_folder):
+    monkeypatch.setattr("linecad.evaluation.run._set_up", die)
+    with pytest.raises(LinecadError, match="died"):
+        evaluate(find_dataset(york_folder).cases, Settings(), 1)
+
+
+def die():
+    os._exit(3)

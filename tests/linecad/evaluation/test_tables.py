@@ -1,0 +1,109 @@
+"""Results of several photos as tables, JSON and Markdown."""
+
+import json
+
+import pytest
+
+from linecad.evaluation.bootstrap import Estimate
+from linecad.evaluation.decisions import Decisions, GraphStatistics
+from linecad.evaluation.depth import DepthScore
+from linecad.evaluation.document import markdown, shown, write_json, write_markdown
+from linecad.evaluation.measure import PhotoResult, WholeResult
+from linecad.evaluation.methods import BASELINE, Run, Settings
+from linecad.evaluation.tables import all_tables, measures, table_1, table_2
+
+SETTINGS = Settings(formulations=("paper",))
+
+
+def photo(name, real, fake, chosen_fake=0):
+    decisions = Decisions(real, fake, real + 5, chosen_fake, 5, 50.0, 100.0)
+    run = Run(decisions, 2.0, "optimal", 0.0)
+    score = DepthScore(10, 5, 0.2, 0.4, 0.5, 1.0)
+    whole = WholeResult(20, 3, 1.0, "time limit", 0.1, decisions, 0.5, score, score, None, None, None)
+    return PhotoResult(name, None, GraphStatistics(10, 20, 12, 6, 2), {"paper": {BASELINE: run, "B": run}}, whole)
+
+
+PHOTOS = [photo("a", 9, 1), photo("b", 1, 1, 10)]
+FAILED = PhotoResult("c", "the photo is black")
+
+
+def row(table, name):
+    return next(row for row in table.rows if row.name == name).cells
+
+
+def test_mean_and_normalised_accuracy_are_the_papers():
+    cells = row(table_1(PHOTOS, "paper"), "B")
+    assert cells[0].value == pytest.approx(10 / 12)  # sum n_a / sum N_a
+    assert cells[1].value == pytest.approx((9 / 10 + 1 / 2) / 2)  # mean n_a / N_a
+    assert cells[2].value == pytest.approx(0.5)
+    precision, recall, f1 = (cell.value for cell in cells[3:6])
+    assert (precision, recall) == (pytest.approx(20 / 30), pytest.approx(20 / 30))
+    assert f1 == pytest.approx(2 * precision * recall / (precision + recall))
+    assert cells[6].value == 2
+    assert cells[7].value == 1
+
+
+def test_the_baseline_has_no_precision_and_a_method_that_did_not_run_no_figures():
+    assert row(table_1(PHOTOS, "paper"), BASELINE)[3:6] == (None, None, None)
+    assert row(table_1(PHOTOS, "paper"), BASELINE)[0] is not None
+    assert set(row(table_1(PHOTOS, "paper"), "B+C+P")) == {None}
+
+
+def test_statistics_are_means_per_photo():
+    table = table_2(PHOTOS)
+    assert [cells.cells[0].value for cells in table.rows] == [10, 20, 12, 6, 2]
+    assert "2 labelled photos" in table.note
+
+
+def test_measures_that_no_photo_has_are_no_rows():
+    names = {row.name: row for row in measures([each.whole for each in PHOTOS]).rows}
+    assert names["depth recall at 5 %"].cells[0].value == pytest.approx(0.4)
+    assert names["proven optimal"].cells[0].value == 0
+    assert not [name for name in names if "planes:" in name or "dense" in name or "marked" in name]
+
+
+def test_photos_that_failed_are_in_no_table_and_named():
+    tables = all_tables([*PHOTOS, FAILED], SETTINGS)
+    assert tables == all_tables(PHOTOS, SETTINGS)
+    text = markdown("street", [*PHOTOS, FAILED], tables)
+    assert "2 photos measured" in text
+    assert "c failed: the photo is black" in text
+
+
+def test_markdown_has_as_many_cells_in_each_row_of_a_table():
+    text = markdown("street", PHOTOS, all_tables(PHOTOS, SETTINGS))
+    assert text.startswith("# street\n")
+    for part in text.split("\n\n"):
+        rows = [line for line in part.splitlines() if line.startswith("|")]
+        assert len({line.count("|") for line in rows}) <= 1
+    assert "| B | 83.3 (" in text
+    assert "| B+C+P | - |" in text
+    assert "| rotation error | 0.50 (0.50 to 0.50) degrees |" in text
+
+
+def test_files_say_the_same_each_time(tmp_path):
+    tables = all_tables([*PHOTOS, FAILED], SETTINGS)
+    for name in ("a", "b"):
+        write_json(tmp_path / f"{name}.json", "street", SETTINGS, [*PHOTOS, FAILED], tables)
+        write_markdown(tmp_path / f"{name}.md", "street", PHOTOS, tables)
+    assert (tmp_path / "a.json").read_bytes() == (tmp_path / "b.json").read_bytes()
+    assert (tmp_path / "a.md").read_bytes() == (tmp_path / "b.md").read_bytes()
+    document = json.loads((tmp_path / "a.json").read_text())
+    assert (document["format"], document["version"], document["dataset"]) == ("linecad-evaluation", 1, "street")
+    assert document["settings"]["time_limit_s"] == 60
+    assert [each["name"] for each in document["photos"]] == ["a", "b", "c"]
+    assert document["photos"][0]["methods"]["paper"]["B"]["decisions"]["tree_real"] == 9
+    assert document["tables"][0]["rows"][1]["cells"][0]["value"] == pytest.approx(10 / 12)
+
+
+@pytest.mark.parametrize(
+    ("cell", "unit", "text"),
+    [
+        (Estimate(0.8321, 0.8, 0.85, 5), "%", "83.2 (80.0 to 85.0)"),
+        (Estimate(3.14159, 2, 4, 5), "s", "3.14 (2.00 to 4.00)"),
+        (Estimate(867.22, 800.4, 901, 5), "", "867 (800 to 901)"),
+        (None, "%", "-"),
+    ],
+)
+def test_figures_are_shown_with_their_interval(cell, unit, text):
+    assert shown(cell, unit) == text
