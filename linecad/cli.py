@@ -60,8 +60,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
-    _add_export(commands)
     _add_evaluate(commands)
+    _add_export(commands)
     return parser
 
 
@@ -123,26 +123,6 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_loudness(convert)
 
 
-def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
-    export = commands.add_parser(
-        "export",
-        help="a scene file to CAD files",
-        description="Write a scene, as `linecad convert` saved it, in other formats.",
-        epilog="example: linecad export facade.json -o facade.dxf -o facade.usdz",
-    )
-    export.set_defaults(run=_export)
-    export.add_argument("scene", type=Path, metavar="SCENE.json", nargs="?")
-    _add_outputs(export)
-    export.add_argument(
-        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for the picture (else looked for)"
-    )
-    export.add_argument(
-        "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
-    )
-    export.add_argument("--formats", action="store_true", help="list the formats and end")
-    _add_loudness(export)
-
-
 def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
     evaluate = commands.add_parser(
         "evaluate",
@@ -179,6 +159,26 @@ def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_loudness(evaluate)
 
 
+def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    export = commands.add_parser(
+        "export",
+        help="a scene file to CAD files",
+        description="Write a scene, as `linecad convert` saved it, in other formats.",
+        epilog="example: linecad export facade.json -o facade.dxf -o facade.usdz",
+    )
+    export.set_defaults(run=_export)
+    export.add_argument("scene", type=Path, metavar="SCENE.json", nargs="?")
+    _add_outputs(export)
+    export.add_argument(
+        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for the picture (else looked for)"
+    )
+    export.add_argument(
+        "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
+    )
+    export.add_argument("--formats", action="store_true", help="list the formats and end")
+    _add_loudness(export)
+
+
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
@@ -190,6 +190,12 @@ def _add_loudness(parser: argparse.ArgumentParser) -> None:
     loudness = parser.add_mutually_exclusive_group()
     loudness.add_argument("--quiet", action="store_true", help="no progress")
     loudness.add_argument("--verbose", action="store_true", help="the time of every stage")
+
+
+def _count(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 1 or more")
+    return int(text)
 
 
 def _positive(text: str) -> float:
@@ -207,12 +213,6 @@ def _not_negative(text: str) -> float:
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
     return value
-
-
-def _count(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 1 or more")
-    return int(text)
 
 
 def _extension(text: str) -> float:
@@ -271,22 +271,6 @@ def _convert(parsed: argparse.Namespace) -> int:
     return 0
 
 
-def _export(parsed: argparse.Namespace) -> int:
-    if parsed.formats:
-        return _print_formats()
-    if parsed.scene is None:
-        raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
-    _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
-    from linecad.scenefile import read_scene
-
-    with _Shown(parsed) as show:
-        show.stage("reading the scene")
-        scene = read_scene(parsed.scene)
-        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
-        _write(scene, photo, parsed.output, show)
-    return 0
-
-
 def _evaluate(parsed: argparse.Namespace) -> int:
     from linecad.evaluation.datasets import find_dataset
     from linecad.evaluation.document import markdown, write_json, write_markdown
@@ -325,6 +309,22 @@ def _evaluate(parsed: argparse.Namespace) -> int:
     if parsed.report is not None:
         write_report(parsed.report, dataset.name, results, tables)
     print(markdown(dataset.name, results, tables), end="")
+    return 0
+
+
+def _export(parsed: argparse.Namespace) -> int:
+    if parsed.formats:
+        return _print_formats()
+    if parsed.scene is None:
+        raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
+    _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    from linecad.scenefile import read_scene
+
+    with _Shown(parsed) as show:
+        show.stage("reading the scene")
+        scene = read_scene(parsed.scene)
+        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
+        _write(scene, photo, parsed.output, show)
     return 0
 
 

@@ -4,8 +4,8 @@ LinecadError
 ├── InputError         a file that cannot be used: photo, camera, scene
 │   ├── PhotoError     not an image, truncated, too large, too small
 │   ├── CameraError    a calibration that is malformed or of another size
-│   ├── DatasetError   photos with ground truth that are missing, damaged or of an unknown format
-│   └── SceneFileError a scene file that does not say what its format promises
+│   ├── SceneFileError a scene file that does not say what its format promises
+│   └── DatasetError   a made dataset that is damaged or was begun with other options
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
 └── SolverError        the solver ended without any usable answer
@@ -30,12 +30,12 @@ class CameraError(InputError):
     """The calibration is malformed or does not belong to the photo."""
 
 
-class DatasetError(InputError):
-    """A dataset for evaluation is missing, damaged or of an unknown format."""
-
-
 class SceneFileError(InputError):
     """The scene file breaks the promises of docs/scene-file.md."""
+
+
+class DatasetError(InputError):
+    """A dataset breaks the promises of docs/dataset.md, or was begun with other options."""
 
 
 class OutputError(LinecadError):
