@@ -42,7 +42,7 @@ class TrueLines:
     direction: Float  # (N, 3) unit vector along it; NaN for spurious ones
 
 
-def label_segments(truth: Truth, segments: Segments, rotation: Float | None = None) -> TrueLines:
+def find_true_lines(truth: Truth, segments: Segments, rotation: Float | None = None) -> TrueLines:
     """What each segment shows. `rotation` is the frame (3, 3) that names the segments' axes, if not the truth's own."""
     names = true_axes(truth.rotation if rotation is None else rotation, truth.rotation)
     count = len(segments)
@@ -70,8 +70,8 @@ def label_segments(truth: Truth, segments: Segments, rotation: Float | None = No
 
 
 def label_crossings(truth: Truth, graph: LineGraph, rotation: Float | None = None) -> Int:
-    """REAL, FAKE or UNDECIDED for each crossing (E,) of a graph; `rotation` as in `label_segments`."""
-    lines = label_segments(truth, graph.segments, rotation)
+    """REAL, FAKE or UNDECIDED for each crossing (E,) of a graph; `rotation` as in `find_true_lines`."""
+    lines = find_true_lines(truth, graph.segments, rotation)
     return judge_crossings(truth, graph, lines)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.frames import true_axes
-from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings, label_segments
+from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings, find_true_lines
 from linecad.scene import ManhattanFrame, Segments
 
 # Lines in space: (axis, start, end). The near box stands at x -3 to -0.5, y 6 to 8, z -1.5 to 1, the far one behind it.
@@ -35,13 +35,13 @@ def one_label(scene, first, second):
     ],
 )
 def test_edges_and_surface_lines_are_told_apart(corner, line, kind):
-    found = label_segments(corner.truth, corner.segments(line))
+    found = find_true_lines(corner.truth, corner.segments(line))
     assert found.kind.tolist() == [kind]
     assert found.right.all()
 
 
 def test_a_segment_in_the_sky_is_spurious(corner):
-    found = label_segments(corner.truth, Segments([[[100.0, 20.0], [180.0, 20.0]]], [0]))
+    found = find_true_lines(corner.truth, Segments([[[100.0, 20.0], [180.0, 20.0]]], [0]))
     assert found.kind.tolist() == ["spurious"]
     assert not found.right.any()
 
@@ -50,14 +50,14 @@ def test_a_segment_that_follows_an_edge_over_less_than_two_fifths_is_not_that_ed
     start, end = corner.segment(*FAR_TOP[1:])
     beyond = end + (end - start) * 1.6  # 38 % on the edge, the rest in the sky
     within = end + (end - start) * 1.2  # 45 %
-    found = label_segments(corner.truth, Segments([[start, beyond], [start, within]], [0, 0]))
+    found = find_true_lines(corner.truth, Segments([[start, beyond], [start, within]], [0, 0]))
     assert found.kind.tolist() == ["spurious", "edge"]
 
 
 @pytest.mark.parametrize(("across", "kind"), [(1.8, "edge"), (6.0, "surface")])
 def test_an_edge_is_within_two_pixels(corner, across, kind):
     ends = corner.segment(*NEAR_TOP[1:]) + np.array([0, across])
-    assert label_segments(corner.truth, Segments([ends], [0])).kind.tolist() == [kind]
+    assert find_true_lines(corner.truth, Segments([ends], [0])).kind.tolist() == [kind]
 
 
 @pytest.mark.parametrize(("degrees", "is_edge"), [(1.2, True), (1.9, False)])
@@ -66,26 +66,26 @@ def test_an_edge_is_within_one_and_a_half_degrees(corner, degrees, is_edge):
     middle, half = (start + end) / 2, (end - start) / 2 * 0.2  # short, so that the ends stay within 2 px
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     half = np.array([c * half[0] - s * half[1], s * half[0] + c * half[1]])
-    found = label_segments(corner.truth, Segments([[middle - half, middle + half]], [2]))
+    found = find_true_lines(corner.truth, Segments([[middle - half, middle + half]], [2]))
     assert (found.kind[0] == "edge") == is_edge
 
 
 def test_the_line_of_a_surface_segment_lies_on_the_surface(corner):
-    found = label_segments(corner.truth, corner.segments(PAINT_ON_GROUND, PAINT_AWAY))
+    found = find_true_lines(corner.truth, corner.segments(PAINT_ON_GROUND, PAINT_AWAY))
     assert found.point[:, 2] == pytest.approx([-1.5, -1.5])
     assert np.abs(found.direction) == pytest.approx(np.array([[1.0, 0, 0], [0, 1, 0]]))
 
 
 def test_paint_that_runs_along_no_axis_is_wrongly_labelled(corner):
     slanted = corner.segment((-0.2, 4.5, -1.5), (1.5, 6, -1.5))
-    found = label_segments(corner.truth, Segments([slanted, slanted], [0, 1]))
+    found = find_true_lines(corner.truth, Segments([slanted, slanted], [0, 1]))
     assert found.kind.tolist() == ["surface", "surface"]
     assert not found.right.any()
 
 
 def test_an_edge_labelled_with_another_axis_is_wrong(corner):
     ends = corner.segment(*NEAR_CORNER[1:])
-    found = label_segments(corner.truth, Segments([ends] * 4, [0, 1, 2, -1]))
+    found = find_true_lines(corner.truth, Segments([ends] * 4, [0, 1, 2, -1]))
     assert found.right.tolist() == [False, False, True, False]
 
 
@@ -93,7 +93,7 @@ def test_axes_may_have_other_names(corner):
     rotation = corner.frame.rotation
     renamed = np.stack([rotation[:, 1], -rotation[:, 0], rotation[:, 2]], axis=1)  # its x is the true y
     ends = corner.segment(*NEAR_TOP[1:])
-    found = label_segments(corner.truth, Segments([ends, ends], [0, 1]), renamed)
+    found = find_true_lines(corner.truth, Segments([ends, ends], [0, 1]), renamed)
     assert found.right.tolist() == [False, True]
     assert true_axes(renamed, rotation).tolist() == [1, 0, 2]
 
@@ -116,7 +116,7 @@ def test_a_panel_a_little_before_the_wall_is_undecided(corner):
 
 def test_a_crossing_with_a_spurious_line_is_fake(corner):
     graph = corner.graph((2, (2.5, 10, 1.6), (2.5, 10, 3)), FAR_TOP)
-    assert label_segments(corner.truth, graph.segments).kind.tolist() == ["spurious", "edge"]
+    assert find_true_lines(corner.truth, graph.segments).kind.tolist() == ["spurious", "edge"]
     assert label_crossings(corner.truth, graph).tolist() == [FAKE]
 
 
@@ -140,4 +140,4 @@ def test_every_crossing_of_the_made_boxes_has_its_true_label(made, made_truth):
 def test_labels_do_not_hang_on_pixel_noise(made, made_truth):
     rng = np.random.default_rng(3)
     noisy = Segments(made.pixels + rng.normal(0, 0.3, made.pixels.shape), made.axis)
-    assert label_segments(made_truth, noisy, ManhattanFrame(made.frame.rotation, 0.0, 1.0).rotation).right.all()
+    assert find_true_lines(made_truth, noisy, ManhattanFrame(made.frame.rotation, 0.0, 1.0).rotation).right.all()
