@@ -7,15 +7,19 @@ READY := $(VENV)/.ready
 DEMO := demo/street
 FORMATS := step dxf glb usdz usda json png
 ARGS :=
+DATASET := dataset
+WORKERS := 2
+NAME := results
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint check clean
+.PHONY: help demo test lint check results clean
 
 help:
 	@echo 'make demo    reconstruct the sample photo of a street: CAD files and a picture in demo/'
 	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap")'
 	@echo 'make lint    ruff and mypy'
 	@echo 'make check   lint and test, what every change must pass'
+	@echo 'make results measure a dataset (DATASET=folder, WORKERS=2): docs/results.md, and more in results/'
 	@echo 'make clean   remove what was made, except .venv'
 	@echo
 	@echo 'Each prepares .venv on its first run: about 1.6 GB, a minute or two.'
@@ -35,8 +39,13 @@ lint: $(READY)
 
 check: lint test
 
+results: $(READY)
+	@mkdir -p results
+	$(BIN)/linecad evaluate $(DATASET) --workers $(WORKERS) --markdown docs/$(NAME).md \
+	    --json results/$(NAME).json --report results/$(NAME).html $(ARGS)
+
 clean:
-	rm -rf demo build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf demo results build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find linecad exporters solver tests samples -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # PYTHON names the interpreter to use; otherwise the first one that is new enough is taken.

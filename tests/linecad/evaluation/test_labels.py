@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.frames import true_axes
-from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings, find_true_lines
+from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, find_true_lines, label_crossings
 from linecad.scene import ManhattanFrame, Segments
 
 # Lines in space: (axis, start, end). The near box stands at x -3 to -0.5, y 6 to 8, z -1.5 to 1, the far one behind it.
