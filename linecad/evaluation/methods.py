@@ -9,7 +9,7 @@ from linecad.graph import Weights
 from linecad.lifting import lift
 from linecad.pipeline import ReconstructOptions
 from linecad.scene import Bool, Float, Formulation, Int, LineGraph
-from solver.problem import DEFAULT_MU_BOUNDARY, FAMILIES, Family, SolveOptions, solve
+from solver.problem import FAMILIES, Family, SolveOptions, solve
 
 BASELINE = "Baseline"
 PAPER_ROWS = (BASELINE, "B", "C", "P", "B+C", "B+P", "C+P", "B+C+P")
@@ -36,12 +36,11 @@ class Settings:
         return self._options(formulation, frozenset(name for name in FAMILIES if LETTERS[name] not in row.split("+")))
 
     def _options(self, formulation: Formulation, without: frozenset[Family]) -> SolveOptions:
-        default = DEFAULT_MU_BOUNDARY[formulation]
         return SolveOptions(
             formulation=formulation,
             without=without,
             mu_planarity=self.mu_planarity,
-            mu_boundary=default if self.mu_boundary is None else self.mu_boundary,
+            mu_boundary=self.mu_boundary,
             time_limit_s=self.time_limit_s,
         )
 

@@ -69,9 +69,9 @@ def test_families_are_left_out_by_their_letters():
     assert SETTINGS.options("paper", "B+C+P").without == frozenset()
     assert SETTINGS.options("paper", "B+P").without == {"cycles"}
     assert SETTINGS.options("gain", "none").without == {"cycles", "boundary", "planarity"}
-    assert SETTINGS.options("paper", "B").mu_boundary == 10
-    assert SETTINGS.options("gain", "B").mu_boundary == 1
-    assert replace(SETTINGS, mu_boundary=3.0).options("gain", "B").mu_boundary == 3
+    assert SETTINGS.options("paper", "B").boundary_reward == 10
+    assert SETTINGS.options("gain", "B").boundary_reward == 1
+    assert replace(SETTINGS, mu_boundary=3.0).options("gain", "B").boundary_reward == 3
 
 
 def test_nothing_known_is_nothing_measured(drawn):
