@@ -98,7 +98,9 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--without", type=_families, default=frozenset(), metavar="FAMILY[,FAMILY]",
         help="leave out families of constraints: cycles, planarity, boundary",
     )  # fmt: skip
-    convert.add_argument("--weights", choices=["ones", "junctions"], default="junctions", help="weights of crossings")
+    convert.add_argument(
+        "--weights", choices=["ones", "junctions", "fitted"], default="junctions", help="weights of crossings"
+    )
     convert.add_argument(
         "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
     )
@@ -147,7 +149,9 @@ def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--ablation", action=argparse.BooleanOptionalAction, default=True,
         help="solve every row of table 1 (on), or only the default settings",
     )  # fmt: skip
-    evaluate.add_argument("--weights", choices=["ones", "junctions"], default="junctions", help="weights of crossings")
+    evaluate.add_argument(
+        "--weights", choices=["ones", "junctions", "fitted"], default="junctions", help="weights of crossings"
+    )
     evaluate.add_argument(
         "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
     )

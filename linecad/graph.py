@@ -5,7 +5,7 @@ in the third coordinate alpha: s_i d_i = s_j d_j, an equation between the logs o
 free parameter: it is how far the equation moves when the segments move by their pixel noise.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import networkx as nx
@@ -13,6 +13,7 @@ import numpy as np
 
 from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points, world_rays
 from linecad.scene import Bool, Camera, Float, Int, LineGraph, ManhattanFrame, Segments, Text
+from linecad.weighting import fitted_weights
 
 EXTENSION = 30.0  # px at the reference width, the paper's value
 EXTENSION_FLOOR = 5.0  # px in any photo: the ends of a segment are not known better
@@ -34,7 +35,7 @@ NOISE_FACTOR = 3.0  # standard deviations that a tolerance covers
 MIN_TOLERANCE = 0.002  # relative depth; calibration and frame are not better than that
 MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
 
-Weights = Literal["ones", "junctions"]
+Weights = Literal["ones", "junctions", "fitted"]
 
 # w_ij by kind of junction, and where a line of the third axis passes through the same point (Y and W junctions).
 # The paper took its weights from an earlier work that did not print them. These follow the log-odds that a crossing of
@@ -94,7 +95,7 @@ def build_line_graph(
     size = np.maximum(np.abs(component), np.finfo(float).tiny)
     tolerance = np.maximum(NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T), MIN_TOLERANCE)
     log_ratio = np.where(possible, np.log(size[:, 1] / size[:, 0]), 0.0)
-    return LineGraph(
+    graph = LineGraph(
         segments=segments,
         rays=rays,
         end_rays=world_rays(segments.ends, camera.matrix, frame.rotation),
@@ -110,6 +111,7 @@ def build_line_graph(
         possible=possible,
         informative=possible & (tolerance <= MAX_TOLERANCE),
     )
+    return replace(graph, weight=fitted_weights(graph, camera.width)) if weights == "fitted" else graph
 
 
 def components(graph: LineGraph, chosen: Bool | None = None) -> list[Int]:

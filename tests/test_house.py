@@ -26,11 +26,16 @@ FLOORS = [
     ["linecad.scene", "linecad.strictjson", "linecad.files"],
     ["linecad.scenedocument", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
     ["linecad.scenefile"],
-    ["linecad.calibration", "linecad.decoding"],  # parts of the photo stage
+    ["linecad.calibration", "linecad.decoding", "linecad.weighting"],  # parts of the photo stage
     ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph", "linecad.lifting", "linecad.planes"],
     ["linecad.pipeline"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor"],
-    ["linecad.evaluation.frames", "linecad.evaluation.overlap", "linecad.evaluation.bootstrap"],
+    [
+        "linecad.evaluation.frames",
+        "linecad.evaluation.overlap",
+        "linecad.evaluation.bootstrap",
+        "linecad.evaluation.features",
+    ],
     ["linecad.evaluation.depth", "linecad.evaluation.labels", "linecad.evaluation.planes"],
     ["linecad.evaluation.marks", "linecad.evaluation.decisions", "linecad.evaluation.datasets"],
     ["linecad.evaluation.york", "linecad.evaluation.methods"],
