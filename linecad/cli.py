@@ -284,8 +284,10 @@ def _evaluate(parsed: argparse.Namespace) -> int:
     from linecad.evaluation.tables import all_tables
     from linecad.files import check_output
 
-    for path in filter(None, (parsed.json, parsed.markdown, parsed.report)):
+    outputs = [path for path in (parsed.json, parsed.markdown, parsed.report) if path is not None]
+    for path in outputs:
         check_output(path)
+    _check_distinct(outputs)
     settings = Settings(
         formulations=("paper", "gain") if parsed.formulation == "both" else (parsed.formulation,),
         ablation=parsed.ablation,
@@ -296,6 +298,7 @@ def _evaluate(parsed: argparse.Namespace) -> int:
         pictures=parsed.report is not None,
     )
     dataset = find_dataset(parsed.dataset)
+    _check_kept(outputs, [file for case in dataset.cases for file in (case.photo, case.truth)])
     with _Shown(parsed) as show:
         show.stage(f"measuring {len(dataset.cases[: parsed.limit])} photos of {dataset.name}")
         results = evaluate(
@@ -368,9 +371,19 @@ def _check_outputs(outputs: list[Path], inputs: list[Path | None]) -> None:
         if path.suffix.lower() != SCENE_SUFFIX:
             find_format(path)
         check_output(path)
+    _check_kept(outputs, [path for path in inputs if path is not None])
+    _check_distinct(outputs)
+
+
+def _check_kept(outputs: list[Path], inputs: list[Path]) -> None:
+    """Raise OutputError where writing an output would overwrite an input."""
+    for path in outputs:
         for given in inputs:
-            if given is not None and given.exists() and path.exists() and path.samefile(given):
+            if given.exists() and path.exists() and path.samefile(given):
                 raise OutputError(f"{path} is an input too and would be lost; choose another name")
+
+
+def _check_distinct(outputs: list[Path]) -> None:
     if len({path.resolve() for path in outputs}) < len(outputs):
         raise OutputError("the same output was named twice; name each once")
 

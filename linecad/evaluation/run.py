@@ -34,7 +34,7 @@ def evaluate(
     """
     results: dict[int, PhotoResult] = {}
     others = set(active_children())
-    with _one_thread(), ProcessPoolExecutor(workers, get_context("spawn"), _set_up) as pool:
+    with _one_thread(), ProcessPoolExecutor(min(workers, len(cases)), get_context("spawn"), _set_up) as pool:
         pending = {pool.submit(measure_photo, case, settings): index for index, case in enumerate(cases)}
         try:
             for done in as_completed(pending):

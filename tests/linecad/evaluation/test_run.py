@@ -77,6 +77,7 @@ def test_one_photo_that_fails_does_not_stop_the_others(york_folder, tmp_path, ca
         (["none"], 1, "not a folder"),
         (["."], 1, "no dataset"),
         ([".", "--json", "none/a.json"], 1, "none"),
+        ([".", "--json", "a", "--report", "a"], 1, "named twice"),
         ([".", "--workers", "0"], 2, "'0' is not a whole number"),
         ([".", "--limit", "x"], 2, "'x' is not a whole number"),
         ([".", "--time-limit", "0"], 2, "positive"),
@@ -92,6 +93,14 @@ def test_wrong_use_is_told_in_one_line(tmp_path, monkeypatch, capsys, arguments,
     assert ended == code
     assert says in err
     assert len(err.strip().splitlines()) == 1
+
+
+def test_the_truth_is_not_overwritten(labels_folder, capsys):
+    truth = labels_folder / "boxes.json"
+    before = truth.read_bytes()
+    assert main(["evaluate", str(labels_folder), "--json", str(truth)]) == 1
+    assert "is an input too" in capsys.readouterr().err
+    assert truth.read_bytes() == before
 
 
 def test_when_no_photo_can_be_measured_the_command_fails(tmp_path, monkeypatch, capsys):
