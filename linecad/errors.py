@@ -4,7 +4,8 @@ LinecadError
 ├── InputError         a file that cannot be used: photo, camera, scene
 │   ├── PhotoError     not an image, truncated, too large, too small
 │   ├── CameraError    a calibration that is malformed or of another size
-│   └── SceneFileError a scene file that does not say what its format promises
+│   ├── SceneFileError a scene file that does not say what its format promises
+│   └── DatasetError   a made dataset that is damaged or was begun with other options
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
 └── SolverError        the solver ended without any usable answer
@@ -31,6 +32,10 @@ class CameraError(InputError):
 
 class SceneFileError(InputError):
     """The scene file breaks the promises of docs/scene-file.md."""
+
+
+class DatasetError(InputError):
+    """A dataset breaks the promises of docs/dataset.md, or was begun with other options."""
 
 
 class OutputError(LinecadError):
