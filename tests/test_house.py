@@ -27,13 +27,12 @@ FLOORS = [
     ["linecad.scenedocument", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
     ["linecad.scenefile", "linecad.dataset.modelling", "linecad.dataset.view", "linecad.dataset.light"],
     ["linecad.dataset.facades", "linecad.dataset.furniture", "linecad.dataset.rasteriser", "linecad.dataset.textures"],
-    ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.choice", "linecad.dataset.finishing"],
+    ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.finishing"],
     ["linecad.dataset.scenes", "linecad.dataset.render"],
-    ["linecad.dataset.make"],
     ["linecad.calibration", "linecad.decoding"],  # parts of the photo stage
     ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph", "linecad.lifting", "linecad.planes"],
-    ["linecad.pipeline"],
-    ["linecad.evaluation", "linecad.batch", "linecad.editor"],
+    ["linecad.pipeline", "linecad.dataset.choice"],
+    ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
     ["linecad.cli"],
     ["linecad.__main__"],
 ]

@@ -5,14 +5,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from linecad.dataset.modelling import Interval, Material, Pattern, Point, Wall
+from linecad.dataset.modelling import UP, Interval, Material, Pattern, Point, Wall
 
 RECESS = (0.04, 0.14)  # m, of windows behind the wall
 FRAME = 0.07  # m, width of a window's frame
 BAR = 0.045  # m, width of the bars between panes
 FRAME_DEEP = 0.045  # m, frames stand before the glass
+DOOR = 1.1  # m, width
+POST = 0.2  # m, width of the posts beside a door
 CORNICE = 0.35  # m, height of the cornice
 PARAPET = 0.35  # m, from the cornice to the roof's edge
+HEAD = 0.17  # m, height of lintels
 LEAST_FLANK = 0.45  # m of wall between a window and the wall's end
 
 WALLS: tuple[tuple[Pattern, Point], ...] = (
@@ -53,6 +56,7 @@ class Style:
     shops: bool
     course: float  # string courses at each floor; 0 where there are none
     sill_course: float  # courses that join the sills; 0 where there are none
+    head_course: float  # courses above the windows; 0 where there are none
     pilaster: float  # between the bays; 0 where there are none
     quoin: float  # pilasters at the corners; 0 where there are none
     surround: float  # flat frames around windows; 0 where there are none
@@ -95,15 +99,16 @@ def draw_style(rng: Generator) -> Style:
         bay=bay,
         window=(width, min(pick(1.3, 2.1), storey - 1.1)),
         recess=pick(*RECESS),
-        panes=(int(rng.integers(1, 4)), int(rng.integers(1, 4))),
+        panes=(int(rng.integers(2, 4)), int(rng.integers(2, 6))),
         shops=bool(rng.random() < 0.6),
-        course=perhaps(0.7, 0.06, 0.11),
-        sill_course=perhaps(0.4, 0.03, 0.055),
-        pilaster=perhaps(0.35, 0.06, 0.13),
+        course=perhaps(0.7, 0.05, 0.09),
+        sill_course=perhaps(0.6, 0.03, 0.055),
+        head_course=perhaps(0.5, 0.03, 0.055),
+        pilaster=perhaps(0.5, 0.06, 0.1),
         quoin=perhaps(0.4, 0.14, 0.2),
-        surround=perhaps(0.45, 0.025, 0.05),
-        lintel=perhaps(0.5, 0.05, 0.09),
-        balconies=perhaps(0.35, 0.15, 0.5),
+        surround=perhaps(0.5, 0.025, 0.05),
+        lintel=perhaps(0.5, 0.04, 0.07),
+        balconies=perhaps(0.25, 0.15, 0.4),
         blinds=pick(0.0, 0.5),
         cornice=pick(0.22, 0.45),
     )
@@ -119,7 +124,7 @@ def build_facade(wall: Wall, width: float, height: float, style: Style, rng: Gen
     head = style.ground - 0.75
     for index, middle in enumerate(middles):
         if index == door:
-            _add_door(wall, (middle - 0.55, middle + 0.55), head, style)
+            _add_door(wall, (middle - DOOR / 2, middle + DOOR / 2), head, style)
             continue
         half = (style.bay - 0.75) / 2 if style.shops else style.window[0] / 2
         sill = 0.75 if style.shops else 1.15
@@ -131,8 +136,10 @@ def build_facade(wall: Wall, width: float, height: float, style: Style, rng: Gen
             _add_window(wall, along, (bottom, bottom + style.window[1]), style, rng, detailed, style.panes)
             if detailed and rng.random() < style.balconies:
                 _add_balcony(wall, (along[0] - 0.35, along[1] + 0.35), bottom - 0.3, style)
-    _add_bands(wall, width, height, floors, style)
-    if style.pilaster:
+    for start, end in ((0.0, middles[door] - DOOR / 2 - POST), (middles[door] + DOOR / 2 + POST, width)):
+        wall.box((start, end), (0.0, 0.5), (0.0, 0.075), style.trim, "-c -b")
+    _add_bands(wall, width, height, floors, style, detailed)
+    if style.pilaster and detailed:
         # Posts end below the cornice and stand less far off than it.
         for index in range(bays + 1):
             middle = min(max(margin + index * style.bay, 0.2), width - 0.2)
@@ -145,18 +152,20 @@ def build_facade(wall: Wall, width: float, height: float, style: Style, rng: Gen
         wall.model.edge(wall.at(0, style.ground - 0.2), wall.at(width, style.ground - 0.2))
 
 
-def _add_bands(wall: Wall, width: float, height: float, floors: int, style: Style) -> None:
-    """Base, string courses, sill courses and cornice, all over the width."""
+def _add_bands(wall: Wall, width: float, height: float, floors: int, style: Style, detailed: bool) -> None:
+    """String courses, sill courses and cornice, all over the width."""
     along = (0.0, width)
-    wall.box(along, (0.0, 0.5), (0.0, 0.075), style.trim, "-c -b")
     top = height - PARAPET
-    for floor in range(floors):
+    for floor in range(floors if detailed else 0):
         level = style.ground + floor * style.storey
         if style.course:
             wall.box(along, (level - 0.2, level), (0.0, style.course), style.trim)
         if style.sill_course:
             bottom = level + (style.storey - style.window[1]) * 0.55
             wall.box(along, (bottom - 0.22, bottom - 0.1), (0.0, style.sill_course), style.trim)
+        if style.head_course:
+            head = level + (style.storey - style.window[1]) * 0.55 + style.window[1] + HEAD
+            wall.box(along, (head, head + 0.12), (0.0, style.head_course), style.trim)
     wall.box(along, (top - CORNICE - 0.25, top - CORNICE), (0.0, 0.145), style.trim, "-c +b")
     wall.box(along, (top - CORNICE, top), (0.0, style.cornice), style.trim)
     if style.quoin:
@@ -173,23 +182,25 @@ def _add_window(
     detailed: bool,
     panes: tuple[int, int],
 ) -> None:
-    reveal = style.trim if style.surround else style.wall
-    wall.opening(along, up, style.recess, reveal)
-    wall.panel(along, up, -style.recess, GLASS)
     drop, has_blind = float(rng.uniform(0.15, 0.6)), rng.random() < style.blinds
     if not detailed:
+        wall.openings.append((along, up))
+        sides = ((along[1] - along[0]) * wall.along, (up[1] - up[0]) * UP)
+        wall.model.outline(wall.at(along[0], up[0]), *sides, GLASS)
         return
+    wall.opening(along, up, style.recess, style.trim if style.surround else style.wall)
+    wall.panel(along, up, -style.recess, GLASS)
     if has_blind:
         wall.panel(along, (up[1] - drop * (up[1] - up[0]), up[1]), -style.recess + 0.008, BLIND)
     _add_bars(wall, along, up, style, panes)
-    wall.box((along[0] - 0.1, along[1] + 0.1), (up[0] - 0.09, up[0]), (0.0, 0.12), style.trim)
+    wall.box((along[0] - 0.1, along[1] + 0.1), (up[0] - 0.09, up[0]), (0.0, 0.09), style.trim)
     if style.surround:
         for start, end in ((along[0] - 0.15, along[0]), (along[1], along[1] + 0.15)):
             wall.box((start, end), up, (0.0, style.surround), style.trim, "-c -b")
     if style.surround or style.lintel:
         over = 0.15 if style.surround else 0.1
         out = max(style.surround, style.lintel)
-        wall.box((along[0] - over, along[1] + over), (up[1], up[1] + 0.17), (0.0, out), style.trim)
+        wall.box((along[0] - over, along[1] + over), (up[1], up[1] + HEAD), (0.0, out), style.trim)
 
 
 def _add_bars(wall: Wall, along: Interval, up: Interval, style: Style, panes: tuple[int, int]) -> None:
@@ -224,8 +235,8 @@ def _add_door(wall: Wall, along: Interval, top: float, style: Style) -> None:
     for left, right in ((along[0] + 0.1, middle - 0.06), (middle + 0.06, along[1] - 0.1)):
         for low, high in ((0.3, 0.95), (1.1, 2.0)):
             wall.box((left, right), (low, high), (-deep, -deep + 0.03), style.door)
-    wall.box((along[0] - 0.2, along[1] + 0.2), (0.0, 0.14), (0.0, 0.5), style.trim, "-c -b")
-    for start, end in ((along[0] - 0.2, along[0]), (along[1], along[1] + 0.2)):
+    wall.box((along[0] - POST, along[1] + POST), (0.0, 0.14), (0.0, 0.5), style.trim, "-c -b")
+    for start, end in ((along[0] - POST, along[0]), (along[1], along[1] + POST)):
         wall.box((start, end), (0.14, top), (0.0, 0.09), style.trim, "-c -b")
     wall.box((along[0] - 0.25, along[1] + 0.25), (top, top + 0.25), (0.0, 0.13), style.trim)
 

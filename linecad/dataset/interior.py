@@ -9,6 +9,10 @@ from linecad.scene import Float
 
 WALL_COLOURS: tuple[Point, ...] = ((0.87, 0.85, 0.80), (0.80, 0.83, 0.82), (0.86, 0.78, 0.68), (0.75, 0.80, 0.74))
 WOODS: tuple[Point, ...] = ((0.62, 0.46, 0.30), (0.44, 0.31, 0.21), (0.74, 0.62, 0.45))
+BOOKS: tuple[Point, ...] = (
+    (0.42, 0.18, 0.16), (0.20, 0.29, 0.42), (0.24, 0.36, 0.26), (0.62, 0.54, 0.38),
+    (0.30, 0.27, 0.26), (0.68, 0.64, 0.58), (0.55, 0.35, 0.20), (0.36, 0.24, 0.38),
+)  # fmt: skip
 WHITE = Material("plain", (0.88, 0.87, 0.84))
 CEILING = Material("plain", (0.90, 0.90, 0.88))
 X, Y = np.eye(3)[0], np.eye(3)[1]
@@ -30,20 +34,26 @@ def build_room(rng: Generator) -> tuple[Model, Float, float]:
     right = Wall(model, np.array([half, deep, 0.0]), -Y, -X)
     back = Wall(model, np.array([-half, deep, 0.0]), X, -Y)
     behind = Wall(model, np.array([half, -2.0, 0.0]), -X, Y)
-    lit, other = (left, right) if side < 0 else (right, left)
+    lit, other = (left, right) if side > 0 else (right, left)
     _add_windows(lit, deep + 2, high, rng)
-    _add_door(back, 2 * half, rng)
+    from_corner = float(rng.uniform(0.2, 0.6)) * half
+    _add_door(back, from_corner if side > 0 else 2 * half - from_corner - 0.9, rng)
     for wall, length in ((left, deep + 2), (right, deep + 2), (back, 2 * half), (behind, 2 * half)):
         for up in ((0.0, 0.1), (high - 0.09, high)):
             wall.box((0.0, length), up, (0.0, 0.018 if up[0] == 0 else 0.07), WHITE, "-c -b" if up[0] == 0 else "-c +b")
         wall.build((0.0, length), (0.0, high), paint)
         model.edge(wall.at(0.0, 0.0), wall.at(0.0, high))
-    _add_pictures(other, deep + 2, rng)
-    _add_shelf(other, (float(rng.uniform(0.5, 0.6)) * (deep + 2), 1.9), high, wood, rng)
-    _add_shelf(back, (0.15 if side > 0 else 2 * half - 1.5, 1.35), high, wood, rng)
-    _add_tables(model, half, deep, wood, rng)
+    _add_pictures(other, deep + 2, side, rng)
+    _add_shelf(other, (_along(float(rng.uniform(0.5, 0.55)) * (deep + 2), 1.9, deep + 2, side), 1.9), high, wood, rng)
+    _add_shelf(back, (2 * half - 1.5 if side > 0 else 0.15, 1.35), high, wood, rng)
+    _add_tables(model, side, half, deep, wood, rng)
     eye = np.array([-side * rng.uniform(0.1, 0.5) * half, -1.5, rng.uniform(*EYE_LEVEL)])
     return model, eye, side
+
+
+def _along(start: float, width: float, length: float, side: float) -> float:
+    """Where a thing of `width` that starts so far from the near end of a side wall starts in the wall's frame."""
+    return start if side < 0 else length - start - width
 
 
 def _add_windows(wall: Wall, length: float, high: float, rng: Generator) -> None:
@@ -64,9 +74,8 @@ def _add_windows(wall: Wall, length: float, high: float, rng: Generator) -> None
             wall.box(along, (start, start + 0.07), (-deep, -deep + 0.052), WHITE, "-a +a")
 
 
-def _add_door(wall: Wall, length: float, rng: Generator) -> None:
+def _add_door(wall: Wall, start: float, rng: Generator) -> None:
     """A closed door with panels in a frame."""
-    start = float(rng.uniform(0.35, 0.6)) * length
     leaf = Material("plain", DOORS[rng.integers(len(DOORS))]) if rng.random() < 0.4 else WHITE
     along, top = (start, start + 0.9), 2.05
     wall.panel(along, (0.0, top), 0.02, leaf)
@@ -78,9 +87,11 @@ def _add_door(wall: Wall, length: float, rng: Generator) -> None:
             wall.box((low, high), (bottom, upper), (0.02, 0.04), leaf)
 
 
-def _add_pictures(wall: Wall, length: float, rng: Generator) -> None:
+def _add_pictures(wall: Wall, length: float, side: float, rng: Generator) -> None:
     for share in (0.25, 0.42):
-        along = (share * length, share * length + float(rng.uniform(0.5, 1.0)))
+        width = float(rng.uniform(0.5, 1.0))
+        start = _along(share * length, width, length, side)
+        along = (start, start + width)
         up = (1.35, 1.35 + float(rng.uniform(0.4, 0.8)))
         wall.box(along, up, (0.0, 0.03), Material("plain", WOODS[rng.integers(len(WOODS))]))
         inner = ((along[0] + 0.05, along[1] - 0.05), (up[0] + 0.05, up[1] - 0.05))
@@ -105,14 +116,14 @@ def _add_shelf(wall: Wall, place: tuple[float, float], high: float, wood: Materi
         along = start + 0.04
         while level < levels and along < start + width - 0.15:
             thick, tall = float(rng.uniform(0.02, 0.06)), float(rng.uniform(0.5, 0.9)) * (top - 0.09) / levels
-            colour = tuple(rng.uniform(0.15, 0.75, 3).round(3).tolist())
+            colour = BOOKS[rng.integers(len(BOOKS))]
             if rng.random() < 0.8 and not start + width / 2 - 0.1 < along < start + width / 2 + 0.02:
                 box = ((along, along + thick), (up + 0.03, up + 0.03 + tall))
                 wall.box(*box, (0.02, out - float(rng.uniform(0.05, 0.12))), Material("plain", colour), "-c -b")
             along += thick + 0.002
 
 
-def _add_tables(model: Model, half: float, deep: float, wood: Material, rng: Generator) -> None:
+def _add_tables(model: Model, side: float, half: float, deep: float, wood: Material, rng: Generator) -> None:
     """A table with legs and a low chest of drawers."""
 
     def box(low: tuple[float, float, float], size: tuple[float, float, float], material: Material, skip: str) -> None:
@@ -126,6 +137,9 @@ def _add_tables(model: Model, half: float, deep: float, wood: Material, rng: Gen
         for leg_y in (y + 0.04, y + long - 0.1):
             box((leg_x, leg_y, 0.0), (0.06, 0.06, 0.70), wood, "-c +c")
     model.start_body("furniture")
-    box((half - 0.5, 0.75 * deep, 0.0), (0.5, 1.1, 0.85), wood, "-c")
+    wall = half if side > 0 else -half + 0.5
+    y = 0.8 * deep
+    box((wall - 0.5, y, 0.0), (0.5, 1.1, 0.85), wood, "-c")
     for level in range(3):
-        box((half - 0.52, 0.75 * deep + 0.04, 0.06 + 0.26 * level), (0.02, 1.02, 0.23), WHITE, "+a")
+        front = wall - 0.52 if side > 0 else wall
+        box((front, y + 0.04, 0.06 + 0.26 * level), (0.02, 1.02, 0.23), WHITE, "+a" if side > 0 else "-a")

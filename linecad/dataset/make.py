@@ -77,9 +77,9 @@ def draw_draft(seed: int, index: int) -> Draft:
     kind = scene_kind(index)
     for attempt in range(MOST_TRIES):
         model, view = draw_scene(kind, np.random.default_rng([seed, index, attempt]))
-        light = draw_light(np.random.default_rng([seed, index, attempt, 1]), kind == "room", float(np.sign(view.yaw)))
+        light = draw_light(np.random.default_rng([seed, index, attempt, 1]), kind == "room")
         draft = Draft(scene_name(index), model, view, light, attempt)
-        if judge(measure(draft, *JUDGED_SIZE), model, kind).accepted:
+        if judge(measure(draft, *JUDGED_SIZE), model).accepts(kind):
             break
     return draft
 

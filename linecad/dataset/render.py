@@ -14,7 +14,7 @@ from typing import Any
 import mitsuba as mi
 import numpy as np
 
-from linecad.dataset.light import LAMP, Light
+from linecad.dataset.light import LAMP, SKY_IN_ROOMS, Light
 from linecad.dataset.modelling import Material, Model
 from linecad.dataset.textures import Image, sky, texture
 from linecad.dataset.view import View
@@ -25,8 +25,8 @@ LLVM_PLACES = ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/opt/homebrew/opt/ll
 OLDEST_LLVM = 17  # older ones cannot translate Dr.Jit's `minimum` on x86
 
 PASS = 2 * 3840 * 2160  # samples rendered at a time, which bounds the memory
-BRIGHTEST = 6.0  # radiance of one pass above which a pixel is a firefly
-BOUNCES_OUTDOORS, BOUNCES_IN_ROOMS = 4, 7  # segments of a path of light
+BRIGHTEST = 4.0  # radiance of one pass above which a pixel is a firefly
+BOUNCES_OUTDOORS, BOUNCES_IN_ROOMS = 3, 6  # segments of a path of light
 REACH = 1000.0  # m
 FILTER = 0.45  # px, standard deviation of a pixel's footprint
 
@@ -65,14 +65,13 @@ def load(model: Model, view: View, light: Light, width: int, height: int) -> Any
         "sky": {
             "type": "envmap",
             "bitmap": mi.Bitmap(sky(np.random.default_rng(light.sky_seed))),
+            "scale": SKY_IN_ROOMS if light.lamp else 1.0,
             "to_world": mi.ScalarTransform4f().rotate([1, 0, 0], 90),  # its own up is y
         },
-        "sun": {
-            "type": "directional",
-            "direction": light.towards.tolist(),
-            "irradiance": {"type": "rgb", "value": light.sun.tolist()},
-        },
     }
+    if light.sun.any():
+        irradiance = {"type": "rgb", "value": light.sun.tolist()}
+        scene["sun"] = {"type": "directional", "direction": light.towards.tolist(), "irradiance": irradiance}
     if light.lamp is not None:
         scene["lamp"] = _lamp(*light.lamp, view.eye)
     corners = model.quads()

@@ -23,7 +23,7 @@ PITCH = (0.0, 0.12)  # rad, upwards
 ROLL = 0.012  # rad, one standard deviation
 FOCAL = (0.64, 0.68)  # of the photo's width
 OFF_CENTRE = 0.006  # of the width, one standard deviation of the principal point
-DETAIL_REACH = 75.0  # m; windows farther away have no bars, sills or surrounds
+DETAIL_REACH = 34.0  # m; facades that begin farther away have plain windows and no courses
 KERB = 0.14  # m
 
 ASPHALT = Material("asphalt", (0.36, 0.36, 0.37))
@@ -61,12 +61,12 @@ def _street(rng: Generator) -> tuple[Model, Float, float]:
     side = float(rng.choice([-1.0, 1.0]))
     road, walk = float(rng.uniform(4.5, 7.0)), float(rng.uniform(2.0, 3.5))
     eye = np.array([rng.uniform(-0.4, 0.4) * road, 0.0, rng.uniform(*CAMERA_HEIGHT)])
-    end = float(rng.uniform(60, 110))
+    end = float(rng.uniform(40, 80))
     for sign in (-1.0, 1.0):
         crossing = float(rng.uniform(22, 55))
         y = float(rng.uniform(-18, -10))
         while y < end:
-            width, height = float(rng.uniform(8, 20)), float(rng.uniform(8.5, 21))
+            width, height = float(rng.uniform(10, 22)), float(rng.uniform(8.5, 21))
             setback = float(rng.choice([0.0, 0.0, 0.4, 0.9, 1.8, 3.5]))
             front, deep = sign * (road + walk + setback), float(rng.uniform(9, 14))
             across = (min(front, front + sign * deep), max(front, front + sign * deep))
@@ -83,7 +83,7 @@ def _street(rng: Generator) -> tuple[Model, Float, float]:
         _add_building(model, (start, start + width), (end + 12, end + 24), float(rng.uniform(10, 22)), {"-y"}, rng)
         start += width
     _add_road(model, road, end + 12)
-    _add_traffic(model, road, walk, rng)
+    _add_traffic(model, road, rng)
     return model, eye, side
 
 
@@ -132,7 +132,7 @@ def _add_road(model: Model, road: float, end: float) -> None:
         model.outline((6.0 * index) * Y - 0.07 * X + 0.004 * UP, 0.14 * X, 3.0 * Y, PAINT)
 
 
-def _add_traffic(model: Model, road: float, walk: float, rng: Generator) -> None:
+def _add_traffic(model: Model, road: float, rng: Generator) -> None:
     """Cars along the kerbs, trees, lamp posts and signs on the pavements."""
     for sign in (-1.0, 1.0):
         y = float(rng.uniform(7, 14))
@@ -146,9 +146,9 @@ def _add_traffic(model: Model, road: float, walk: float, rng: Generator) -> None
             if what < 0.25:
                 x = sign * (road + rng.uniform(0.7, 1.0))
                 add_tree(model, float(x), y, float(rng.uniform(5, 8)), 900, rng)
-            elif what < 0.55:
+            elif what < 0.45:
                 add_lamp(model, sign * (road + 0.5), y, float(rng.uniform(5, 7.5)), 0.0)
-            elif what < 0.7:
+            elif what < 0.55:
                 add_sign(model, sign * (road + 0.6), y, (float(rng.uniform(0.5, 0.9)), 0.7), (0.2, 0.3, 0.6))
             y += float(rng.uniform(7, 14))
 
