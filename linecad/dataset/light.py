@@ -9,7 +9,7 @@ from linecad.scene import Float
 
 ELEVATION = (0.45, 1.05)  # rad, of the sun
 SUN = (4.6, 4.2, 3.6)  # irradiance of full sun where the sky's radiance is about 1
-LAMP = (12.0, 11.2, 10.0)  # radiance of a lamp
+LAMP = (2.0, 1.9, 1.75)  # radiance of the lamp of a room
 SKY_IN_ROOMS = 0.4  # of the sky's radiance; curtains keep the rest out
 
 
@@ -26,14 +26,14 @@ class Light:
 def draw_light(rng: Generator, is_room: bool) -> Light:
     """The light of a scene; one day in four is overcast.
 
-    The sun stands behind the camera more often than before it. It does not shine into rooms: small bright spots on a
-    floor light everything else, and need thousands of paths a pixel.
+    The sun stands behind the camera more often than before it. It does not shine into rooms, for the noise.
     """
     azimuth = float(rng.uniform(-1.9, 1.9))
     elevation = float(rng.uniform(*ELEVATION))
     towards = np.array([np.sin(azimuth) * np.cos(elevation), np.cos(azimuth) * np.cos(elevation), -np.sin(elevation)])
     strength = float(rng.uniform(0.7, 1.0)) if rng.random() < 0.75 else 0.08
-    # Under the ceiling behind the camera, which never sees it; it shines down and forward.
-    lamp = (np.array([-0.8, -1.9, 2.45]), np.array([1.6, 0.0, 0.0]), np.array([0.0, 0.55, 0.12])) if is_room else None
+    # As large as the wall behind the camera, which never sees it: a small lamp would light a spot of the wall near it,
+    # and small bright spots make noise.
+    lamp = (np.array([-2.1, -1.93, 0.4]), np.array([4.2, 0.0, 0.0]), np.array([0.0, 0.0, 2.1])) if is_room else None
     sun = (0.0 if is_room else strength) * np.array(SUN)
     return Light(towards, sun, int(rng.integers(2**31)), lamp)
