@@ -272,7 +272,8 @@ def _export(parsed: argparse.Namespace) -> int:
 def _dataset(parsed: argparse.Namespace) -> int:
     from linecad.dataset.make import DatasetOptions, make_dataset
 
-    options = DatasetOptions(parsed.scenes, parsed.seed, *parsed.size, parsed.samples)
+    width, height = parsed.size
+    options = DatasetOptions(parsed.scenes, parsed.seed, width, height, parsed.samples)
     with _Shown(parsed) as show:
         made = make_dataset(parsed.folder, options, show.stage)
     print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")

@@ -87,7 +87,7 @@ def draw_draft(seed: int, index: int) -> Draft:
 def measure(draft: Draft, width: int, height: int) -> Truth:
     """The ground truth of a scene at a size, px."""
     matrix, rotation = draft.view.matrix(width, height), draft.view.rotation()
-    quads = draft.model.quads() - draft.view.eye
+    quads = draft.model.quads(draft.view.eye)
     edges, edge_body = draft.model.edges()
     edges = edges - draft.view.eye
     ids, _ = rasterise(quads, matrix, rotation, width, height)

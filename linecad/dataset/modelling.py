@@ -6,6 +6,7 @@ of it towards whoever looks at it.
 """
 
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -90,9 +91,9 @@ class Model:
         for point in profile:
             self.edge(point, point + side)
 
-    def quads(self) -> Float:
-        """(Q, 4, 3) corners in order around, m."""
-        return parallelograms(np.array(self.corners).reshape(-1, 3, 3))
+    def quads(self, eye: Float) -> Float:
+        """(Q, 4, 3) corners in order around, m, counted from a point `eye` (3,) of the building frame."""
+        return parallelograms(np.array(self.corners).reshape(-1, 3, 3) - eye)
 
     def edges(self) -> tuple[Float, Int]:
         """Ends (M, 2, 3), m, and bodies (M,) of the different edges that are not points."""
@@ -148,7 +149,7 @@ class Wall:
         inside = [(sides, rows) for sides, rows in self.openings if up[0] - SAME < rows[0] and rows[1] < up[1] + SAME]
         cuts = sorted({up[0], up[1], *(end for _, rows in inside for end in rows)})
         bands: list[tuple[Interval, list[Interval]]] = []
-        for low, high in zip(cuts[:-1], cuts[1:], strict=True):
+        for low, high in pairwise(cuts):
             if high - low < SAME:
                 continue
             holes = sorted(sides for sides, rows in inside if rows[0] < high - SAME and rows[1] > low + SAME)

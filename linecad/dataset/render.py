@@ -74,14 +74,14 @@ def load(model: Model, view: View, light: Light, width: int, height: int) -> Any
         scene["sun"] = {"type": "directional", "direction": light.towards.tolist(), "irradiance": irradiance}
     if light.lamp is not None:
         scene["lamp"] = _lamp(*light.lamp, view.eye)
-    corners = model.quads()
+    corners = model.quads(view.eye)
     by_material: dict[Material, list[int]] = {}
     for index, material in enumerate(model.materials):
         by_material.setdefault(material, []).append(index)
     for number, (material, indices) in enumerate(by_material.items()):
         tile, side = texture(material)
         quads = corners[indices]
-        mesh = _mesh(f"m{number}", quads - view.eye, _texture_coordinates(quads) / side, _surface(material, tile))
+        mesh = _mesh(f"m{number}", quads, _texture_coordinates(quads + view.eye) / side, _surface(material, tile))
         scene[f"m{number}"] = mesh
     return mi.load_dict(scene)
 
@@ -97,12 +97,11 @@ def render(scene: Any, samples: int, seed: int, on_pass: Callable[[int], None]) 
     done = 0
     while done < samples:
         count = min(at_once, samples - done)
-        image = np.array(mi.render(scene, spp=count, seed=seed % 2**31 + done))[..., :3]
+        image = np.array(mi.render(scene, spp=count, seed=mi.UInt32(seed % 2**31 + done)))[..., :3]
         total += count * np.clip(np.nan_to_num(image), 0, BRIGHTEST)
         done += count
         on_pass(done)
-    mean: Image = total / np.float32(samples)
-    return mean
+    return np.asarray(total / samples, np.float32)
 
 
 def _sensor(view: View, width: int, height: int) -> dict[str, Any]:
@@ -119,7 +118,7 @@ def _sensor(view: View, width: int, height: int) -> dict[str, Any]:
         "principal_point_offset_y": -float(y),
         "near_clip": 0.05,
         "far_clip": REACH,
-        "to_world": mi.ScalarTransform4f(to_world),
+        "to_world": mi.ScalarTransform4f(to_world.astype(np.float32)),
         "film": {
             "type": "hdrfilm",
             "width": width,
@@ -141,7 +140,7 @@ def _lamp(corner: Float, first: Float, second: Float, eye: Float) -> dict[str, A
     radiance = {"type": "rgb", "value": list(LAMP)}
     return {
         "type": "rectangle",
-        "to_world": mi.ScalarTransform4f(to_world),
+        "to_world": mi.ScalarTransform4f(to_world.astype(np.float32)),
         "emitter": {"type": "area", "radiance": radiance},
     }
 
@@ -161,7 +160,7 @@ def _mesh(name: str, quads: Float, coordinates: Float, surface: dict[str, Any]) 
     """A mesh of quads (N, 4, 3), two triangles each, with texture coordinates (N, 4, 2)."""
     count = len(quads)
     first = 4 * np.arange(count, dtype=np.uint32)[:, None]
-    faces = np.stack([first + [0, 1, 2], first + [0, 2, 3]], axis=1)
+    faces = np.stack([first + np.array([0, 1, 2]), first + np.array([0, 2, 3])], axis=1)
     properties = mi.Properties()
     properties["bsdf"] = mi.load_dict(surface)
     mesh = mi.Mesh(name, 4 * count, 2 * count, props=properties, has_vertex_texcoords=True)

@@ -10,6 +10,7 @@ import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,20 +31,24 @@ VERSION = 1
 LARGEST_SIDE = 16384  # px
 LARGEST_SEED = 2**32 - 1
 LARGEST_TRUTH = 4_000_000_000  # bytes of all arrays; a file that claims more is not one of ours
+SINGULAR = 1e-9  # determinant
 LARGEST_LIST = 50_000_000  # bytes
 
-# Name, kind of number and shape of each array; letters are lengths that must agree, and the corners of a quad are
-# three, for the fourth follows from them.
-ARRAYS: dict[str, tuple[str, tuple[int | str, ...]]] = {
-    "matrix": ("f", (3, 3)),
-    "rotation": ("f", (3, 3)),
-    "corners": ("f", ("Q", 3, 3)),
-    "body": ("i", ("Q",)),
-    "edges": ("f", ("M", 2, 3)),
-    "edge_body": ("i", ("M",)),
-    "pieces": ("f", ("V", 2, 2)),
-    "piece_edge": ("i", ("V",)),
-    "ids": ("i", ("H", "W")),
+# Shapes of the arrays of a truth; letters are lengths that must agree. The corners of a quad are three, for the fourth
+# follows from them.
+Shape = tuple[int | str, ...]
+REAL_ARRAYS: dict[str, Shape] = {
+    "matrix": (3, 3),
+    "rotation": (3, 3),
+    "corners": ("Q", 3, 3),
+    "edges": ("M", 2, 3),
+    "pieces": ("V", 2, 2),
+}
+WHOLE_ARRAYS: dict[str, Shape] = {
+    "body": ("Q",),
+    "edge_body": ("M",),
+    "piece_edge": ("V",),
+    "ids": ("H", "W"),
 }
 
 
@@ -121,19 +126,21 @@ def write_truth(truth: Truth, folder: Path) -> None:
     camera = {"width": truth.width, "height": truth.height, "K": truth.matrix.tolist()}
     text = json.dumps(camera) + "\n"
     write_atomically(folder / CAMERA, lambda path: _write_text(path, text))
-    arrays = {
-        "version": np.int64(VERSION),
+    real = {
         "matrix": truth.matrix,
         "rotation": truth.rotation,
         "corners": truth.quads[:, [0, 1, 3]],
-        "body": truth.body.astype(np.int32),
         "edges": truth.edges,
-        "edge_body": truth.edge_body.astype(np.int32),
         "pieces": truth.pieces,
-        "piece_edge": truth.piece_edge.astype(np.int32),
-        "ids": truth.ids.astype(np.int32),
     }
-    write_atomically(folder / TRUTH, lambda path: _write_arrays(path, arrays))
+    whole = {
+        "version": np.array(VERSION),
+        "body": truth.body,
+        "edge_body": truth.edge_body,
+        "piece_edge": truth.piece_edge,
+        "ids": truth.ids,
+    }
+    write_atomically(folder / TRUTH, lambda path: _write_arrays(path, real, whole))
 
 
 def read_truth(folder: Path) -> Truth:
@@ -142,70 +149,76 @@ def read_truth(folder: Path) -> Truth:
     if not path.is_file():
         raise DatasetError(f"{folder} holds no {TRUTH}; it is not a scene that `linecad dataset` made")
     try:
-        arrays = _read_arrays(path)
-        _check(arrays)
+        real, whole = _read_arrays(path)
+        _check(real, whole)
     except (OSError, EOFError, ValueError, KeyError, MemoryError, zipfile.BadZipFile, zlib.error) as error:
         raise DatasetError(f"{path} cannot be read: {_reason(error)}; make the scene again") from error
-    height, width = arrays["ids"].shape
+    height, width = whole["ids"].shape
     return Truth(
         name=folder.name,
         width=width,
         height=height,
-        matrix=arrays["matrix"],
-        rotation=arrays["rotation"],
-        quads=parallelograms(arrays["corners"]),
-        body=arrays["body"],
-        edges=arrays["edges"],
-        edge_body=arrays["edge_body"],
-        pieces=arrays["pieces"],
-        piece_edge=arrays["piece_edge"],
-        ids=arrays["ids"],
+        matrix=real["matrix"],
+        rotation=real["rotation"],
+        quads=parallelograms(real["corners"]),
+        body=whole["body"],
+        edges=real["edges"],
+        edge_body=whole["edge_body"],
+        pieces=real["pieces"],
+        piece_edge=whole["piece_edge"],
+        ids=whole["ids"],
     )
 
 
-def _read_arrays(path: Path) -> dict[str, NDArray[np.float64] | NDArray[np.int64]]:
+def _read_arrays(path: Path) -> tuple[dict[str, Float], dict[str, Int]]:
+    """The arrays of a truth by name. Raises ValueError, KeyError, or what a damaged archive raises."""
     with zipfile.ZipFile(path) as archive:
         if sum(member.file_size for member in archive.infolist()) > LARGEST_TRUTH:
             raise ValueError("it claims to hold more than a scene can")
-    found: dict[str, Float | Int] = {}
-    with np.load(path, allow_pickle=False) as archive:
-        if int(archive["version"]) != VERSION:
-            raise ValueError(f"its version is {int(archive['version'])}, this linecad reads {VERSION}")
-        for name, (kind, _) in ARRAYS.items():
-            array = archive[name]
-            if array.dtype.kind != kind:
-                raise ValueError(f"{name} holds numbers of the wrong kind")
-            found[name] = array.astype(np.float64 if kind == "f" else np.int64)
-    return found
+    with np.load(path, allow_pickle=False) as found:
+        version = int(found["version"])
+        if version != VERSION:
+            raise ValueError(f"its version is {version}, this linecad reads {VERSION}")
+        real = {name: _of_kind(found[name], "f", name).astype(np.float64) for name in REAL_ARRAYS}
+        whole = {name: _of_kind(found[name], "i", name).astype(np.int64) for name in WHOLE_ARRAYS}
+    return real, whole
 
 
-def _check(arrays: dict[str, Float | Int]) -> None:
+def _of_kind(array: NDArray[Any], kind: str, name: str) -> NDArray[Any]:
+    if array.dtype.kind != kind:
+        raise ValueError(f"{name} holds numbers of the wrong kind")
+    return array
+
+
+def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
     """Raise ValueError where shapes, indices or numbers are not what a truth has."""
     lengths: dict[str, int] = {}
-    for name, (kind, shape) in ARRAYS.items():
-        array = arrays[name]
-        fits = array.ndim == len(shape) and all(
-            have == (want if isinstance(want, int) else lengths.setdefault(want, have))
-            for have, want in zip(array.shape, shape, strict=True)
-        )
-        if not fits:
+    for name, shape in (REAL_ARRAYS | WHOLE_ARRAYS).items():
+        found = (real[name] if name in real else whole[name]).shape
+        wanted = [
+            length if isinstance(length, int) else lengths.setdefault(length, have)
+            for length, have in zip(shape, found, strict=False)
+        ]
+        if len(found) != len(shape) or list(found) != wanted:
             raise ValueError(f"{name} has the wrong shape")
-        if kind == "f" and not np.isfinite(array).all():
+    if not 1 <= min(lengths["H"], lengths["W"]) <= max(lengths["H"], lengths["W"]) <= LARGEST_SIDE:
+        raise ValueError("its map has no size that a photo has")
+    for name, numbers in real.items():
+        if not np.isfinite(numbers).all():
             raise ValueError(f"{name} holds a number that is not finite")
+    bodies = int(whole["body"].max(initial=-1)) + 1
     limits = {
         "ids": (NOTHING, lengths["Q"]),
         "piece_edge": (0, lengths["M"]),
-        "body": (0, None),
-        "edge_body": (0, None),
+        "body": (0, bodies),
+        "edge_body": (0, bodies),
     }
     for name, (low, high) in limits.items():
-        array = arrays[name]
-        if array.size and (array.min() < low or (high is not None and array.max() >= high)):
+        named = whole[name]
+        if named.size and not low <= named.min() <= named.max() < high:
             raise ValueError(f"{name} names what is not there")
-    if not 1 <= min(lengths["H"], lengths["W"]) <= max(lengths["H"], lengths["W"]) <= LARGEST_SIDE:
-        raise ValueError("its map has no size that a photo has")
     for name in ("matrix", "rotation"):
-        if abs(np.linalg.det(arrays[name])) < 1e-9:
+        if abs(np.linalg.det(real[name])) < SINGULAR:
             raise ValueError(f"{name} cannot be inverted")
 
 
@@ -213,7 +226,8 @@ def _write_text(path: Path, text: str) -> None:
     path.write_text(text, encoding="utf-8")
 
 
-def _write_arrays(path: Path, arrays: dict[str, NDArray[np.float64]]) -> None:
+def _write_arrays(path: Path, real: dict[str, Float], whole: dict[str, Int]) -> None:
+    arrays: dict[str, Any] = {**real, **{name: numbers.astype(np.int32) for name, numbers in whole.items()}}
     with path.open("wb") as stream:
         np.savez_compressed(stream, **arrays)
 

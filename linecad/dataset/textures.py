@@ -77,7 +77,7 @@ def _blocks(courses: Courses, rng: Generator) -> Image:
     joint = np.clip((courses.joint / 2 - np.minimum(across, up) + rough) / 0.003 + 0.5, 0, 1)
     tone = rng.normal(1, courses.spread, (rows, columns))[row, column]
     tone *= 1 + 0.06 * clouds(rng, FINE, 1.0) + 0.03 * rng.normal(0, 1, (FINE, FINE))
-    return (tone * (1 - joint) + courses.joint_tone * joint).astype(np.float32)
+    return np.asarray(tone * (1 - joint) + courses.joint_tone * joint, np.float32)
 
 
 def clouds(rng: Generator, count: int, slope: float) -> NDArray[np.float64]:
@@ -92,7 +92,7 @@ def clouds(rng: Generator, count: int, slope: float) -> NDArray[np.float64]:
 def linear(colour: tuple[float, float, float]) -> Image:
     """Linear RGB (3,) of an sRGB colour, both from 0 to 1."""
     value = np.array(colour)
-    return np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4).astype(np.float32)
+    return np.asarray(np.where(value <= 0.04045, value / 12.92, ((value + 0.055) / 1.055) ** 2.4), np.float32)
 
 
 def sky(rng: Generator) -> Image:
@@ -105,4 +105,4 @@ def sky(rng: Generator) -> Image:
     share = np.clip(0.8 * clouds(rng, count, 1.6)[:SKY_HEIGHT, :, None] + amount, 0, 1) * np.clip(5 * above, 0, 1)
     free = blue * (1 - share) + np.array([1.35, 1.35, 1.38]) * share
     ground = np.array([0.24, 0.23, 0.21])
-    return np.where(height > 0, free, ground).astype(np.float32)
+    return np.asarray(np.where(height > 0, free, ground), np.float32)
