@@ -21,7 +21,7 @@ from linecad.dataset.view import View
 from linecad.scene import Float
 
 LLVM_VARIABLE = "DRJIT_LIBLLVM_PATH"
-LLVM_PLACES = ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/opt/homebrew/opt/llvm/lib")
+LLVM_PLACES = ("/usr/lib", "/usr/lib64", "/usr/local/lib")
 OLDEST_LLVM = 17  # older ones cannot translate Dr.Jit's `minimum` on x86
 
 PASS = 2 * 3840 * 2160  # samples rendered at a time, which bounds the memory

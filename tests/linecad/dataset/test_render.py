@@ -37,7 +37,7 @@ def darkness(corners: Float) -> Float:
         model.start_body("building")
         model.quad(corners[0], corners[1] - corners[0], corners[3] - corners[0], Material("plain", (0.0, 0.0, 0.0)))
         scene = render.load(model, VIEW, LIGHT, WIDTH, HEIGHT)
-        image: Float = render.render(scene, 256, 5, nothing).mean(axis=2).astype(np.float64)
+        image: Float = render.render(scene, 64, 5, nothing).mean(axis=2).astype(np.float64)
         return image
 
     behind_the_camera = corners - np.array([0.0, 60.0, 0.0])
