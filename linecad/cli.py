@@ -6,6 +6,7 @@ stderr), 2 wrong usage. argparse, because it costs nothing to load: `--help` ans
 
 import argparse
 import importlib.util
+import re
 import sys
 import time
 from collections.abc import Sequence
@@ -62,6 +63,7 @@ def _parser() -> argparse.ArgumentParser:
     _add_convert(commands)
     _add_evaluate(commands)
     _add_export(commands)
+    _add_dataset(commands)
     return parser
 
 
@@ -183,6 +185,22 @@ def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_loudness(export)
 
 
+def _add_dataset(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    dataset = commands.add_parser(
+        "dataset",
+        help="street scenes of our own with exact ground truth",
+        description="Draw, render and measure scenes; a run that was stopped goes on where it was.",
+        epilog="example: linecad dataset scenes --scenes 50 --seed 1 --size 1920x1080",
+    )
+    dataset.set_defaults(run=_dataset)
+    dataset.add_argument("folder", type=Path, metavar="DIR")
+    dataset.add_argument("--scenes", type=int, required=True, metavar="N", help="how many scenes the dataset has")
+    dataset.add_argument("--seed", type=int, required=True, metavar="S", help="the same seed gives the same scenes")
+    dataset.add_argument("--size", type=_size, default=(3840, 2160), metavar="WxH", help="of the photos (3840x2160)")
+    dataset.add_argument("--samples", type=int, default=32, metavar="N", help="rays a pixel: time against noise (32)")
+    _add_loudness(dataset)
+
+
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
@@ -226,6 +244,13 @@ def _extension(text: str) -> float:
             f"{text} px would let all lines cross; at most {LARGEST_EXTENSION:.0f} make sense"
         )
     return value
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,6})x(\d{1,6})", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size; write it like 1920x1080")
+    return int(found[1]), int(found[2])
 
 
 def _families(text: str) -> frozenset[str]:
@@ -332,6 +357,17 @@ def _export(parsed: argparse.Namespace) -> int:
         scene = read_scene(parsed.scene)
         photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
         _write(scene, photo, parsed.output, show)
+    return 0
+
+
+def _dataset(parsed: argparse.Namespace) -> int:
+    from linecad.dataset.make import DatasetOptions, make_dataset
+
+    width, height = parsed.size
+    options = DatasetOptions(parsed.scenes, parsed.seed, width, height, parsed.samples)
+    with _Shown(parsed) as show:
+        made = make_dataset(parsed.folder, options, show.stage)
+    print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")
     return 0
 
 

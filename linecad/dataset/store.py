@@ -1,0 +1,237 @@
+"""Made scenes on disk: one folder a scene with its photo, camera and truth, and a list of them (docs/dataset.md).
+
+A folder appears whole or not at all: it is filled under a hidden name and then renamed.
+"""
+
+import json
+import shutil
+import zipfile
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linecad.dataset.modelling import parallelograms
+from linecad.dataset.truth import NOTHING, Truth
+from linecad.errors import DatasetError, OutputError
+from linecad.files import write_atomically
+from linecad.scene import Float, Int
+from linecad.strictjson import JsonError, parse
+
+LIST = "dataset.json"
+PHOTO = "photo.jpg"
+CAMERA = "camera.json"
+TRUTH = "truth.npz"
+FORMAT = "linecad-dataset"
+VERSION = 1
+LARGEST_SIDE = 16384  # px
+LARGEST_SEED = 2**32 - 1
+LARGEST_TRUTH = 4_000_000_000  # bytes of all arrays; a file that claims more is not one of ours
+SINGULAR = 1e-9  # determinant
+LARGEST_LIST = 50_000_000  # bytes
+
+# Shapes of the arrays of a truth; letters are lengths that must agree. The corners of a quad are three, for the fourth
+# follows from them.
+Shape = tuple[int | str, ...]
+REAL_ARRAYS: dict[str, Shape] = {
+    "matrix": (3, 3),
+    "rotation": (3, 3),
+    "corners": ("Q", 3, 3),
+    "edges": ("M", 2, 3),
+    "pieces": ("V", 2, 2),
+}
+WHOLE_ARRAYS: dict[str, Shape] = {
+    "body": ("Q",),
+    "edge_body": ("M",),
+    "piece_edge": ("V",),
+    "ids": ("H", "W"),
+}
+
+
+@dataclass(frozen=True)
+class DatasetList:
+    """What dataset.json says."""
+
+    seed: int
+    width: int  # px
+    height: int  # px
+    samples: int  # a pixel
+    scenes: tuple[str, ...]  # names of the folders that are there, in ascending order
+
+
+def write_list(made: DatasetList, folder: Path) -> None:
+    """Write dataset.json. Raises OutputError."""
+    document = {
+        "format": FORMAT,
+        "version": VERSION,
+        "seed": made.seed,
+        "size": [made.width, made.height],
+        "samples": made.samples,
+        "scenes": list(made.scenes),
+    }
+    text = json.dumps(document, indent=1) + "\n"
+    write_atomically(folder / LIST, lambda path: _write_text(path, text))
+
+
+def read_list(folder: Path) -> DatasetList:
+    """What the dataset in `folder` holds. Raises DatasetError."""
+    path = folder / LIST
+    if not path.is_file():
+        raise DatasetError(f"{folder} holds no {LIST}; give a folder that `linecad dataset` made")
+    try:
+        if path.stat().st_size > LARGEST_LIST:
+            raise DatasetError(f"{path} is too large for a list of scenes; make the dataset again")
+        top = parse(path.read_text(encoding="utf-8"))
+        top["format"].one_of((FORMAT,))
+        top["version"].integer(VERSION, VERSION)
+        size = [side.integer(1, LARGEST_SIDE) for side in top["size"].items()]
+        if len(size) != 2:
+            raise top["size"].wrong("a list of 2")
+        names = [name.text() for name in top["scenes"].items()]
+        samples = top["samples"].integer(1)
+        seed = top["seed"].integer(0, LARGEST_SEED)
+    except (JsonError, UnicodeDecodeError, OSError) as error:
+        raise DatasetError(f"{path} is not a list of scenes: {_reason(error)}; make the dataset again") from error
+    for name in names:
+        # A list does not send us to other folders.
+        if not name or name in (".", "..") or Path(name).name != name or "\\" in name:
+            raise DatasetError(f"{path} names the scene {name!r}, which is no name of a folder; make the dataset again")
+    return DatasetList(seed, size[0], size[1], samples, tuple(names))
+
+
+def write_scene_folder(folder: Path, truth: Truth, write_photo: Callable[[Path], None]) -> None:
+    """Make the folder of a scene in the dataset `folder`, whole or not at all. Raises OutputError."""
+    target, temporary = folder / truth.name, folder / f".linecad-{truth.name}"
+    try:
+        shutil.rmtree(temporary, ignore_errors=True)  # what a run that was killed left behind
+        temporary.mkdir()
+        try:
+            write_photo(temporary / PHOTO)
+            write_truth(truth, temporary)
+            temporary.rename(target)
+        finally:
+            shutil.rmtree(temporary, ignore_errors=True)
+    except OSError as error:
+        raise OutputError(
+            f"{target} was not written: {_reason(error)}; check the disk or choose another folder"
+        ) from error
+
+
+def write_truth(truth: Truth, folder: Path) -> None:
+    """Write camera.json and truth.npz of a scene. Raises OSError, or OutputError."""
+    camera = {"width": truth.width, "height": truth.height, "K": truth.matrix.tolist()}
+    text = json.dumps(camera) + "\n"
+    write_atomically(folder / CAMERA, lambda path: _write_text(path, text))
+    real = {
+        "matrix": truth.matrix,
+        "rotation": truth.rotation,
+        "corners": truth.quads[:, [0, 1, 3]],
+        "edges": truth.edges,
+        "pieces": truth.pieces,
+    }
+    whole = {
+        "version": np.array(VERSION),
+        "body": truth.body,
+        "edge_body": truth.edge_body,
+        "piece_edge": truth.piece_edge,
+        "ids": truth.ids,
+    }
+    write_atomically(folder / TRUTH, lambda path: _write_arrays(path, real, whole))
+
+
+def read_truth(folder: Path) -> Truth:
+    """The truth of the scene in `folder`, checked. Raises DatasetError."""
+    path = folder / TRUTH
+    if not path.is_file():
+        raise DatasetError(f"{folder} holds no {TRUTH}; it is not a scene that `linecad dataset` made")
+    try:
+        real, whole = _read_arrays(path)
+        _check(real, whole)
+    except (OSError, EOFError, ValueError, KeyError, MemoryError, zipfile.BadZipFile, zlib.error) as error:
+        raise DatasetError(f"{path} cannot be read: {_reason(error)}; make the scene again") from error
+    height, width = whole["ids"].shape
+    return Truth(
+        name=folder.name,
+        width=width,
+        height=height,
+        matrix=real["matrix"],
+        rotation=real["rotation"],
+        quads=parallelograms(real["corners"]),
+        body=whole["body"],
+        edges=real["edges"],
+        edge_body=whole["edge_body"],
+        pieces=real["pieces"],
+        piece_edge=whole["piece_edge"],
+        ids=whole["ids"],
+    )
+
+
+def _read_arrays(path: Path) -> tuple[dict[str, Float], dict[str, Int]]:
+    """The arrays of a truth by name. Raises ValueError, KeyError, or what a damaged archive raises."""
+    with zipfile.ZipFile(path) as archive:
+        if sum(member.file_size for member in archive.infolist()) > LARGEST_TRUTH:
+            raise ValueError("it claims to hold more than a scene can")
+    with np.load(path, allow_pickle=False) as found:
+        version = int(found["version"])
+        if version != VERSION:
+            raise ValueError(f"its version is {version}, this linecad reads {VERSION}")
+        real = {name: _of_kind(found[name], "f", name).astype(np.float64) for name in REAL_ARRAYS}
+        whole = {name: _of_kind(found[name], "i", name).astype(np.int64) for name in WHOLE_ARRAYS}
+    return real, whole
+
+
+def _of_kind(array: NDArray[Any], kind: str, name: str) -> NDArray[Any]:
+    if array.dtype.kind != kind:
+        raise ValueError(f"{name} holds numbers of the wrong kind")
+    return array
+
+
+def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
+    """Raise ValueError where shapes, indices or numbers are not what a truth has."""
+    lengths: dict[str, int] = {}
+    for name, shape in (REAL_ARRAYS | WHOLE_ARRAYS).items():
+        found = (real[name] if name in real else whole[name]).shape
+        wanted = [
+            length if isinstance(length, int) else lengths.setdefault(length, have)
+            for length, have in zip(shape, found, strict=False)
+        ]
+        if len(found) != len(shape) or list(found) != wanted:
+            raise ValueError(f"{name} has the wrong shape")
+    if not 1 <= min(lengths["H"], lengths["W"]) <= max(lengths["H"], lengths["W"]) <= LARGEST_SIDE:
+        raise ValueError("its map has no size that a photo has")
+    for name, numbers in real.items():
+        if not np.isfinite(numbers).all():
+            raise ValueError(f"{name} holds a number that is not finite")
+    bodies = int(whole["body"].max(initial=-1)) + 1
+    limits = {
+        "ids": (NOTHING, lengths["Q"]),
+        "piece_edge": (0, lengths["M"]),
+        "body": (0, bodies),
+        "edge_body": (0, bodies),
+    }
+    for name, (low, high) in limits.items():
+        named = whole[name]
+        if named.size and not low <= named.min() <= named.max() < high:
+            raise ValueError(f"{name} names what is not there")
+    for name in ("matrix", "rotation"):
+        if abs(np.linalg.det(real[name])) < SINGULAR:
+            raise ValueError(f"{name} cannot be inverted")
+
+
+def _write_text(path: Path, text: str) -> None:
+    path.write_text(text, encoding="utf-8")
+
+
+def _write_arrays(path: Path, real: dict[str, Float], whole: dict[str, Int]) -> None:
+    arrays: dict[str, Any] = {**real, **{name: numbers.astype(np.int32) for name, numbers in whole.items()}}
+    with path.open("wb") as stream:
+        np.savez_compressed(stream, **arrays)
+
+
+def _reason(error: BaseException) -> str:
+    text = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+    return " ".join(text.split()) or type(error).__name__
