@@ -6,19 +6,19 @@ from pathlib import Path
 from typing import Literal
 
 from linecad import strictjson
+from linecad.dataset.store import LIST, PHOTO, read_list
 from linecad.errors import DatasetError
 from linecad.strictjson import JsonError, Node
 
 Kind = Literal["made", "york", "york-json", "points", "lines", "labels"]
 
-MADE = "dataset.json"
 YORK_CAMERA = "cameraParameters.mat"
 YORK_LINES = "LinesAndVP.mat"
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".JPG", ".JPEG", ".PNG")
 FILE_LIMIT = 100_000_000  # bytes
 LABELS_FORMAT = "linecad-labels"
 KNOWN = (
-    f"known are: our own ({MADE}), York Urban ({YORK_CAMERA} and NAME/NAME{YORK_LINES}, or its JSON), points with "
+    f"known are: our own ({LIST}), York Urban ({YORK_CAMERA} and NAME/NAME{YORK_LINES}, or its JSON), points with "
     "depth, lines with crossings, and labels made by hand"
 )
 
@@ -45,7 +45,7 @@ def find_dataset(folder: Path) -> Dataset:
     """The dataset in a folder; DatasetError when there is none, or one that is not known or damaged."""
     if not folder.is_dir():
         raise DatasetError(f"{folder} is not a folder; give the folder of a dataset ({KNOWN})")
-    if (folder / MADE).is_file():
+    if (folder / LIST).is_file():
         cases: Iterable[Case] = _made(folder)
     elif (folder / YORK_CAMERA).is_file():
         cases = _york(folder)
@@ -72,17 +72,8 @@ def read_json(path: Path) -> Node:
 
 
 def _made(folder: Path) -> Iterable[Case]:
-    top = read_json(folder / MADE)
-    try:
-        top["format"].one_of(("linecad-dataset",))
-        top["version"].integer(1, 1)
-        names = [node.text() for node in top["scenes"].items()]
-    except JsonError as error:
-        raise DatasetError(f"{folder / MADE}: {error}; make the dataset again with this version") from error
-    for name in names:
-        if Path(name).name != name:
-            raise DatasetError(f"{folder / MADE} names the scene {name!r}, which is no folder in it; check the file")
-        yield Case(name, "made", _photo(folder / name / "photo"), folder / name)
+    for name in read_list(folder).scenes:
+        yield Case(name, "made", folder / name / PHOTO, folder / name)
 
 
 def _york(folder: Path) -> Iterable[Case]:

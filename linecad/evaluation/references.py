@@ -7,6 +7,7 @@ from typing import assert_never
 import numpy as np
 
 from linecad.calibration import read_calibration, undistort_points
+from linecad.dataset.store import CAMERA, read_truth
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.errors import DatasetError
 from linecad.evaluation.datasets import Case, read_json
@@ -97,9 +98,7 @@ def open_case(case: Case) -> tuple[Photo, Reference]:
 
 
 def _made(case: Case) -> tuple[Photo, Reference]:
-    from linecad.dataset.store import read_truth
-
-    photo = read_photo(case.photo, case.truth / "camera.json")
+    photo = read_photo(case.photo, case.truth / CAMERA)
     truth = read_truth(case.truth)
     if (photo.width, photo.height) != (truth.width, truth.height):
         raise DatasetError(
