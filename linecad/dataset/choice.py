@@ -12,7 +12,7 @@ from linecad.scene import Bool, Camera, Float, ManhattanFrame, Segments
 
 MOST_TRIES = 12  # drawings of one scene; the last one is taken as it is
 LONG = 40.0  # px at the reference width; shorter pieces do not count
-CROSSINGS = {"street": (2000, 6500), "courtyard": (1500, 9000), "room": (800, 6500)}
+CROSSINGS = {"street": (3000, 6500), "courtyard": (1500, 9000), "room": (800, 6500)}
 LEAST_REAL = {"street": 0.75, "courtyard": 0.75, "room": 0.58}  # books and boards have more relief for their distance
 SAME_DEPTH = 0.02  # by which the depths of two lines that meet may differ: the relief of a facade
 BUILT = {"street": 0.40, "courtyard": 0.45, "room": 0.80}  # least share of the photo that buildings fill

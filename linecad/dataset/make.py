@@ -128,7 +128,7 @@ def make_dataset(folder: Path, options: DatasetOptions, on_stage: OnStage) -> Ma
             int(seed.generate_state(1)[0]),
             lambda done, begun=begun: on_stage(f"{begun}: rendered {done} of {options.samples} samples a pixel"),
         )
-        write_scene_folder(folder, truth, _photo_writer(radiance, np.random.default_rng(seed)))
+        write_scene_folder(folder, truth, _photo_writer(radiance, options.samples, np.random.default_rng(seed)))
         made = made | {names[index]}
         _write_list(folder, options, made)
     return Made(len(missing), options.scenes - len(missing))
@@ -145,10 +145,10 @@ def _renderer() -> ModuleType:
     return render
 
 
-def _photo_writer(radiance: Image, rng: Generator) -> Callable[[Path], None]:
+def _photo_writer(radiance: Image, samples: int, rng: Generator) -> Callable[[Path], None]:
     from linecad.dataset.finishing import develop, write_photo
 
-    photo = develop(radiance, rng)
+    photo = develop(radiance, samples, rng)
     return lambda path: write_photo(photo, path, rng)
 
 

@@ -81,7 +81,7 @@ def test_the_camera_file_goes_with_the_photo(truth: Truth, tmp_path: Path) -> No
 
     rng = np.random.default_rng(0)
     image = rng.uniform(0, 1, (90, 160, 3)).astype(np.float32)
-    write_scene_folder(tmp_path, truth, lambda path: write_photo(develop(image, rng), path, rng))
+    write_scene_folder(tmp_path, truth, lambda path: write_photo(develop(image, 16, rng), path, rng))
     folder = tmp_path / truth.name
     photo = read_photo(folder / PHOTO, folder / "camera.json")
     assert photo.camera is not None
