@@ -187,7 +187,9 @@ class _Search:
         evidence = np.clip(x[: len(self.graph.edges)], 0, 1) + TIE * self.graph.weight / self.graph.weight.max(
             initial=1
         )
-        self._offer(self.starter.round(evidence))
+        rounded = self.starter.round(evidence, self.end)
+        if rounded is not None:
+            self._offer(rounded)
 
     def _fix(self, program: Program, last: Relaxed) -> None:
         """Fix Booleans whose reduced cost says that the other value cannot be better than what is known.

@@ -18,10 +18,15 @@ IMPROVEMENT = 1e-12  # log depth, below which a change is rounding
 
 @dataclass(frozen=True, eq=False)
 class Fit:
-    """Either depths, and then `contradiction` is empty, or a smallest set of edges that cannot all be real."""
+    """Either depths, and then there is no contradiction, or smallest sets of edges that cannot all be real."""
 
     near: Float  # (N,) log depth of the near ends; of no meaning where there is a contradiction
-    contradiction: Int  # edges, ascending
+    contradictions: tuple[Int, ...]  # each with its edges ascending; some of all that there are
+
+    @property
+    def contradiction(self) -> Int:
+        """The edges of one contradiction, or none."""
+        return self.contradictions[0] if self.contradictions else np.zeros(0, np.int64)
 
 
 def fit_near_depths(
@@ -50,14 +55,15 @@ def fit_near_depths(
         np.minimum.at(lowest, head, reached)
         lowered = lowest < depth - IMPROVEMENT
         if not lowered.any():
-            return Fit(depth[:-1] - depth[-1], np.zeros(0, np.int64))
+            return Fit(depth[:-1] - depth[-1], ())
         binding = np.flatnonzero(lowered[head] & (reached == lowest[head]))
         cause[head[binding]] = binding
         depth = np.where(lowered, lowest, depth)
         if turn % LOOK_EVERY == 0 or turn > lines:
             circling = _on_a_cycle(cause, tail)
             if len(circling):
-                return Fit(depth[:-1], _cycle(int(circling[0]), cause, tail, edge))
+                cycles = {tuple(_cycle(node, cause, tail, edge).tolist()): None for node in circling.tolist()}
+                return Fit(depth[:-1], tuple(np.array(cycle, np.int64) for cycle in cycles))
     raise AssertionError("depths fall in every round, yet no cycle of constraints is the cause")
 
 

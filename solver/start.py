@@ -3,6 +3,8 @@
 The exact solver starts from it and can only improve on it.
 """
 
+import time
+
 import numpy as np
 
 from linecad.scene import Bool, Float, LineGraph
@@ -15,6 +17,7 @@ from solver.problem import SolveOptions
 
 SAFETY = 1e-9  # log depth, kept from every limit so that rounding cannot push the start over it
 HALF = 0.5  # of a crossing in a relaxation, from which a choice begins with it
+MOST_REPAIRS = 60  # rounds in which edges of contradicting cycles are given up
 CERTAIN = 1e6  # evidence of a crossing that a person called real
 
 
@@ -40,26 +43,34 @@ class Starter:
         graph, real, fake = self.graph, self.real, self.fake
         evidence = np.where(real, CERTAIN, np.where(fake, 0.0, graph.weight))
         near = _greedy_near_depths(graph, self.step, self.log_range, evidence)
-        _settle(near, graph, self.step, self.log_range, evidence)
-        if real.any():
-            near = fit_near_depths(graph, self.step, real, self.log_range, near).near
-        return self._best_for(near, None)
+        return self._best_for(self._majority(near, evidence), None)
 
-    def round(self, value: Float) -> Choice:
-        """A choice near the values (E,) of a relaxation.
+    def round(self, value: Float, until: float) -> Choice | None:
+        """A choice near the values (E,) of a relaxation, or None if it is not ready at `until` (`time.monotonic()`).
 
-        The edges above one half, less the weakest of each cycle that contradicts itself, fix the depths.
+        The edges above one half, less the weakest of each cycle that contradicts itself, fix the depths; where too
+        many do, as in graphs of thousands of lines, the majority of each line's edges.
         """
         graph, real = self.graph, self.real
         value = np.where(real, CERTAIN, np.where(self.fake | ~graph.possible, 0.0, value))
         near = _greedy_near_depths(graph, self.step, self.log_range, value)
         likely = value > HALF
-        while True:
+        for _ in range(MOST_REPAIRS):
+            if time.monotonic() >= until:
+                return None
             fit = fit_near_depths(graph, self.step, likely, self.log_range, near, slack=-2 * SAFETY)
-            if len(fit.contradiction) == 0:
+            if not fit.contradictions:
                 return self._best_for(fit.near, likely)
-            cycle = fit.contradiction
-            likely[cycle[np.argmin(value[cycle])]] = False
+            for cycle in fit.contradictions:
+                likely[cycle[np.argmin(value[cycle])]] = False
+        return self._best_for(self._majority(near, value), likely)
+
+    def _majority(self, near: Float, evidence: Float) -> Float:
+        """(N,) depths at which the most evidence agrees, moved as far as the real crossings ask."""
+        _settle(near, self.graph, self.step, self.log_range, evidence)
+        if not self.real.any():
+            return near
+        return fit_near_depths(self.graph, self.step, self.real, self.log_range, near).near
 
     def _best_for(self, near: Float, likely: Bool | None) -> Choice:
         graph = self.graph

@@ -1,3 +1,5 @@
+import time
+
 import numpy as np
 import pytest
 
@@ -58,3 +60,15 @@ def test_the_majority_of_its_edges_places_a_line(build_graph):
         build_graph(lines, edges, weight=weight), SolveOptions(formulation="paper", without=frozenset(FAMILIES))
     )
     assert start.connected.tolist() == [True] * 4 + [False] + [True] * 7
+
+
+def test_rounding_gives_up_when_its_time_is_over(street):
+    options = SolveOptions()
+    none = np.zeros(len(street.edges), bool)
+    families = find_families(street, frozenset({"cycles"}))
+    starter = Starter(street, families, options, end_ratios(street), none, none)
+    value = np.ones(len(street.edges))
+    assert starter.round(value, time.monotonic() - 1) is None
+    rounded = starter.round(value, np.inf)
+    assert rounded is not None
+    recheck(street, families, options, rounded)
