@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from linecad.evaluation.bootstrap import Estimate, mean, ratio_of_sums
 from linecad.evaluation.decisions import Decisions
+from linecad.evaluation.depth import DepthScore
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, ROWS, Run, Settings
 from linecad.scene import Formulation
@@ -139,11 +140,13 @@ def measures(wholes: Sequence[WholeResult]) -> Table:
         ("tree: share of line length", "%", tree[2]),
         ("depth recall at 2 %", "%", each(lambda w: w.edges.recall_2 if w.edges else None)),
         ("depth recall at 5 %", "%", each(lambda w: w.edges.recall_5 if w.edges else None)),
-        ("depth precision at 2 %", "%", each(lambda w: _precision(w, 2))),
-        ("depth precision at 5 %", "%", each(lambda w: _precision(w, 5))),
+        ("depth precision at 2 %", "%", each(lambda w: _precision(w.edges, 2))),
+        ("depth precision at 5 %", "%", each(lambda w: _precision(w.edges, 5))),
         ("depth recall at 5 %, weak lines too", "%", each(_recall_with_weak)),
         ("dense recall at 2 %", "%", each(lambda w: w.dense.recall_2 if w.dense else None)),
         ("dense recall at 5 %", "%", each(lambda w: w.dense.recall_5 if w.dense else None)),
+        ("dense precision at 2 %", "%", each(lambda w: _precision(w.dense, 2))),
+        ("dense precision at 5 %", "%", each(lambda w: _precision(w.dense, 5))),
         ("planes: precision", "%", ratio_of_sums([p.right_lines for p in planes], [p.lines for p in planes])),
         ("planes: recall", "%", ratio_of_sums([p.found_pixels for p in planes], [p.pixels for p in planes])),
         ("marked line length covered", "%", ratio_of_sums([m.covered for m in marked], [m.length for m in marked])),
@@ -166,8 +169,8 @@ def _recall_with_weak(whole: WholeResult) -> float | None:
     return None if whole.edges_with_weak is None else whole.edges_with_weak.recall_5
 
 
-def _precision(whole: WholeResult, per_cent: int) -> float | None:
+def _precision(score: DepthScore | None, per_cent: int) -> float | None:
     """None where no point got a depth: there is nothing that could be wrong."""
-    if whole.edges is None or whole.edges.with_depth == 0:
+    if score is None or score.with_depth == 0:
         return None
-    return whole.edges.precision_2 if per_cent == 2 else whole.edges.precision_5
+    return score.precision_2 if per_cent == 2 else score.precision_5
