@@ -12,6 +12,7 @@ from scipy.sparse import csr_matrix, diags_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
+from linecad.offsets import MIN_TOLERANCE, Merges, find_merges
 from linecad.scene import Bool, Float, Int, LineGraph, Solution
 
 ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
@@ -29,10 +30,17 @@ class Lifted:
 
 
 def lift(graph: LineGraph, solution: Solution) -> Lifted:
-    """Lines in space for every node of the graph, exact at the chosen crossings (paper, algorithm 1, last steps)."""
+    """Lines in space for every node of the graph, exact at the chosen crossings (paper, algorithm 1, last steps).
+
+    Planes of one normal that the noise cannot tell apart become one.
+    """
     chosen = solution.connected
     log_depth = fit_log_depths(graph, chosen, solution.log_depth)
     shared = _shared_coordinates(graph, chosen)
+    merges = find_merges(graph, chosen, _parts(graph, chosen), shared, log_depth, _normal(graph, chosen))
+    if len(merges.axis):
+        log_depth = fit_log_depths(graph, chosen, log_depth, merges)
+        shared = _shared_coordinates(graph, chosen, merges)
     offset = _offsets(graph, shared, np.exp(log_depth))
     ends, shift = _ends(graph, offset)
     ends = _end_at_junctions(graph, chosen, offset, ends)
@@ -41,28 +49,58 @@ def lift(graph: LineGraph, solution: Solution) -> Lifted:
     return Lifted(ends, offset, shared, residual, shift)
 
 
-def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float) -> Float:
-    """Weighted least squares of log s_i - log s_j = c_ij over the chosen crossings that say something (N,)."""
+def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float, merges: Merges | None = None) -> Float:
+    """Weighted least squares of log s_i - log s_j = c_ij over the chosen crossings that say something (N,).
+
+    Planes that were merged are equations more.
+    """
     used = chosen & graph.informative
+    incidence = _incidence(graph, used)
+    weight = 1 / graph.tolerance[used] ** 2
+    normal = _normal(graph, chosen)
+    # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
+    right = incidence.T @ (weight * (graph.log_ratio[used] - incidence @ guess))
+    if merges is not None:
+        normal = normal + merges.rows.T @ merges.rows / MIN_TOLERANCE**2
+        right = right + merges.rows.T @ (merges.log_ratio - merges.rows @ guess) / MIN_TOLERANCE**2
+    return np.asarray(guess + spsolve(normal.tocsc(), right))
+
+
+def _incidence(graph: LineGraph, used: Bool) -> csr_matrix:
+    """(E', N) with 1 for the first line of each used edge and -1 for the second."""
     rows = np.arange(used.sum())
     i, j = graph.edges[used].T
-    shape = (len(rows), len(graph.segments))
-    incidence = csr_matrix((np.r_[np.ones(len(rows)), -np.ones(len(rows))], (np.r_[rows, rows], np.r_[i, j])), shape)
+    values = np.r_[np.ones(len(rows)), -np.ones(len(rows))]
+    return csr_matrix((values, (np.r_[rows, rows], np.r_[i, j])), (len(rows), len(graph.segments)))
+
+
+def _normal(graph: LineGraph, chosen: Bool) -> csr_matrix:
+    """Matrix (N, N) of the normal equations, in units of 1 / tolerance ** 2."""
+    used = chosen & graph.informative
+    incidence = _incidence(graph, used)
     weight = diags_array(1 / graph.tolerance[used] ** 2)
-    normal = incidence.T @ weight @ incidence + ANCHOR * diags_array(np.ones(shape[1]))
-    # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
-    misfit = graph.log_ratio[used] - incidence @ guess
-    return np.asarray(guess + spsolve(normal.tocsc(), incidence.T @ (weight @ misfit)))
+    return csr_matrix(incidence.T @ weight @ incidence + ANCHOR * diags_array(np.ones(len(graph.segments))))
 
 
-def _shared_coordinates(graph: LineGraph, chosen: Bool) -> Int:
-    """Numbers (N, 3) such that two coordinates have the same number when chosen crossings make them equal."""
+def _parts(graph: LineGraph, chosen: Bool) -> Int:
+    """Number (N,) of the group of lines that chosen crossings with a say tie to each line."""
+    used = chosen & graph.informative
+    i, j = graph.edges[used].T
+    links = csr_matrix((np.ones(len(i)), (i, j)), (len(graph.segments), len(graph.segments)))
+    return np.asarray(connected_components(links, directed=False)[1], np.int64)
+
+
+def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = None) -> Int:
+    """Numbers (N, 3) such that two coordinates have the same number when crossings or merges make them equal."""
     count = 3 * len(graph.segments)
     i, j = graph.edges[chosen].T
     # Crossing lines share one coordinate, the pieces of one line share both of theirs.
     also = graph.axis[i] == graph.axis[j]
     coordinate = np.r_[graph.coordinate[chosen], (3 - graph.axis[i] - graph.coordinate[chosen])[also]]
     i, j = np.r_[i, i[also]], np.r_[j, j[also]]
+    if merges is not None:
+        coordinate = np.r_[coordinate, merges.axis]
+        i, j = np.r_[i, merges.lines[:, 0]], np.r_[j, merges.lines[:, 1]]
     links = csr_matrix((np.ones(len(i)), (3 * i + coordinate, 3 * j + coordinate)), (count, count))
     shared: Int = connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int64)
     shared[np.arange(len(graph.segments)), graph.axis] = -1

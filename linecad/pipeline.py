@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linecad.errors import ReconstructionError
+from linecad.faces import find_faces
 from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
 from linecad.lifting import Lifted, lift
@@ -208,6 +209,7 @@ def _scene(
         in_tree=spanning_tree(graph, real & telling, lifted.residual)[inside],
         weight=graph.weight[inside],
     )
+    planes = find_planes(offset[kept], lifted.shared[kept], lines.id)
     if dropped:
         notes.append(_left_out(dropped, "meet too few others in space", options))
     notes += _doubts(solution, parts, lifted.shift[kept])
@@ -217,7 +219,7 @@ def _scene(
         rotation=frame.rotation,
         lines=lines,
         intersections=intersections,
-        planes=find_planes(ends[kept], offset[kept], lifted.shared[kept], lines.id),
+        planes=find_faces(planes, lines, camera, frame.rotation),
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.seconds, solution.cuts, solution.nodes,

@@ -29,8 +29,10 @@ FLOORS = [
     ["linecad.dataset.facades", "linecad.dataset.furniture", "linecad.dataset.rasteriser", "linecad.dataset.textures"],
     ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.finishing"],
     ["linecad.dataset.scenes", "linecad.dataset.render"],
-    ["linecad.calibration", "linecad.decoding", "linecad.weighting"],  # parts of the photo stage
-    ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph", "linecad.lifting", "linecad.planes"],
+    # Parts of stages: of photo, of graph, of lifting, of faces.
+    ["linecad.calibration", "linecad.decoding", "linecad.weighting", "linecad.offsets", "linecad.outlines"],
+    ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph"]
+    + ["linecad.lifting", "linecad.planes", "linecad.faces"],
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
     [

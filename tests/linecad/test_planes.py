@@ -1,9 +1,7 @@
-"""Planes and simple faces of lines that lie in them exactly."""
+"""Planes of lines that lie in them exactly."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from linecad.graph import components
 from linecad.lifting import lift
@@ -14,7 +12,7 @@ from linecad.scene import Solution
 def in_one_plane(axis, place, pairs):
     """Lines in the plane of normal `axis`: each a start in its two coordinates and a length along the first or second.
 
-    Returns what `find_planes` takes: ends, offsets, numbers of shared coordinates, ids.
+    Returns what `find_planes` takes: offsets, numbers of shared coordinates, ids.
     """
     across = [other for other in range(3) if other != axis]
     ends = np.full((len(pairs), 2, 3), float(place))
@@ -26,65 +24,15 @@ def in_one_plane(axis, place, pairs):
         shared[i, axis], offset[i, axis] = 0, place
         shared[i, across[1 - along]] = i + 1
         offset[i, across[1 - along]] = ends[i, 0, across[1 - along]]
-    return ends, offset, shared, 100 + np.arange(len(pairs))
-
-
-def turns(outline, axis):
-    """Sines (V,) of the turn at each corner of a polygon, in its plane."""
-    flat = np.delete(outline, axis, axis=1)
-    into, out = flat - np.roll(flat, 1, axis=0), np.roll(flat, -1, axis=0) - flat
-    into, out = (way / np.linalg.norm(way, axis=1)[:, None] for way in (into, out))
-    return into[:, 0] * out[:, 1] - into[:, 1] * out[:, 0]
+    return offset, shared, 100 + np.arange(len(pairs))
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
-def test_a_rectangle_is_a_plane_with_a_face_of_four_corners(axis):
-    ends, offset, shared, ids = in_one_plane(axis, 2.5, [(0, 0, 4, 0), (0, 3, 4, 0), (0, 0, 3, 1), (4, 0, 3, 1)])
-    (plane,) = find_planes(ends, offset, shared, ids)
+def test_lines_that_share_an_offset_are_a_plane(axis):
+    offset, shared, ids = in_one_plane(axis, 2.5, [(0, 0, 4, 0), (0, 3, 4, 0), (0, 0, 3, 1), (4, 0, 3, 1)])
+    (plane,) = find_planes(offset, shared, ids)
     assert (plane.id, plane.axis, plane.offset, plane.lines) == (0, axis, 2.5, (100, 101, 102, 103))
-    (face,) = plane.faces
-    corners = np.delete(face.outline, axis, axis=1)
-    assert sorted(map(tuple, corners.tolist())) == [(0, 0), (0, 3), (4, 0), (4, 3)]
-    assert (face.outline[:, axis] == 2.5).all()
-    assert face.holes == ()
-
-
-number = st.integers(-6, 6)
-piece = st.tuples(number, number, st.integers(1, 5), st.integers(0, 1))
-
-
-@given(
-    st.integers(0, 2), st.floats(-1e3, 1e3), st.lists(piece, min_size=3, max_size=12), st.floats(1e-3, 1e3),
-    st.floats(1e-3, 1e3),
-)  # fmt: skip
-def test_faces_are_convex_and_hold_their_lines(axis, place, pairs, wide, high):
-    ends, offset, shared, ids = in_one_plane(axis, place, pairs)
-    ends *= np.insert([wide, high], axis, 1.0)  # long or flat planes are no special case
-    if len({along for *_, along in pairs}) == 1:
-        assert find_planes(ends, offset, shared, ids) == ()
-        return
-    (plane,) = find_planes(ends, offset, shared, ids)
-    points = np.delete(ends.reshape(-1, 3), axis, axis=1)
-    (face,) = plane.faces
-    assert (face.outline[:, axis] == place).all()
-    scaled = face.outline / np.insert([wide, high], axis, 1.0)
-    around = turns(scaled, axis)
-    assert (around > 1e-9).all() or (around < -1e-9).all()
-    flat = np.delete(scaled, axis, axis=1)
-    points = points / [wide, high]
-    sense = np.sign(around[0])
-    for a, b in zip(flat, np.roll(flat, -1, axis=0), strict=True):
-        side = sense * ((b - a)[0] * (points - a)[:, 1] - (b - a)[1] * (points - a)[:, 0])
-        assert side.min() > -1e-9
-    assert {corner.tobytes() for corner in face.outline} <= {point.tobytes() for point in ends.reshape(-1, 3)}
-
-
-def test_corners_on_a_straight_edge_are_left_out():
-    ends, offset, shared, ids = in_one_plane(
-        1, 5.0, [(0, 0, 1, 0), (1, 0, 1, 0), (2, 0, 2, 0), (0, 0, 2, 1), (4, 0, 2, 1)]
-    )
-    (plane,) = find_planes(ends, offset, shared, ids)
-    assert len(plane.faces[0].outline) == 4
+    assert plane.faces == ()
 
 
 def test_the_pieces_of_one_line_are_no_plane():
@@ -98,7 +46,7 @@ def test_few_lines_are_no_plane():
 
 
 def test_no_lines_no_planes():
-    assert find_planes(np.zeros((0, 2, 3)), np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros(0, int)) == ()
+    assert find_planes(np.zeros((0, 3)), np.zeros((0, 3), int), np.zeros(0, int)) == ()
 
 
 def test_the_true_planes_of_the_made_scene_are_found(made):
@@ -110,7 +58,7 @@ def test_the_true_planes_of_the_made_scene_are_found(made):
         nodes=0, connected=chosen, is_boundary=np.zeros(len(made.axis), bool), planar_pairs=[], log_depth=log_depth,
     )  # fmt: skip
     lifted = lift(graph, solution)
-    planes = find_planes(lifted.ends, lifted.offset, lifted.shared, np.arange(len(made.axis)))
+    planes = find_planes(lifted.offset, lifted.shared, np.arange(len(made.axis)))
     # Every set of three or more lines of one box that share a coordinate other than their own axis.
     expected = set()
     for part in components(graph):
@@ -127,5 +75,3 @@ def test_the_true_planes_of_the_made_scene_are_found(made):
     counts = [len(plane.lines) for plane in planes]
     assert counts == sorted(counts, reverse=True)
     assert [plane.id for plane in planes] == list(range(len(planes)))
-    face_ids = [face.id for plane in planes for face in plane.faces]
-    assert face_ids == list(range(len(face_ids)))
