@@ -31,8 +31,15 @@ FLOORS = [
     ["linecad.dataset.scenes", "linecad.dataset.render"],
     # Parts of stages: of photo, of graph, of lifting, of faces.
     ["linecad.calibration", "linecad.decoding", "linecad.weighting", "linecad.offsets", "linecad.outlines"],
-    ["linecad.photo", "linecad.segments", "linecad.vanishing", "linecad.graph"]
-    + ["linecad.lifting", "linecad.planes", "linecad.faces"],
+    [
+        "linecad.photo",
+        "linecad.segments",
+        "linecad.vanishing",
+        "linecad.graph",
+        "linecad.lifting",
+        "linecad.planes",
+        "linecad.faces",
+    ],
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
     [
