@@ -1,4 +1,4 @@
-"""PNG: the photo with its lines coloured by axis and its crossings, beside three views of the lines in space."""
+"""PNG: the photo with its lines and faces coloured by axis and its crossings, beside three views of them in space."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from exporters.canvas import Canvas, drawable, text_width
 from exporters.colours import line_colour
 from exporters.model import photo_name
+from exporters.picture_faces import OPACITY, draw_dashed, draw_faces
 from exporters.picture_views import VIEWS, draw_view
-from linecad.scene import AXES, Float, Scene
+from linecad.scene import AXES, CONFIDENCES, Float, Scene
 
 _WIDTH = 2400  # px
 _MARGIN, _GAP = 44, 24  # px
@@ -27,14 +28,12 @@ _TITLE, _TEXT = 42, 27  # px of text
 
 _COLOUR_KEPT = 0.50  # of the photo's colours, so that those of the lines stand out
 _BRIGHTENED = 0.30  # share of white laid over the photo
-_FACE_OPACITY = 0.20
 _LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 4, False: 2}  # px, by boundary
 _CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wider than the line
 _FEW_LINES = 600  # from there on they are drawn thin
 _MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.0  # px, of crossings
 _OUTLINED = 1.22  # radius of a disc with its dark outline over that of the disc
 _FEW_MARKS = 400  # crossings; from there on they are drawn smaller, so that they do not cover the photo
-_NEAREST_SHARE = 0.02  # of the middle depth: parts of faces nearer to the camera are cut off
 
 
 class _Box(NamedTuple):
@@ -108,7 +107,7 @@ def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) ->
         result: Float = (pixels + 0.5) * scale - 0.5
         return result
 
-    _tint_faces(panel, scene, scale)
+    draw_faces(panel, scene, scale)
     _draw_segments(panel, scene, shown(scene.lines.segment))
     _draw_crossings(panel, scene, shown(scene.intersections.pixel))
     if photo is None:
@@ -119,31 +118,6 @@ def _faded(photo: NDArray[np.float32]) -> NDArray[np.uint8]:
     grey = photo @ np.array([0.299, 0.587, 0.114], np.float32)
     faded = grey[..., None] * (1 - _COLOUR_KEPT) + photo * _COLOUR_KEPT
     return np.asarray(np.round(faded * (1 - _BRIGHTENED) + 255 * _BRIGHTENED), np.uint8)
-
-
-def _tint_faces(panel: Canvas, scene: Scene, scale: Float) -> None:
-    """Each face in the colour of the axis that its plane stands across."""
-    depth = scene.lines.ends.reshape(-1, 3) @ scene.rotation[2]
-    nearest = _NEAREST_SHARE * float(np.median(depth[depth > 0])) if (depth > 0).any() else _NEAREST_SHARE
-    for axis in range(3):
-        polygons = []
-        for plane, face in scene.faces:
-            if plane.axis == axis:
-                rings = [_before(ring @ scene.rotation.T, nearest) for ring in (face.outline, *face.holes)]
-                rays = [ring @ scene.camera.matrix.T for ring in rings if len(ring)]
-                polygons.append([(ray[:, :2] / ray[:, 2:] + 0.5) * scale - 0.5 for ray in rays])
-        panel.tint([rings for rings in polygons if rings], line_colour(axis, True), _FACE_OPACITY)
-
-
-def _before(ring: Float, nearest: float) -> Float:
-    """The part of a ring (V, 3) in the camera frame that lies at least `nearest` deep (Sutherland and Hodgman)."""
-    kept: list[Float] = []
-    for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        if start[2] >= nearest:
-            kept.append(start)
-        if (start[2] >= nearest) != (end[2] >= nearest):
-            kept.append(start + (nearest - start[2]) / (end[2] - start[2]) * (end - start))
-    return np.array(kept).reshape(-1, 3)
 
 
 def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
@@ -157,8 +131,9 @@ def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
         for number in chosen:
             panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + casing)
         for number in chosen:
+            draw = draw_dashed if lines.confidence[number] == "weak" else Canvas.line
             colour = line_colour(int(lines.axis[number]), True)
-            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), colour, width)
+            draw(panel, ends[number, 0].tolist(), ends[number, 1].tolist(), colour, width)
 
 
 def _draw_crossings(panel: Canvas, scene: Scene, centres: Float) -> None:
@@ -193,10 +168,18 @@ def _draw_legend(canvas: Canvas, scene: Scene) -> None:
     x = _label(canvas, x + 26, y, "real crossing")
     _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)
     x = _label(canvas, x + 26, y, "fake crossing")
+    for word in CONFIDENCES:
+        canvas.tint([[_swatch(x, y)]], _INK, 2 * OPACITY[word])
+        x = _label(canvas, x + 46, y, word)
     others = int((scene.lines.component != 0).sum())
     if others:
         text = f"pale: {_count(others, 'line')} of smaller components"
         canvas.text(_WIDTH - _MARGIN, y, text, _TEXT, _QUIET, "rm")
+
+
+def _swatch(x: float, y: float) -> Float:
+    """The sample of a face in the legend."""
+    return np.array([[x, y - 13], [x + 36, y - 13], [x + 36, y + 13], [x, y + 13]])
 
 
 def _label(canvas: Canvas, x: float, y: float, text: str) -> float:

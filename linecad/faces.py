@@ -20,7 +20,7 @@ from linecad.scene import Bool, Camera, Face, Float, Int, Lines, Plane
 COLUMNS = 480  # of samples across the photo
 SAME = 3.0  # px at the reference width; lines that are nearer are one line of an outline
 ENDS_REACH = 12.0  # px at the reference width; an end so near to a line ends there
-LEAST_WIDTH = 20.0  # px at the reference width; narrower strips and gaps are left out of outlines
+LEAST_WIDTH = 30.0  # px at the reference width; narrower strips and gaps are left out of outlines
 LEAST_AREA = 900.0  # px^2 at the reference width
 LEAST_OVERLAP = 0.05  # px^2; what rounding makes two faces share
 BEHIND = 0.01  # relative depth by which a line is behind a plane for sure
@@ -29,6 +29,7 @@ WALLS = 2  # the same of a vertical plane, one of them the top
 FIRST_SHARE, SHARE = 0.25, 0.5  # of the pixels of a cell that its plane must win: at first, then
 FREE_SHARE = 0.7  # of the pixels of a cell that no other plane has; then it comes back
 ROUNDS = 4
+WEAK_FACTOR = 2.0  # by which a line of a smaller component must be nearer to win a pixel: its depth is a guess
 NEAREST = 0.05  # of the middle depth; cells that reach nearer to the camera, or behind it, are none
 PRECISION = 1e-5  # px; to which cut outlines are rounded, so that no spike of rounding is left
 GRAZING = 1e-6  # relative; computed corners so near to a line's coordinate are on it
@@ -164,7 +165,9 @@ def _sheet(
         plane_depth = plane.offset / samples.line_rays[:, plane.axis]
     seen = np.isfinite(sample_depth) & (sample_depth > 0)
     points = samples.rays[:, [u, v]] * np.where(seen, sample_depth, 0)[:, None]
-    behind = ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
+    # Other components have scales of their own: what is behind what is not known there.
+    comparable = lines.component[samples.line] == lines.component[members[0]]
+    behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
     distance = samples.distance(own)
     return _Sheet(
         plane=plane,
@@ -173,7 +176,11 @@ def _sheet(
         possible=possible,
         kept=possible,
         at=np.where(seen, cells.find(points), -1),
-        distance=np.where(distance <= samples.distance(behind) + 0.5, distance, np.inf),
+        distance=np.where(
+            distance <= samples.distance(behind) + 0.5,
+            distance * (WEAK_FACTOR if lines.component[members[0]] else 1.0),
+            np.inf,
+        ),
         depth=np.where(seen, sample_depth, np.inf),
         width=np.linalg.norm(np.diff(pixels, axis=0), axis=2)[:, :-1],
         height=np.linalg.norm(np.diff(pixels, axis=1), axis=2)[:-1],

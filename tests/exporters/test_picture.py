@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from exporters import picture, picture_views
+from exporters import picture, picture_faces, picture_views
 from exporters.canvas import Canvas, drawable
 from exporters.colours import line_colour
 from exporters.formats import export
@@ -230,11 +230,11 @@ def test_nothing_is_laid_over_anything_else(aspect):
 
 def test_a_face_that_reaches_behind_the_camera_is_cut_off():
     ring = np.array([[-1.0, 0, -5], [1, 0, -5], [1, 0, 5], [-1, 0, 5]])
-    before = picture._before(ring, 0.5)
+    before = picture_faces._before(ring, 0.5)
     assert before[:, 2].min() == 0.5
     assert before[:, 2].max() == 5
     assert len(before) == 4
-    assert len(picture._before(ring - (0, 0, 10), 0.5)) == 0
+    assert len(picture_faces._before(ring - (0, 0, 10), 0.5)) == 0
 
 
 def test_a_window_keeps_what_is_drawn_inside():

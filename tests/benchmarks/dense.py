@@ -1,0 +1,101 @@
+"""How much of a photo gets a depth, by lines and faces: python tests/benchmarks/dense.py DATASET [--only castle/0012]
+
+DATASET is a folder that `linecad evaluate` knows and whose truth has depth anywhere: our made scenes, castle. For each
+photo the share of the points of known depth that get one within 5 % (recall), and of those that get one at all
+(precision): by the convex hull of each plane's lines, as linecad drew faces before, and by its faces now. One median
+scale a photo, first of component 0 alone, then of all, whose scales are guesses. Where several hulls cover a point, the
+nearest counts.
+"""
+
+import argparse
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT))
+
+from linecad.errors import LinecadError  # noqa: E402 - a script, run from a checkout without installing
+from linecad.evaluation.datasets import find_dataset  # noqa: E402
+from linecad.evaluation.depth import face_depths, line_depths, score  # noqa: E402
+from linecad.evaluation.references import Points, open_case  # noqa: E402
+from linecad.faces import find_faces  # noqa: E402
+from linecad.pipeline import ReconstructOptions, reconstruct  # noqa: E402
+from linecad.scene import Face, Plane, Scene  # noqa: E402
+from solver.problem import SolveOptions  # noqa: E402
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("datasets", nargs="+", type=Path)
+    parser.add_argument("--only", default="", help="photos with this in DATASET/NAME")
+    parser.add_argument("--extension", type=float, default=ReconstructOptions.extension)
+    parser.add_argument("--time-limit", type=float, default=60.0)
+    arguments = parser.parse_args()
+    options = ReconstructOptions(extension=arguments.extension, solve=SolveOptions(time_limit_s=arguments.time_limit))
+    print("| photo | lines | faces | holes | s for faces | component 0: hulls | faces | all: hulls | faces |")
+    print("| --- " * 9 + "|")
+    rows = []
+    for folder in arguments.datasets:
+        for case in find_dataset(folder).cases:
+            if arguments.only not in f"{folder.name}/{case.name}":
+                continue
+            try:
+                photo, reference = open_case(case)
+                if reference.dense is None:
+                    continue
+                scene = reconstruct(photo, options)
+            except LinecadError as error:
+                print(f"| {case.name} | {error} |", flush=True)
+                continue
+            rows.append(measure(case.name, scene, reference.dense))
+    if rows:
+        print("| mean | | | | | " + " | ".join(cell(*pair) for pair in np.mean(rows, axis=0)) + " |")
+
+
+def measure(name: str, scene: Scene, points: Points) -> list[tuple[float, float]]:
+    """Recall and precision of hulls and faces, of component 0 and of all; prints them."""
+    bare = tuple(replace(plane, faces=()) for plane in scene.planes)
+    began = time.process_time()
+    find_faces(bare, scene.lines, scene.camera, scene.rotation)
+    seconds = time.process_time() - began
+    hulls = replace(scene, planes=tuple(replace(plane, faces=hull(scene, plane)) for plane in bare))
+    pairs = [shares(each, points, main) for main in (True, False) for each in (hulls, scene)]
+    holes = sum(len(face.holes) for _, face in scene.faces)
+    print(
+        f"| {name} | {len(scene.lines)} | {len(scene.faces)} | {holes} | {seconds:.2f} | "
+        + " | ".join(cell(*pair) for pair in pairs) + " |",
+        flush=True,
+    )  # fmt: skip
+    return pairs
+
+
+def cell(recall: float, precision: float) -> str:
+    return f"{recall:.2f} / {precision:.3f}"
+
+
+def shares(scene: Scene, points: Points, main_only: bool) -> tuple[float, float]:
+    own = scene.lines.component == 0 if main_only else np.ones(len(scene.lines), bool)
+    ids = set(scene.lines.id[own].tolist())
+    depth = line_depths(scene, points.pixels, own)
+    bare = ~np.isfinite(depth)
+    depth[bare] = face_depths(scene, points.pixels[bare], [pair for pair in scene.faces if ids & set(pair[0].lines)])
+    found = score(depth, points.depth)
+    return found.recall_5, found.precision_5
+
+
+def hull(scene: Scene, plane: Plane) -> tuple[Face, ...]:
+    """The convex hull of a plane's lines."""
+    points = scene.lines.ends[np.isin(scene.lines.id, plane.lines)].reshape(-1, 3)
+    flat = np.delete(points, plane.axis, axis=1)
+    if np.ptp(flat, axis=0).min() == 0:
+        return ()
+    return (Face(plane.id, points[ConvexHull(flat / np.ptp(flat, axis=0)).vertices]),)
+
+
+if __name__ == "__main__":
+    main()
