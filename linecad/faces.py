@@ -9,93 +9,39 @@ faces still share in the photo stays with the one that has more of these pixels.
 
 from dataclasses import dataclass, replace
 
-import cv2
 import numpy as np
 import shapely
 
 from linecad.geometry import REFERENCE_WIDTH, project, world_rays
-from linecad.outlines import Cells, Edges, build_cells, outlines, without_slivers
-from linecad.scene import Bool, Camera, Face, Float, Int, Lines, Plane
+from linecad.outlines import outlines, without_slivers
+from linecad.scene import Camera, Face, Float, Int, Lines, Plane
+from linecad.sheets import Samples, Sheet, build_sheet, take_samples
 
-COLUMNS = 480  # of samples across the photo
-SAME = 3.0  # px at the reference width; lines that are nearer are one line of an outline
-ENDS_REACH = 12.0  # px at the reference width; an end so near to a line ends there
 LEAST_WIDTH = 30.0  # px at the reference width; narrower strips and gaps are left out of outlines
 LEAST_AREA = 900.0  # px^2 at the reference width
 LEAST_OVERLAP = 0.05  # px^2; what rounding makes two faces share
-BEHIND = 0.01  # relative depth by which a line is behind a plane for sure
-WALLS_OF_LEVEL = 4  # sides of a cell of a horizontal plane that lines close
-WALLS = 2  # the same of a vertical plane, one of them the top
 FIRST_SHARE, SHARE = 0.25, 0.5  # of the pixels of a cell that its plane must win: at first, then
 FREE_SHARE = 0.7  # of the pixels of a cell that no other plane has; then it comes back
 ROUNDS = 4
-WEAK_FACTOR = 2.0  # by which a line of a smaller component must be nearer to win a pixel: its depth is a guess
-NEAREST = 0.05  # of the middle depth; cells that reach nearer to the camera, or behind it, are none
 PRECISION = 1e-5  # px; to which cut outlines are rounded, so that no spike of rounding is left
 GRAZING = 1e-6  # relative; computed corners so near to a line's coordinate are on it
-
-
-@dataclass(frozen=True, eq=False)
-class _Samples:
-    """Pixels at which faces are compared, and the same raster with the lines on it."""
-
-    shape: tuple[int, int]
-    step: float  # px
-    rays: Float  # (S, 3)
-    line: Int  # (T,) line of each point on lines
-    cell: Int  # (T,) sample in which it lies
-    line_rays: Float  # (T, 3)
-    line_depth: Float  # (T,)
-
-    def distance(self, points: Bool) -> Float:
-        """Distance (S,) in samples to the nearest of the masked points on lines."""
-        image = np.ones(self.shape[0] * self.shape[1], np.uint8)
-        image[self.cell[points]] = 0
-        if image.all():
-            return np.full(len(image), np.inf)
-        return np.asarray(cv2.distanceTransform(image.reshape(self.shape), cv2.DIST_L2, 3), np.float64).ravel()
-
-
-@dataclass(eq=False)
-class _Sheet:
-    """A plane with its cells while it is decided which of them are wall."""
-
-    plane: Plane
-    flat: tuple[int, int]  # u and v among the axes
-    cells: Cells
-    possible: Bool  # (U, V)
-    kept: Bool  # (U, V)
-    at: Int  # (S,) cell of each sample, -1 outside
-    distance: Float  # (S,) to the nearest line, in samples; inf where a line behind is nearer
-    depth: Float  # (S,)
-    width: Float  # (U, V) px
-    height: Float  # (U, V) px
-
-    def covers(self, cells: Bool) -> Bool:
-        """Samples (S,) in the given cells (U, V)."""
-        return (self.at >= 0) & cells.ravel()[self.at]
-
-    def count(self, samples: Bool) -> Int:
-        """How many of the masked samples lie in each cell (U, V)."""
-        counts: Int = np.bincount(self.at[samples & (self.at >= 0)], minlength=self.kept.size)
-        return counts.reshape(self.kept.shape)
 
 
 def find_faces(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float) -> tuple[Plane, ...]:
     """The planes with their faces, which do not overlap in the photo. `rotation` (3, 3) takes world to camera."""
     scale = camera.width / REFERENCE_WIDTH
-    samples = _samples(lines, camera, rotation)
+    samples = take_samples(lines, camera, rotation)
     row = {number: index for index, number in enumerate(lines.id.tolist())}
     sheets = []
     for plane in planes:
         members = np.array([row[number] for number in plane.lines], np.int64)
-        sheet = _sheet(plane, members, planes, lines, samples, camera, rotation, scale)
+        sheet = build_sheet(plane, members, planes, lines, samples, camera, rotation)
         if sheet is not None:
             sheets.append(sheet)
     winner = _compete(sheets, len(samples.rays))
     winner = _take_back(sheets, winner)
     for number, sheet in enumerate(sheets):
-        others = sheet.count((winner >= 0) & (winner != number))
+        others = sheet.count(((winner >= 0) & (winner != number)) | ~np.isfinite(sheet.distance))
         free = sheet.possible & (others <= (1 - FREE_SHARE) * sheet.count(np.ones(len(winner), bool)))
         sheet.kept = without_slivers(sheet.kept, free, sheet.width, sheet.height, LEAST_WIDTH * scale)
     winner = _winner(sheets, len(samples.rays))
@@ -103,113 +49,7 @@ def find_faces(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation
     return tuple(replace(plane, faces=tuple(found.get(plane.id, ()))) for plane in planes)
 
 
-def _samples(lines: Lines, camera: Camera, rotation: Float) -> _Samples:
-    step = camera.width / COLUMNS
-    shape = (int(np.ceil(camera.height / step)), COLUMNS)
-    rows, columns = np.mgrid[: shape[0], : shape[1]]
-    pixels = np.column_stack([columns.ravel() + 0.5, rows.ravel() + 0.5]) * step - 0.5
-    length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
-    count = np.ceil(1.5 * length / step).astype(np.int64) + 2
-    line = np.repeat(np.arange(len(lines)), count)
-    share = (np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
-    points = lines.segment[line, 0] + share[:, None] * (lines.segment[line, 1] - lines.segment[line, 0])
-    column, below = np.floor((points.T + 0.5) / step).astype(np.int64)
-    inside = (column >= 0) & (column < shape[1]) & (below >= 0) & (below < shape[0])
-    line, points = line[inside], points[inside]
-    rays = world_rays(points, camera.matrix, rotation)
-    across = np.stack([(lines.axis + 1) % 3, (lines.axis + 2) % 3], axis=1)
-    ray = np.take_along_axis(rays, across[line], axis=1)
-    fixed = np.take_along_axis(lines.ends[:, 0], across, axis=1)[line]
-    depth = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
-    return _Samples(
-        shape, step, world_rays(pixels, camera.matrix, rotation), line, (below * shape[1] + column)[inside], rays, depth
-    )
-
-
-def _sheet(
-    plane: Plane,
-    members: Int,
-    planes: tuple[Plane, ...],
-    lines: Lines,
-    samples: _Samples,
-    camera: Camera,
-    rotation: Float,
-    scale: float,
-) -> _Sheet | None:
-    """The cells of a plane that its lines close in, and what the photo says about them; None where there is none."""
-    u, v = (axis for axis in range(3) if axis != plane.axis)
-    along_u, along_v = (members[lines.axis[members] == axis] for axis in (u, v))
-    if not (len(along_u) and len(along_v)):
-        return None
-    offsets = [np.array([other.offset for other in planes if other.axis == axis]) for axis in (u, v)]
-    cells = build_cells(
-        _edges(lines, along_u, v, camera, rotation, scale),
-        _edges(lines, along_v, u, camera, rotation, scale),
-        (offsets[0], offsets[1]),
-    )
-    if cells is None:
-        return None
-    corners = np.empty((len(cells.u), len(cells.v), 3))
-    corners[..., plane.axis], corners[..., u], corners[..., v] = plane.offset, cells.u[:, None], cells.v
-    own = np.isin(samples.line, members)
-    depth = corners @ rotation[2]
-    far = depth > NEAREST * float(np.median(samples.line_depth[own])) if own.any() else np.zeros(depth.shape, bool)
-    walls = np.sum(cells.walls, axis=0)
-    possible = walls >= WALLS_OF_LEVEL if plane.axis == 2 else (walls >= WALLS) & cells.walls[3]
-    possible = possible & far[:-1, :-1] & far[1:, :-1] & far[:-1, 1:] & far[1:, 1:]
-    if not possible.any():
-        return None
-    pixels = project(np.where(far[..., None], corners, rotation[2]), camera.matrix, rotation)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sample_depth = plane.offset / samples.rays[:, plane.axis]
-        plane_depth = plane.offset / samples.line_rays[:, plane.axis]
-    seen = np.isfinite(sample_depth) & (sample_depth > 0)
-    points = samples.rays[:, [u, v]] * np.where(seen, sample_depth, 0)[:, None]
-    # Other components have scales of their own: what is behind what is not known there.
-    comparable = lines.component[samples.line] == lines.component[members[0]]
-    behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
-    distance = samples.distance(own)
-    return _Sheet(
-        plane=plane,
-        flat=(u, v),
-        cells=cells,
-        possible=possible,
-        kept=possible,
-        at=np.where(seen, cells.find(points), -1),
-        distance=np.where(
-            distance <= samples.distance(behind) + 0.5,
-            distance * (WEAK_FACTOR if lines.component[members[0]] else 1.0),
-            np.inf,
-        ),
-        depth=np.where(seen, sample_depth, np.inf),
-        width=np.linalg.norm(np.diff(pixels, axis=0), axis=2)[:, :-1],
-        height=np.linalg.norm(np.diff(pixels, axis=1), axis=2)[:-1],
-    )
-
-
-def _edges(lines: Lines, own: Int, across: int, camera: Camera, rotation: Float, scale: float) -> Edges:
-    """Lines of one direction in a plane, with how far the photo can tell coordinates apart."""
-    along = int(lines.axis[own[0]])
-    matrix = camera.matrix @ rotation
-    ends = np.take_along_axis(lines.ends[own], lines.ends[own][:, :, along].argsort(axis=1)[:, :, None], axis=1)
-    image = ends @ matrix.T
-    depth = np.maximum(image[..., 2:], np.finfo(float).tiny)
-    pixels = image[..., :2] / depth
-    # px by which a point moves in the image for each unit along an axis
-    speed = {
-        axis: np.linalg.norm(matrix[:2, axis] - pixels * matrix[2, axis], axis=2) / depth[..., 0]
-        for axis in (along, across)
-    }
-    tiny = np.finfo(float).tiny
-    return Edges(
-        at=ends[:, 0, across],
-        ends=ends[:, :, along],
-        reach=SAME * scale / np.maximum(speed[across].max(axis=1), tiny),
-        end_reach=ENDS_REACH * scale / np.maximum(speed[along], tiny),
-    )
-
-
-def _winner(sheets: list[_Sheet], count: int) -> Int:
+def _winner(sheets: list[Sheet], count: int) -> Int:
     """The sheet (S,) that each sample belongs to, -1 for none: the nearest line's, of equally near ones the nearer."""
     best, depth = np.full(count, np.inf), np.full(count, np.inf)
     winner = np.full(count, -1)
@@ -221,7 +61,7 @@ def _winner(sheets: list[_Sheet], count: int) -> Int:
     return winner
 
 
-def _compete(sheets: list[_Sheet], count: int) -> Int:
+def _compete(sheets: list[Sheet], count: int) -> Int:
     """Leave out the cells whose pixels belong to other planes, until nothing changes."""
     for turn in range(ROUNDS):
         winner = _winner(sheets, count)
@@ -236,7 +76,7 @@ def _compete(sheets: list[_Sheet], count: int) -> Int:
     return _winner(sheets, count)
 
 
-def _take_back(sheets: list[_Sheet], winner: Int) -> Int:
+def _take_back(sheets: list[Sheet], winner: Int) -> Int:
     """Cells whose winners were left out themselves, given back to the plane that has the most around."""
     shown = np.bincount(winner[winner >= 0], minlength=len(sheets))
     for number in np.argsort(-shown, kind="stable").tolist():
@@ -260,7 +100,7 @@ class _Piece:
 
 
 def _apart(
-    sheets: list[_Sheet], winner: Int, samples: _Samples, camera: Camera, rotation: Float, scale: float
+    sheets: list[Sheet], winner: Int, samples: Samples, camera: Camera, rotation: Float, scale: float
 ) -> dict[int, list[Face]]:
     """Faces by plane: the outlines of the kept cells, without what belongs to others in the photo."""
     pieces = [
@@ -307,7 +147,7 @@ def _apart(
     return faces
 
 
-def _pieces(number: int, sheet: _Sheet, camera: Camera, rotation: Float) -> list[_Piece]:
+def _pieces(number: int, sheet: Sheet, camera: Camera, rotation: Float) -> list[_Piece]:
     """The outlines of the kept cells of a sheet."""
     found = []
     for polygon in outlines(sheet.kept):
@@ -322,7 +162,7 @@ def _pieces(number: int, sheet: _Sheet, camera: Camera, rotation: Float) -> list
     return found
 
 
-def _in_space(sheet: _Sheet, flat: Float) -> Float:
+def _in_space(sheet: Sheet, flat: Float) -> Float:
     """World points (M, 3) of points (M, 2) of a plane; their coordinate along the normal is its offset exactly."""
     points = np.full((len(flat), 3), sheet.plane.offset)
     points[:, list(sheet.flat)] = flat
@@ -330,7 +170,7 @@ def _in_space(sheet: _Sheet, flat: Float) -> Float:
 
 
 def _face(
-    number: int, shape: shapely.Polygon, piece: _Piece, sheet: _Sheet, camera: Camera, rotation: Float
+    number: int, shape: shapely.Polygon, piece: _Piece, sheet: Sheet, camera: Camera, rotation: Float
 ) -> Face | None:
     """A polygon of the photo as a face: corners of cells as they are, cut ones where their rays meet the plane."""
     rings: list[Float] = []

@@ -21,6 +21,7 @@ class Edges:
     ends: Float  # (M, 2) from and to in their own direction, ascending
     reach: Float  # (M,) across, by how much another line may differ that the photo does not tell apart
     end_reach: Float  # (M, 2) the same for each end, along
+    goes_on: Bool  # (M,) the upper end is where the photo ends, so the line goes on
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +31,7 @@ class Cells:
     u: Float  # (U + 1,) ascending
     v: Float  # (V + 1,) ascending
     walls: tuple[Bool, Bool, Bool, Bool]  # each (U, V): a line is somewhere below in u, above in u, below in v, above
+    framed: Bool  # (U, V) on both sides in u is a line along v that goes on above the photo
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -57,15 +59,18 @@ def build_cells(along_u: Edges, along_v: Edges, preferred: tuple[Float, Float]) 
     lines_u, lines_v = np.zeros((len(u) - 1, len(v)), bool), np.zeros((len(u), len(v) - 1), bool)
     for at, (start, end) in zip(at_v.tolist(), from_to_u.tolist(), strict=True):
         lines_u[start:end, at] = True
-    for at, (start, end) in zip(at_u.tolist(), from_to_v.tolist(), strict=True):
+    going_on = np.zeros_like(lines_v)
+    for at, (start, end), goes_on in zip(at_u.tolist(), from_to_v.tolist(), along_v.goes_on.tolist(), strict=True):
         lines_v[at, start:end] = True
-    walls = (
-        np.maximum.accumulate(lines_v, axis=0)[:-1],
-        np.maximum.accumulate(lines_v[::-1], axis=0)[::-1][1:],
-        np.maximum.accumulate(lines_u, axis=1)[:, :-1],
-        np.maximum.accumulate(lines_u[:, ::-1], axis=1)[:, ::-1][:, 1:],
-    )
-    return Cells(u, v, walls)
+        going_on[at, start:end] |= goes_on
+    below_v, above_v = (side.T for side in _beside(lines_u.T))
+    framed = np.logical_and(*_beside(going_on))
+    return Cells(u, v, (*_beside(lines_v), below_v, above_v), framed)
+
+
+def _beside(lines: Bool) -> tuple[Bool, Bool]:
+    """For the cells (C, V) between lines (C + 1, V): whether any line comes before, and whether any after."""
+    return np.maximum.accumulate(lines)[:-1], np.maximum.accumulate(lines[::-1])[::-1][1:]
 
 
 def _coordinates(across: Edges, along: Edges, preferred: Float) -> tuple[Float, Int, Int]:

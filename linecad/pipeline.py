@@ -5,6 +5,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from linecad.agreement import disagreements
 from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
@@ -210,22 +211,31 @@ def _scene(
         weight=graph.weight[inside],
     )
     planes = find_planes(offset[kept], lifted.shared[kept], lines.id)
+    planes = find_faces(planes, lines, camera, frame.rotation)
     if dropped:
         notes.append(_left_out(dropped, "meet too few others in space", options))
     notes += _doubts(solution, parts, lifted.shift[kept])
+    notes += disagreements(planes, lines, _renumbered(solution.planar_pairs, component, new_id))
     return Scene(
         photo=photo.name,
         camera=camera,
         rotation=frame.rotation,
         lines=lines,
         intersections=intersections,
-        planes=find_faces(planes, lines, camera, frame.rotation),
+        planes=planes,
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.seconds, solution.cuts, solution.nodes,
         ),
         notes=tuple(notes),
     )  # fmt: skip
+
+
+def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
+    """The planar pairs (P, 3) whose lines are in the scene and in one component, with their numbers there."""
+    own = component[pairs[:, :2]]
+    inside = pairs[(own[:, 0] >= 0) & (own[:, 0] == own[:, 1])]
+    return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
 
 
 def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Float:

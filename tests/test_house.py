@@ -31,6 +31,7 @@ FLOORS = [
     ["linecad.dataset.scenes", "linecad.dataset.render"],
     # Parts of stages: of photo, of graph, of lifting, of faces.
     ["linecad.calibration", "linecad.decoding", "linecad.weighting", "linecad.offsets", "linecad.outlines"],
+    ["linecad.sheets"],  # a part of faces
     [
         "linecad.photo",
         "linecad.segments",
@@ -39,6 +40,7 @@ FLOORS = [
         "linecad.lifting",
         "linecad.planes",
         "linecad.faces",
+        "linecad.agreement",
     ],
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],

@@ -108,6 +108,17 @@ def test_a_wall_ends_at_its_top_line():
     assert max(face.outline[:, 2].max() for _, face in every(planes)) == 3
 
 
+def test_a_wall_that_the_photo_cuts_off_reaches_to_its_border():
+    top = 5.55  # of the photo, at the depth of the wall
+    sides = [edge(2, (x, 10, -2), top + 2) for x in (-4, 4)]
+    bars = [edge(0, (-4, 10, z), 8) for z in (-2, 1)]
+    (face,) = at(faces_of(sides + bars), 1, 10)
+    assert corners(face.outline) == {(-4, 10, -2), (4, 10, -2), (4, 10, top), (-4, 10, top)}
+    lower = [edge(2, (x, 10, -2), 5) for x in (-4, 4)]
+    (face,) = at(faces_of(lower + bars), 1, 10)
+    assert face.outline[:, 2].max() == 1
+
+
 def test_two_walls_share_the_corners_of_their_edge():
     planes = faces_of(WALL + rectangle(0, 4.0, (6, 10), (-2, 3)))
     (front,), (side,) = at(planes, 1, 10), at(planes, 0, 4)

@@ -11,10 +11,12 @@ from linecad.outlines import Edges, build_cells, outlines, without_slivers
 masks = arrays(bool, st.tuples(st.integers(1, 7), st.integers(1, 7)))
 
 
-def edges(*rows, reach=0.0):
+def edges(*rows, reach=0.0, goes_on=False):
     """Lines given as (at, from, to)."""
     rows = np.array(rows, float).reshape(-1, 3)
-    return Edges(rows[:, 0], rows[:, 1:], np.full(len(rows), reach), np.full((len(rows), 2), reach))
+    return Edges(
+        rows[:, 0], rows[:, 1:], np.full(len(rows), reach), np.full((len(rows), 2), reach), np.full(len(rows), goes_on)
+    )
 
 
 def no_preference():
@@ -59,6 +61,14 @@ def test_walls_are_lines_anywhere_on_that_side():
     assert above_u == [[True, True], [True, False]]
     assert below_v == [[True, True], [True, True]]
     assert above_v == [[True, True], [False, False]]
+
+
+def test_cells_between_lines_that_go_on_above_the_photo_are_framed():
+    bar = edges((0, 0, 4))
+    between = build_cells(bar, edges((0, 0, 3), (2, 0, 3), goes_on=True), no_preference())
+    assert between.u.tolist() == [0, 2, 4]
+    assert between.framed.tolist() == [[True], [False]]
+    assert not build_cells(bar, edges((0, 0, 3), (2, 0, 3)), no_preference()).framed.any()
 
 
 def test_coordinates_that_the_photo_does_not_tell_apart_are_one_and_the_preferred():
