@@ -51,7 +51,7 @@ def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
     _draw_photo(canvas.window(*shape), scene, photo)
     for box, (name, right, up) in zip(views, VIEWS, strict=True):
         draw_view(canvas.window(*box), scene, name, right, up)
-    _draw_legend(canvas, scene)
+    _draw_legend(canvas)
     canvas.image().save(path, format="PNG")
 
 
@@ -87,6 +87,9 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
         f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}, {solve.seconds:.1f} s",
         f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
     ]
+    weak = int((lines.confidence == "weak").sum())
+    if weak:
+        facts.append(f"{_count(weak, 'line')} weak: dashed, pale")
     canvas.text(_MARGIN, _MARGIN + 88, "   ·   ".join(map(drawable, facts)), _TEXT, _QUIET)
 
 
@@ -157,7 +160,7 @@ def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
     panel.cross(centre, radius + 1.5, _FAKE, 3)
 
 
-def _draw_legend(canvas: Canvas, scene: Scene) -> None:
+def _draw_legend(canvas: Canvas) -> None:
     x, y = float(_MARGIN), canvas.height - 48
     for axis in range(3):
         for is_boundary in (True, False):
@@ -171,10 +174,6 @@ def _draw_legend(canvas: Canvas, scene: Scene) -> None:
     for word in CONFIDENCES:
         canvas.tint([[_swatch(x, y)]], _INK, 2 * OPACITY[word])
         x = _label(canvas, x + 46, y, word)
-    others = int((scene.lines.component != 0).sum())
-    if others:
-        text = f"pale: {_count(others, 'line')} of smaller components"
-        canvas.text(_WIDTH - _MARGIN, y, text, _TEXT, _QUIET, "rm")
 
 
 def _swatch(x: float, y: float) -> Float:

@@ -190,9 +190,60 @@ def test_lines_of_smaller_components_are_paler_in_the_views(scene):
     red = np.array(line_colour(0, True)) * 255
     assert (np.abs(whole.pixels[60:400, 60:] - red).max(axis=2) < 2).any()
     assert not (np.abs(pale.pixels[60:400, 60:] - red).max(axis=2) < 2).any()
-    canvas = Canvas(2400, 200, GREY)
-    picture._draw_legend(canvas, parts)
-    assert f"pale: {len(scene.lines)} lines of smaller components" in texts(canvas)
+
+
+def test_weak_lines_are_counted_in_the_title_and_dashed_in_the_photo(scene):
+    count = len(scene.lines)
+    weak = replace(scene, planes=(), lines=replace(scene.lines, confidence=np.full(count, "weak")))
+    canvas = Canvas(2400, 300, GREY)
+    picture._draw_title(canvas, weak)
+    assert f"{count} lines weak: dashed, pale" in texts(canvas)[1]
+    coloured = []
+    for each in (replace(scene, planes=()), weak):
+        panel = Canvas(1600, 1200, GREY)
+        picture._draw_segments(panel, each, each.lines.segment)
+        blue = np.array(line_colour(2, True)) * 255
+        coloured.append((np.abs(panel.pixels - blue).max(axis=2) < 2).sum())
+    assert 0.3 * coloured[0] < coloured[1] < 0.8 * coloured[0]
+
+
+def tint_of(scene, word):
+    """How far a face takes the colour of the panel away from grey, with all lines at that confidence."""
+    lines = replace(scene.lines, confidence=np.full(len(scene.lines), word))
+    panel = Canvas(scene.camera.width // 4, scene.camera.height // 4, GREY)
+    picture_faces.draw_faces(panel, replace(scene, lines=lines), np.array([0.25, 0.25]))
+    return np.ptp(panel.pixels.astype(int), axis=2).mean()
+
+
+def test_faces_are_the_stronger_the_surer_they_are(scene):
+    assert tint_of(scene, "proven") > 1.2 * tint_of(scene, "supported") > 1.4 * tint_of(scene, "weak") > 0
+
+
+def test_the_confidence_of_a_plane_is_that_of_most_of_its_lines(scene):
+    plane = scene.planes[0]
+    first, *others = plane.lines
+    words = dict.fromkeys(others, "supported") | {first: "proven"}
+    assert picture_faces.confidence_of(plane, words) == "supported"
+    two = replace(plane, lines=(first, others[0]))
+    assert picture_faces.confidence_of(two, words) == "supported"
+
+
+@pytest.mark.parametrize(("start", "end"), [((-1e7, 50.0), (1e7, 50.0)), ((50.0, 20.0), (50.0, 80.0))])
+def test_dashes_stay_in_the_panel_and_cover_about_half(start, end):
+    panel = Canvas(100, 100, GREY)
+    before = panel.pixels.copy()
+    picture_faces.draw_dashed(panel, list(start), list(end), (0.0, 0.0, 0.0), 1)
+    length = min(np.hypot(*np.subtract(end, start)), 100)
+    changed = (panel.pixels != before).any(axis=2)
+    covered = max(changed.any(axis=0).sum(), changed.any(axis=1).sum())
+    assert 0.5 * length < covered < 0.85 * length
+
+
+def test_a_line_outside_the_panel_has_no_dashes():
+    panel = Canvas(100, 100, GREY)
+    before = panel.pixels.copy()
+    picture_faces.draw_dashed(panel, [-50.0, 200.0], [50.0, 200.0], (0.0, 0.0, 0.0), 1)
+    assert (panel.pixels == before).all()
 
 
 @pytest.mark.parametrize(("longest", "length"), [(7.3, 5), (5.0, 5), (0.19, 0.1), (23, 20), (1000, 1000)])
