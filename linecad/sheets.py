@@ -18,6 +18,7 @@ SAME = 3.0  # px at the reference width; lines that are nearer are one line of a
 ENDS_REACH = 12.0  # px at the reference width; an end so near to a line ends there
 BORDER = 30.0  # px at the reference width; a line that ends so near to the photo's border goes on outside
 BEHIND = 0.01  # relative depth by which a line is behind a plane for sure
+SPEAKS = 12.0  # samples; a line behind says nothing about the wall further away from it
 WALLS_OF_LEVEL = 4  # sides of a cell of a horizontal plane that lines close
 WALLS = 2  # the same of a vertical plane, one of them the top, unless lines beside it go on above the photo
 WEAK_FACTOR = 2.0  # by which a line of a smaller component must be nearer to win a pixel: its depth is a guess
@@ -136,7 +137,10 @@ def build_sheet(
     # Other components have scales of their own: what is behind what is not known there.
     comparable = lines.component[samples.line] == lines.component[members[0]]
     behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
-    distance = samples.distance(own)
+    # Only a line that would be seen through the wall speaks against it, not one beside it.
+    through = cells.find(samples.line_rays[behind][:, [u, v]] * plane_depth[behind, None])
+    behind[behind] = (through >= 0) & possible.ravel()[through]
+    distance, speaks = samples.distance(own), samples.distance(behind)
     return Sheet(
         plane=plane,
         flat=(u, v),
@@ -145,7 +149,7 @@ def build_sheet(
         kept=possible,
         at=np.where(seen, cells.find(points), -1),
         distance=np.where(
-            distance <= samples.distance(behind) + 0.5,
+            distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5,
             distance * (WEAK_FACTOR if lines.component[members[0]] else 1.0),
             np.inf,
         ),
