@@ -87,8 +87,7 @@ def judge_crossings(truth: Truth, graph: LineGraph, lines: TrueLines) -> Int:
     i, j = graph.edges.T
     judged = np.flatnonzero(lines.right[i] & lines.right[j])
     i, j = i[judged], j[judged]
-    rays = truth.rays(graph.crossing[judged])
-    depth = np.stack([_depth_on(rays, lines.point[n], lines.direction[n]) for n in (i, j)])
+    depth = depths_at_crossings(truth, graph, lines)[:, judged]
     one_axis = graph.axis[i] == graph.axis[j]
     apart = _distance(lines.point[i], lines.direction[i], lines.point[j], lines.direction[j], one_axis)
     mean = depth.mean(axis=0)
@@ -97,6 +96,12 @@ def judge_crossings(truth: Truth, graph: LineGraph, lines: TrueLines) -> Int:
     fake = ~before | (apart > np.maximum(FAKE_GAP, FAKE_SHARE * mean))
     label[judged] = np.where(real, REAL, np.where(fake, FAKE, UNDECIDED))
     return label
+
+
+def depths_at_crossings(truth: Truth, graph: LineGraph, lines: TrueLines) -> Float:
+    """(2, E) camera depths, m, at which the ray of each crossing passes nearest to its two true lines; NaN without."""
+    rays = truth.rays(graph.crossing)
+    return np.stack([_depth_on(rays, lines.point[n], lines.direction[n]) for n in graph.edges.T])
 
 
 def _edge_of(truth: Truth, along: Float, ends: Float) -> int:
