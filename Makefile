@@ -7,9 +7,9 @@ READY := $(VENV)/.ready
 DEMO := demo/street
 FORMATS := step dxf glb usdz usda json png
 ARGS :=
-DATASET := dataset
+DATASETS := data/test data/test4k
 WORKERS := 2
-NAME := results
+SECONDS := 10
 
 .DEFAULT_GOAL := help
 .PHONY: help demo test lint check results clean
@@ -19,7 +19,7 @@ help:
 	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap")'
 	@echo 'make lint    ruff and mypy'
 	@echo 'make check   lint and test, what every change must pass'
-	@echo 'make results measure a dataset (DATASET=folder, WORKERS=2): docs/results.md, and more in results/'
+	@echo 'make results measure datasets (DATASETS="folders", WORKERS=2): docs/tables/, and more in results/'
 	@echo 'make clean   remove what was made, except .venv'
 	@echo
 	@echo 'Each prepares .venv on its first run: about 1.6 GB, a minute or two.'
@@ -39,10 +39,15 @@ lint: $(READY)
 
 check: lint test
 
+# Tables as Markdown into docs/tables/, everything else into results/; the weights that were fitted beside the default.
 results: $(READY)
-	@mkdir -p results
-	$(BIN)/linecad evaluate $(DATASET) --workers $(WORKERS) --markdown docs/$(NAME).md \
-	    --json results/$(NAME).json --report results/$(NAME).html $(ARGS)
+	@mkdir -p results docs/tables
+	@set -e; for dataset in $(DATASETS); do \
+	for how in "junctions" "fitted --formulation gain"; do \
+	    name=$$(basename $$dataset)-$${how%% *}; echo "$$dataset, --weights $$how"; \
+	    $(BIN)/linecad evaluate $$dataset --weights $$how --workers $(WORKERS) --time-limit $(SECONDS) \
+	        --markdown docs/tables/$$name.md --json results/$$name.json --report results/$$name.html $(ARGS); \
+	done; $(BIN)/python tests/benchmarks/fakes.py $$dataset > docs/tables/$$(basename $$dataset)-fakes.md; done
 
 clean:
 	rm -rf demo results build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
