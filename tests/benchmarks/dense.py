@@ -4,7 +4,8 @@ DATASET is a folder that `linecad evaluate` knows and whose truth has depth anyw
 photo the share of the points of known depth that get one within 5 % (recall), and of those that get one at all
 (precision): by the convex hull of each plane's lines, as linecad drew faces before, and by its faces now. One median
 scale a photo, first of component 0 alone, then of all, whose scales are guesses. Where several hulls cover a point, the
-nearest counts.
+nearest counts. --true-crossings takes the crossings that are real by the truth of a made photo in place of the
+solver's: what faces could reach if all decisions were right.
 """
 
 import argparse
@@ -22,10 +23,12 @@ sys.path.insert(0, str(ROOT))
 from linecad.errors import LinecadError  # noqa: E402 - a script, run from a checkout without installing
 from linecad.evaluation.datasets import find_dataset  # noqa: E402
 from linecad.evaluation.depth import face_depths, line_depths, score  # noqa: E402
-from linecad.evaluation.references import Points, open_case  # noqa: E402
+from linecad.evaluation.labels import REAL  # noqa: E402
+from linecad.evaluation.references import Points, Reference, open_case  # noqa: E402
 from linecad.faces import find_faces  # noqa: E402
-from linecad.pipeline import ReconstructOptions, reconstruct  # noqa: E402
-from linecad.scene import Face, Plane, Scene  # noqa: E402
+from linecad.photo import Photo  # noqa: E402
+from linecad.pipeline import ReconstructOptions, connect, find_lines, place, reconstruct  # noqa: E402
+from linecad.scene import Face, Plane, Scene, Solution  # noqa: E402
 from solver.problem import SolveOptions  # noqa: E402
 
 
@@ -34,6 +37,7 @@ def main() -> None:
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--only", default="", help="photos with this in DATASET/NAME")
     parser.add_argument("--extension", type=float, default=ReconstructOptions.extension)
+    parser.add_argument("--true-crossings", action="store_true")
     parser.add_argument("--time-limit", type=float, default=60.0)
     arguments = parser.parse_args()
     options = ReconstructOptions(extension=arguments.extension, solve=SolveOptions(time_limit_s=arguments.time_limit))
@@ -48,13 +52,26 @@ def main() -> None:
                 photo, reference = open_case(case)
                 if reference.dense is None:
                     continue
-                scene = reconstruct(photo, options)
+                scene = truly(photo, reference, options) if arguments.true_crossings else reconstruct(photo, options)
             except LinecadError as error:
                 print(f"| {case.name} | {error} |", flush=True)
                 continue
             rows.append(measure(case.name, scene, reference.dense))
     if rows:
         print("| mean | | | | | " + " | ".join(cell(*pair) for pair in np.mean(rows, axis=0)) + " |")
+
+
+def truly(photo: Photo, reference: Reference, options: ReconstructOptions) -> Scene:
+    """The scene of the crossings that are real by the truth."""
+    found = find_lines(photo)
+    _, graph = connect(found, options)
+    real = reference.label(graph, found.camera, found.frame.rotation) == REAL
+    count = len(graph.segments)
+    solution = Solution(
+        status="optimal", solver="truth", formulation="gain", objective=0.0, bound=0.0, gap=0.0, seconds=0.0, nodes=0,
+        connected=real, is_boundary=np.zeros(count, bool), planar_pairs=[], log_depth=np.zeros(count),
+    )  # fmt: skip
+    return place(photo, found, graph, solution, options)
 
 
 def measure(name: str, scene: Scene, points: Points) -> list[tuple[float, float]]:
