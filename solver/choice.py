@@ -11,7 +11,7 @@ from solver.depths import end_ratios
 from solver.families import Families
 from solver.problem import SolveOptions
 
-MEASURES = (1.0, 0.5, 0.25, 0.1, 0.05)  # of weights and rewards
+MEASURES = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)  # of weights and rewards
 MEASURE_ROUNDING = 1e-9  # relative to the measure, of a weight
 BOUND_ROUNDING = 0.01  # relative to the measure, what the arithmetic of a solver may take from its bound
 RECHECK_TOLERANCE = 1e-6  # log depth, what rounding may add to an edge's own tolerance

@@ -173,7 +173,7 @@ class _Search:
             rows = separation.extend(program, solved.x)
             if not rows and is_integral(solved.x[: program.integers]):
                 self._take(solved.x[: program.integers] > 0.5)
-            elif not rows or turn % HEURISTIC_EVERY == HEURISTIC_EVERY - 1:
+            elif not rows or turn % HEURISTIC_EVERY == 1:
                 self._round(solved.x)
             self.reporter.report()
             gap = solved.value - self.value

@@ -14,7 +14,7 @@ MOST_CYCLES = 200
 MOST_PLANES = 1000
 FEW = 10  # cycles found the cheap way, below which the dear way is tried too
 LEAST_VIOLATION = 1e-3  # by which a point must break a seed
-MOST_PATH_WORK = 40_000_000  # roots times edges of one round of shortest paths
+MOST_PATH_WORK = 4_000_000  # roots times edges of one round of shortest paths
 
 
 def is_integral(b: Float) -> bool:
