@@ -47,7 +47,12 @@ results: $(READY)
 	    name=$$(basename $$dataset)-$${how%% *}; echo "$$dataset, --weights $$how"; \
 	    $(BIN)/linecad evaluate $$dataset --weights $$how --workers $(WORKERS) --time-limit $(SECONDS) \
 	        --markdown docs/tables/$$name.md --json results/$$name.json --report results/$$name.html $(ARGS); \
-	done; $(BIN)/python tests/benchmarks/fakes.py $$dataset > docs/tables/$$(basename $$dataset)-fakes.md; done
+	done; \
+	name=$$(basename $$dataset); \
+	$(BIN)/python tests/benchmarks/paired.py results/$$name-junctions.json results/$$name-fitted.json \
+	    > docs/tables/$$name-paired.md; \
+	$(BIN)/python tests/benchmarks/fakes.py $$dataset > docs/tables/$$name-fakes.md; \
+	done
 
 clean:
 	rm -rf demo results build dist .pytest_cache .mypy_cache .ruff_cache .hypothesis
