@@ -124,6 +124,10 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
+    convert.add_argument(
+        "--witnesses", type=_count, metavar="N",
+        help="lines that must tie two bodies for one scale; 1 asks nothing (3, but 1 with --formulation paper)",
+    )  # fmt: skip
     _add_loudness(convert)
 
 
@@ -275,6 +279,7 @@ def _convert(parsed: argparse.Namespace) -> int:
         weights=parsed.weights,
         collinear=is_gain if parsed.collinear is None else parsed.collinear,
         largest_component=parsed.largest_component,
+        witnesses=parsed.witnesses,
         solve=SolveOptions(
             formulation=parsed.formulation,
             without=parsed.without,

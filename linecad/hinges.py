@@ -36,6 +36,12 @@ class Held:
     bodies: int  # how many of them are bodies; the rest are groups that hang on bodies too loosely, and single lines
     within: Bool  # (N,) the line is in a body itself, not in a small group that hangs on it
 
+    def joins(self, graph: LineGraph) -> Bool:
+        """Mask (E,) of the crossings of two lines that are held together."""
+        first, second = graph.edges.T
+        together: Bool = self.body[first] == self.body[second]
+        return together
+
 
 def find_held(graph: LineGraph, chosen: Bool, witnesses: int = WITNESSES) -> Held:
     """Part the lines of a graph into bodies, as the `chosen` crossings (E,) that say something about depth hold them.

@@ -10,6 +10,7 @@ from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
+from linecad.hinges import WITNESSES, Held, find_held
 from linecad.lifting import Lifted, lift
 from linecad.photo import Photo
 from linecad.planes import find_planes
@@ -52,7 +53,16 @@ class ReconstructOptions:
     weights: Weights = "junctions"
     collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
+    # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: as usual with
+    # formulation gain, 1 with the paper's.
+    witnesses: int | None = None
     solve: SolveOptions = field(default_factory=SolveOptions)
+
+    @property
+    def witnesses_asked(self) -> int:
+        """`witnesses` in use."""
+        usual = WITNESSES if self.solve.formulation == "gain" else 1
+        return usual if self.witnesses is None else self.witnesses
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,7 +124,17 @@ def place(
     if left_out:
         notes.append(_left_out(left_out, "touch too few others in the photo", options))
     solution = _within_groups(graph, solution)
-    return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options)
+    held = None
+    if options.witnesses_asked > 1:
+        held = find_held(graph, solution.connected, options.witnesses_asked)
+        refused = solution.connected & ~held.joins(graph)
+        if (refused & graph.informative).any():
+            notes.append(
+                f"{int(refused.sum())} crossings join bodies of lines that fewer than {options.witnesses_asked} lines "
+                "tie to each other, and are not taken for real: such a join is often a near edge before a far wall"
+            )
+        solution = replace(solution, connected=solution.connected & ~refused)
+    return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options, held)
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
@@ -172,10 +192,15 @@ def _scene(
     lifted: Lifted,
     notes: list[str],
     options: ReconstructOptions,
+    held: Held | None = None,
 ) -> Scene:
     """The scene of the lines that a chosen crossing ties to others, each component with its scale."""
     telling = solution.connected & graph.informative
     parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
+    hinged = hinged_nodes(graph, telling)
+    if held is not None:  # the largest body comes first, also where more lines hang together loosely
+        parts.sort(key=lambda part: -int(held.within[part].sum()))
+        hinged |= ~held.within
     if not parts:
         raise ReconstructionError(
             "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
@@ -200,7 +225,7 @@ def _scene(
         ends=ends[kept],
         is_boundary=solution.is_boundary[kept],
         component=component[kept],
-        confidence=_confidence(solution, component, hinged_nodes(graph, telling))[kept],
+        confidence=_confidence(solution, component, hinged)[kept],
     )
     intersections = Intersections(
         lines=new_id[graph.edges[inside]],
