@@ -54,11 +54,14 @@ def find_held(graph: LineGraph, chosen: Bool, witnesses: int = WITNESSES) -> Hel
     pieces = graph.edges[used & (graph.kind == "collinear")]
     cores = _joined_by_pieces(find_bodies(net, witnesses), pieces)
     count = len(graph.segments)
+    corners = _adjacency(range(count), graph.edges[used & (graph.kind == "L")])
     body = np.full(count, -1)
     for line in range(count):
         own = [number for number, core in enumerate(cores) if line in core]
-        if own:  # a hinge line is in several: it goes where most of its crossings lead
-            body[line] = max(own, key=lambda number: (len(net[line] & cores[number]), -number))
+        if own:  # a hinge line is in several: it belongs to the body that ends where it ends, an edge to its own wall
+            body[line] = max(
+                own, key=lambda number: (len(corners[line] & cores[number]), len(net[line] & cores[number]), -number)
+            )
     within = body >= 0
     others = len(cores)
     for group in _components(net, np.flatnonzero(~within).tolist()):

@@ -198,8 +198,9 @@ def _scene(
     telling = solution.connected & graph.informative
     parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
     hinged = hinged_nodes(graph, telling)
-    if held is not None:  # the largest body comes first, also where more lines hang together loosely
-        parts.sort(key=lambda part: -int(held.within[part].sum()))
+    if held is not None and parts:  # the largest body comes first, also where more lines hang together loosely
+        largest = max(parts, key=lambda part: int(held.within[part].sum()))
+        parts.sort(key=lambda part: part is not largest)
         hinged |= ~held.within
     if not parts:
         raise ReconstructionError(

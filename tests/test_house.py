@@ -30,7 +30,14 @@ FLOORS = [
     ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.finishing"],
     ["linecad.dataset.scenes", "linecad.dataset.render"],
     # Parts of stages: of photo, of graph, of lifting, of faces.
-    ["linecad.calibration", "linecad.decoding", "linecad.disjoint", "linecad.weighting", "linecad.offsets", "linecad.outlines"],
+    [
+        "linecad.calibration",
+        "linecad.decoding",
+        "linecad.disjoint",
+        "linecad.weighting",
+        "linecad.offsets",
+        "linecad.outlines",
+    ],
     ["linecad.sheets"],  # a part of faces
     [
         "linecad.photo",

@@ -64,7 +64,8 @@ def main() -> None:
             print(
                 f"{folder.name}, {len(recall)} photos, {variant[0]} witnesses, {variant[1]} hanging: recall "
                 f"{recall.mean():.3f}, precision {np.nanmean(precision):.3f} (lowest {np.nanmin(precision):.3f}), "
-                f"{seconds.mean():.1f} s | " + " ".join(f"{r:.2f}/{p:.2f}" for r, p in zip(recall, precision, strict=True)),
+                f"{seconds.mean():.1f} s | "
+                + " ".join(f"{r:.2f}/{p:.2f}" for r, p in zip(recall, precision, strict=True)),
                 flush=True,
             )
 
