@@ -17,7 +17,7 @@ import networkx as nx
 import numpy as np
 
 from linecad.disjoint import disjoint_paths
-from linecad.scene import Bool, Int, LineGraph
+from linecad.scene import Bool, Float, Int, LineGraph
 
 WITNESSES = 3  # lines without which a body stays whole, and one more
 LEAST_BODY = 4  # lines
@@ -41,6 +41,22 @@ class Held:
         first, second = graph.edges.T
         together: Bool = self.body[first] == self.body[second]
         return together
+
+
+def agreeing(graph: LineGraph, chosen: Bool, log_depth: Float) -> Bool:
+    """Mask (E,) of the chosen crossings and of those others that agree with the depths (N,) which these give.
+
+    A line gives up the crossings of one direction rather than become a boundary (family B), so the courses that meet
+    at a true corner are often not chosen; they are witnesses of the corner all the same.
+    """
+    group = np.empty(len(graph.segments), np.int64)
+    net = _adjacency(range(len(graph.segments)), graph.edges[chosen & graph.informative])
+    for number, part in enumerate(_components(net, list(net))):
+        group[list(part)] = number
+    first, second = graph.edges.T
+    apart = np.abs(log_depth[first] - log_depth[second] - graph.log_ratio)
+    agrees: Bool = graph.informative & (group[first] == group[second]) & (apart <= graph.tolerance)
+    return chosen | agrees
 
 
 def find_held(graph: LineGraph, chosen: Bool, witnesses: int = WITNESSES) -> Held:

@@ -10,7 +10,7 @@ from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
-from linecad.hinges import WITNESSES, Held, find_held
+from linecad.hinges import WITNESSES, Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
 from linecad.photo import Photo
 from linecad.planes import find_planes
@@ -126,7 +126,8 @@ def place(
     solution = _within_groups(graph, solution)
     held = None
     if options.witnesses_asked > 1:
-        held = find_held(graph, solution.connected, options.witnesses_asked)
+        witnessed = agreeing(graph, solution.connected, solution.log_depth)
+        held = find_held(graph, witnessed, options.witnesses_asked)
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
             notes.append(

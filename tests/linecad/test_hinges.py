@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from linecad.geometry import project
 from linecad.graph import build_line_graph
+from linecad.hinges import agreeing as all_agreeing
 from linecad.hinges import find_bodies, find_held
 from linecad.scene import Camera, ManhattanFrame, Segments
 
@@ -92,6 +93,16 @@ def test_a_true_corner_is_kept():
     held = find_held(graph, agreeing(graph, depths(graph, lines)))
     assert held.bodies == 1
     assert (held.body == 0).all()
+
+
+def test_courses_at_a_corner_are_witnesses_though_not_chosen():
+    front, side = wall(Y, 8.0, [-4.0, -3.0, -2.0, -1.0]), wall(X, -1.0, [8.0, 9.0, 10.5, 12.5])
+    lines = front + side[1:]
+    graph = graph_of(lines)
+    depth = depths(graph, lines)
+    chosen = agreeing(graph, depth) & (graph.coordinate != Z)  # no crossing of two courses
+    assert find_held(graph, chosen).bodies == 2
+    assert find_held(graph, all_agreeing(graph, chosen, np.log(depth))).bodies == 1
 
 
 def test_a_corner_without_matching_courses_is_a_hinge():
