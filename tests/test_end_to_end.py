@@ -40,9 +40,9 @@ LEAST = {
     ("street", "paper"): (25, 0.90),
     ("courtyard", "paper"): (12, 0.95),
     ("room", "paper"): (40, 0.78),
-    ("street", "default"): (60, 0.67),
-    ("courtyard", "default"): (40, 0.93),
-    ("room", "default"): (55, 0.70),
+    ("street", "default"): (45, 0.95),
+    ("courtyard", "default"): (15, 0.95),
+    ("room", "default"): (35, 0.90),
 }
 
 
