@@ -128,9 +128,28 @@ def _runs(kept: Bool, allowed: Bool, size: Float, least: float, fill: bool, turn
     return result.T if turned else result
 
 
+def _without_touching_corners(kept: Bool) -> Bool:
+    """The cells less one of each two that meet in a corner only, the one of fewer neighbours."""
+    kept = kept.copy()
+    while True:
+        a, b, c, d = kept[:-1, :-1], kept[1:, :-1], kept[:-1, 1:], kept[1:, 1:]
+        corners = np.argwhere((a & d & ~b & ~c) | (b & c & ~a & ~d))
+        if len(corners) == 0:
+            return kept
+        i, j = corners[0]
+        pair = [(i, j), (i + 1, j + 1)] if kept[i, j] else [(i + 1, j), (i, j + 1)]
+        padded = np.pad(kept, 1)
+        around = [padded[u : u + 3, v : v + 3].sum() for u, v in pair]
+        kept[pair[int(np.argmin(around))]] = False
+
+
 def outlines(kept: Bool) -> list[shapely.Polygon]:
-    """The union of the kept cells (U, V): polygons with holes whose corners are whole numbers of coordinates."""
-    i, j = np.nonzero(kept)
+    """The union of the kept cells (U, V): polygons with holes whose corners are whole numbers of coordinates.
+
+    No ring touches itself or another one of the same polygon: where two kept cells meet in a corner only, one of them
+    is left out, since a mesh would have to have one corner twice.
+    """
+    i, j = np.nonzero(_without_touching_corners(kept))
     union = shapely.union_all(shapely.box(i, j, i + 1, j + 1))
     parts = shapely.get_parts(shapely.simplify(union, 0.0))
     return sorted(parts, key=lambda part: part.bounds)

@@ -103,3 +103,14 @@ def test_a_narrow_gap_is_filled_and_a_narrow_strip_left_out():
     free = np.ones(kept.shape, bool)
     assert without_slivers(kept, free, width, height, 5.0).tolist() == [[True] * 5, [True] * 5, [False] * 5]
     assert not without_slivers(kept, ~free, width, height, 5.0)[:, 2].any()
+
+
+@given(kept=masks)
+def test_no_outline_has_a_corner_twice(kept):
+    for polygon in outlines(kept):
+        corners = [point for ring in (polygon.exterior, *polygon.interiors) for point in ring.coords[:-1]]
+        assert len(set(corners)) == len(corners)
+
+
+def test_of_two_cells_that_meet_in_a_corner_one_stays():
+    assert [part.area for part in outlines(np.array([[True, False], [False, True]]))] == [1.0]
