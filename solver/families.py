@@ -104,11 +104,11 @@ class Families:
 def find_families(graph: LineGraph, without: Set[Family]) -> Families:
     """The sub-graphs of the families that are not in `without`, each list in ascending order of lines."""
     cycles = "cycles" not in without
-    pairs = find_parallel_pairs(graph)
+    planarity = "planarity" not in without
     return Families(
         three_cycles=find_three_cycles(graph) if cycles else (),
         four_cycles=find_four_cycles(graph) if cycles else (),
-        pairs=pairs.subset(np.full(len(pairs), "planarity" not in without)),
+        pairs=find_parallel_pairs(graph) if planarity else _pairs(graph, np.zeros(len(graph.edges), bool)),
         two_sides=find_two_sides(graph) if "boundary" not in without else (),
     )
 

@@ -39,7 +39,7 @@ from solver.choice import (
     round_down,
     trivial_bound,
 )
-from solver.depths import end_ratios, near_log_ratio
+from solver.depths import end_ratios
 from solver.facts import check_facts, read_facts
 from solver.families import Families, find_families
 from solver.master import Program, add_plane_column, build_master, fill
@@ -116,12 +116,11 @@ class _Search:
     ) -> None:
         self.graph, self.options, self.backend, self.stop = graph, options, backend, stop
         self.end = began + options.time_limit_s
-        self.ratios = end_ratios(graph)
-        self.step = near_log_ratio(graph, self.ratios)
+        ratios = end_ratios(graph)
         self.families: Families = find_families(graph, options.without | {"cycles"})
         self.real, self.fake = read_facts(graph, options)
-        check_facts(graph, self.families, options, self.real, self.ratios)
-        self.starter = Starter(graph, self.families, options, self.ratios, self.real, self.fake)
+        check_facts(graph, self.families, options, self.real, ratios)
+        self.starter = Starter(graph, self.families, options, ratios, self.real, self.fake)
         self.best: Choice = self.starter.find()
         self.value = objective_of(graph, options, self.best)
         self.measure = common_measure(graph, options)
@@ -208,8 +207,8 @@ class _Search:
 
     def _take(self, connected: Bool) -> None:
         """Offer a solver's crossings with depths of our own; they are dropped if no depths fit them."""
-        near = np.log(self.ratios.min(axis=1))
-        fit = fit_near_depths(self.graph, self.step, connected, np.inf, self.best.log_depth + near)
+        step, near = self.starter.step, self.starter.to_middle
+        fit = fit_near_depths(self.graph, step, connected, np.inf, self.best.log_depth + near)
         assert len(fit.contradiction) == 0, "a solver returned crossings that separation had not tested"
         flags, planes = boundaries(self.graph, connected), planar_pairs(self.families, connected)
         self._offer(Choice(connected, flags, planes, fit.near - near))
