@@ -100,16 +100,7 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--without", type=_families, default=frozenset(), metavar="FAMILY[,FAMILY]",
         help="leave out families of constraints: cycles, planarity, boundary",
     )  # fmt: skip
-    convert.add_argument(
-        "--weights", choices=["ones", "junctions", "fitted"], default="junctions", help="weights of crossings"
-    )
-    convert.add_argument(
-        "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
-    )
-    convert.add_argument(
-        "--mu-boundary", type=_not_negative, metavar="MU2",
-        help="reward of non-boundary lines (1, but 10 with --formulation paper)",
-    )  # fmt: skip
+    _add_objective(convert)
     convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
     convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
@@ -129,6 +120,20 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         help="lines that must tie two bodies for one scale; 1 asks nothing (3, but 1 with --formulation paper)",
     )  # fmt: skip
     _add_loudness(convert)
+
+
+def _add_objective(command: argparse.ArgumentParser) -> None:
+    """What the objective of the program is made of."""
+    command.add_argument(
+        "--weights", choices=["ones", "junctions", "fitted"], default="junctions", help="weights of crossings"
+    )
+    command.add_argument(
+        "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
+    )
+    command.add_argument(
+        "--mu-boundary", type=_not_negative, metavar="MU2",
+        help="reward of non-boundary lines (1 for gain, 10 for paper)",
+    )  # fmt: skip
 
 
 def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
@@ -155,16 +160,7 @@ def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--ablation", action=argparse.BooleanOptionalAction, default=True,
         help="solve every row of table 1 (on), or only the default settings",
     )  # fmt: skip
-    evaluate.add_argument(
-        "--weights", choices=["ones", "junctions", "fitted"], default="junctions", help="weights of crossings"
-    )
-    evaluate.add_argument(
-        "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
-    )
-    evaluate.add_argument(
-        "--mu-boundary", type=_not_negative, metavar="MU2",
-        help="reward of non-boundary lines (1 for gain, 10 for paper)",
-    )  # fmt: skip
+    _add_objective(evaluate)
     evaluate.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for each solve (60)")
     _add_loudness(evaluate)
 

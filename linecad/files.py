@@ -59,6 +59,15 @@ def write_atomically(path: Path, writer: Callable[[Path], None]) -> None:
         raise _output_error(path, error) from error
 
 
+def write_text_atomically(path: Path, text: str) -> None:
+    """The same for a text: UTF-8, lines ending as they do in `text` on every system."""
+    write_atomically(path, lambda file: _write_text(file, text))
+
+
+def _write_text(file: Path, text: str) -> None:
+    file.write_text(text, encoding="utf-8", newline="\n")
+
+
 def _allowed(path: Path, mode: int) -> bool:
     return os.access(path, mode, effective_ids=os.access in os.supports_effective_ids)
 

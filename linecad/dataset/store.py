@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from linecad.dataset.modelling import parallelograms
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.errors import DatasetError, OutputError
-from linecad.files import write_atomically
+from linecad.files import write_atomically, write_text_atomically
 from linecad.scene import Float, Int
 from linecad.strictjson import JsonError, parse
 
@@ -74,7 +74,7 @@ def write_list(made: DatasetList, folder: Path) -> None:
         "scenes": list(made.scenes),
     }
     text = json.dumps(document, indent=1) + "\n"
-    write_atomically(folder / LIST, lambda path: _write_text(path, text))
+    write_text_atomically(folder / LIST, text)
 
 
 def read_list(folder: Path) -> DatasetList:
@@ -125,7 +125,7 @@ def write_truth(truth: Truth, folder: Path) -> None:
     """Write camera.json and truth.npz of a scene. Raises OSError, or OutputError."""
     camera = {"width": truth.width, "height": truth.height, "K": truth.matrix.tolist()}
     text = json.dumps(camera) + "\n"
-    write_atomically(folder / CAMERA, lambda path: _write_text(path, text))
+    write_text_atomically(folder / CAMERA, text)
     real = {
         "matrix": truth.matrix,
         "rotation": truth.rotation,
@@ -220,10 +220,6 @@ def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
     for name in ("matrix", "rotation"):
         if abs(np.linalg.det(real[name])) < SINGULAR:
             raise ValueError(f"{name} cannot be inverted")
-
-
-def _write_text(path: Path, text: str) -> None:
-    path.write_text(text, encoding="utf-8")
 
 
 def _write_arrays(path: Path, real: dict[str, Float], whole: dict[str, Int]) -> None:

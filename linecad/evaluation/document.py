@@ -11,7 +11,7 @@ from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.measure import PhotoResult
 from linecad.evaluation.methods import Settings
 from linecad.evaluation.tables import Row, Table
-from linecad.files import write_atomically
+from linecad.files import write_text_atomically
 
 FORMAT, VERSION = "linecad-evaluation", 1
 NOTHING = "-"
@@ -31,17 +31,13 @@ def write_json(
         "photos": [result.document() for result in results],
     }
     text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
-    write_atomically(path, lambda file: _write(file, text))
+    write_text_atomically(path, text)
 
 
 def write_markdown(path: Path, dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> None:
     """Write the tables as Markdown; OutputError when the file cannot be written."""
     text = markdown(dataset, results, tables)
-    write_atomically(path, lambda file: _write(file, text))
-
-
-def _write(file: Path, text: str) -> None:
-    file.write_text(text, encoding="utf-8", newline="\n")
+    write_text_atomically(path, text)
 
 
 def markdown(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> str:

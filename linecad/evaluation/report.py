@@ -8,7 +8,7 @@ from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.document import cells_of, summary
 from linecad.evaluation.measure import PhotoResult, Picture
 from linecad.evaluation.tables import Table
-from linecad.files import write_atomically
+from linecad.files import write_text_atomically
 
 WORST = 10  # photos that are shown
 BAR_WIDTH, BAR_HEIGHT, LABEL_WIDTH = 420, 18, 150  # px
@@ -23,11 +23,7 @@ FAKE_TAKEN, REAL_MISSED = "#ff00ff", "#ffd700"
 def write_report(path: Path, dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> None:
     """Write the page; OutputError when the file cannot be written."""
     text = page(dataset, results, tables)
-    write_atomically(path, lambda file: _write(file, text))
-
-
-def _write(file: Path, text: str) -> None:
-    file.write_text(text, encoding="utf-8", newline="\n")
+    write_text_atomically(path, text)
 
 
 def page(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> str:
