@@ -9,8 +9,8 @@ from linecad.agreement import disagreements
 from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
-from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
-from linecad.hinges import WITNESSES, Held, agreeing, find_held
+from linecad.graph import EXTENSION, MIN_LENGTH, Weights, build_line_graph, components, hinged_nodes, spanning_tree
+from linecad.hinges import Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
 from linecad.photo import Photo
 from linecad.planes import find_planes
@@ -29,9 +29,11 @@ from linecad.scene import (
     SolveReport,
     Text,
 )  # fmt: skip
-from linecad.segments import find_segments, group_segments, label_segments
+from linecad.segments import GROUP_ALONG, find_segments, group_segments, label_segments
+from linecad.support import draw, find_supported
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
+from solver.robust import RobustFit
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
@@ -46,23 +48,49 @@ def _silent(_stage: str) -> None:
 
 
 @dataclass(frozen=True)
+class Reach:
+    """How far evidence is carried along a segment, in px at 3840 px width."""
+
+    extension: float  # by which segments are extended to find crossings
+    largest_gap: float  # between fragments of one segment
+    least_length: float  # of a line
+
+
+SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH)  # as in the paper
+# 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
+LONG_REACH = Reach(75.0, 125.0, 18.75)
+
+
+@dataclass(frozen=True)
 class ReconstructOptions:
     """What a user can choose about a reconstruction."""
 
-    extension: float = EXTENSION  # px at 3840 px width by which segments are extended to find crossings
-    weights: Weights = "junctions"
+    # px at 3840 px width by which segments are extended to find crossings; None: that of the reach.
+    extension: float | None = None
+    reach: Reach | None = None  # None: long with formulation gain, short with the paper's
+    weights: Weights | None = None  # None: odds with formulation gain, junctions with the paper's
     collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
-    # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: as usual with
-    # formulation gain, 1 with the paper's.
+    # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: lines must keep
+    # their place in resampling (linecad.support) with formulation gain, 1 with the paper's.
     witnesses: int | None = None
     solve: SolveOptions = field(default_factory=SolveOptions)
 
     @property
-    def witnesses_asked(self) -> int:
-        """`witnesses` in use."""
-        usual = WITNESSES if self.solve.formulation == "gain" else 1
-        return usual if self.witnesses is None else self.witnesses
+    def is_paper(self) -> bool:
+        """Whether what is not said is as in the paper."""
+        return self.solve.formulation == "paper"
+
+    @property
+    def reach_used(self) -> Reach:
+        """`reach` and `extension` in use."""
+        reach = self.reach if self.reach is not None else SHORT_REACH if self.is_paper else LONG_REACH
+        return reach if self.extension is None else replace(reach, extension=self.extension)
+
+    @property
+    def weights_used(self) -> Weights:
+        """`weights` in use."""
+        return self.weights if self.weights is not None else "junctions" if self.is_paper else "odds"
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +99,7 @@ class FoundLines:
 
     camera: Camera
     frame: ManhattanFrame
-    segments: Segments  # labelled; each passes exactly through the vanishing point of its axis
+    segments: Segments  # labelled fragments, not grouped yet
     notes: tuple[str, ...]  # doubts so far
 
 
@@ -99,14 +127,20 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
-    segments = group_segments(label_segments(raw, camera, frame), camera, frame)
-    return FoundLines(camera, frame, segments, tuple(notes))
+    return FoundLines(camera, frame, label_segments(raw, camera, frame), tuple(notes))
 
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
     """The line graph of all found lines, and the part of it that is solved; ReconstructionError when that is none."""
+    reach = options.reach_used
     whole = build_line_graph(
-        found.segments, found.camera, found.frame, options.extension, options.weights, options.collinear
+        group_segments(found.segments, found.camera, found.frame, reach.largest_gap),
+        found.camera,
+        found.frame,
+        reach.extension,
+        options.weights_used,
+        options.collinear,
+        reach.least_length,
     )
     return whole, _kept(whole, options)
 
@@ -124,18 +158,32 @@ def place(
     if left_out:
         notes.append(_left_out(left_out, "touch too few others in the photo", options))
     solution = _within_groups(graph, solution)
-    held = None
-    if options.witnesses_asked > 1:
-        witnessed = agreeing(graph, solution.connected, solution.log_depth)
-        held = find_held(graph, witnessed, options.witnesses_asked)
+    held, why = _held(graph, solution, found.camera.width, options)
+    if held is not None:
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
             notes.append(
-                f"{int(refused.sum())} crossings join bodies of lines that fewer than {options.witnesses_asked} lines "
-                "tie to each other, and are not taken for real: such a join is often a near edge before a far wall"
+                f"{int(refused.sum())} crossings join bodies of lines that {why}, and are not taken for real: such a "
+                "join is often a near edge before a far wall"
             )
         solution = replace(solution, connected=solution.connected & ~refused)
     return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options, held)
+
+
+def _held(
+    graph: LineGraph, solution: Solution, width: int, options: ReconstructOptions
+) -> tuple[Held | None, str]:
+    """What holds the lines of a solution, and in words what holds those that it refuses too little; or nothing."""
+    witnesses = options.witnesses
+    if witnesses == 1 or (witnesses is None and options.is_paper):
+        return None, ""
+    agrees = agreeing(graph, solution.connected, solution.log_depth)
+    if witnesses is not None:
+        return find_held(graph, agrees, witnesses), f"fewer than {witnesses} lines tie to each other"
+    fit = RobustFit(graph)
+    draws = draw(graph, lambda present: fit.depths(present=present), options.solve.seed)
+    held, asked = find_supported(graph, agrees, solution.log_depth, draws, width)
+    return held, f"do not keep their place in {asked:.0%} of the fits with some lines left out"
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
@@ -299,7 +347,9 @@ def _left_out(count: int, why: str, options: ReconstructOptions) -> str:
 
 def _doubts(solution: Solution, parts: list[Int], shift: Float) -> list[str]:
     notes = []
-    if solution.status == "heuristic":
+    if solution.status == "robust fit":
+        notes.append("depths by a robust fit to all crossings, without a search: nothing is proven, the gap is unknown")
+    elif solution.status == "heuristic":
         notes.append(f"the time was over before the exact search began; the gap is {solution.gap:.1%}")
     elif solution.status != "optimal":
         ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"

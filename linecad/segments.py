@@ -46,15 +46,18 @@ def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) ->
     return Segments(segments.ends, sines.argmin(axis=0)).subset(sines.min(axis=0) < np.sin(limit))
 
 
-def group_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
+def group_segments(
+    segments: Segments, camera: Camera, frame: ManhattanFrame, largest_gap: float = GROUP_ALONG
+) -> Segments:
     """Labelled fragments joined into whole segments that pass exactly through their vanishing points.
 
     The longest fragment of a line leads: it gathers the fragments of its axis within GROUP_ACROSS of its image line
-    whose gaps along the line are at most GROUP_ALONG. The joined segment runs through the length-weighted mean.
+    whose gaps along the line are at most `largest_gap`, in px at REFERENCE_WIDTH. The joined segment runs through the
+    length-weighted mean.
     """
     scale = camera.width / REFERENCE_WIDTH
     across = max(GROUP_ACROSS * scale, GROUP_ACROSS_FLOOR)
-    along = max(GROUP_ALONG * scale, GROUP_ALONG_FLOOR)
+    along = max(largest_gap * scale, GROUP_ALONG_FLOOR)
     points = vanishing_points(camera.matrix, frame.rotation)
     ends: list[Float] = []
     axes: list[int] = []

@@ -35,6 +35,7 @@ FLOORS = [
         "linecad.decoding",
         "linecad.disjoint",
         "linecad.weighting",
+        "linecad.odds",
         "linecad.offsets",
         "linecad.outlines",
     ],
@@ -50,6 +51,7 @@ FLOORS = [
         "linecad.faces",
         "linecad.agreement",
     ],
+    ["linecad.support"],  # of hinges
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
     [
