@@ -121,8 +121,8 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(
         "--witnesses", type=_count, metavar="N",
-        help="lines that must tie two bodies for one scale, 1 asks nothing; else lines must keep their depth when others "
-        "are left out (1 with --formulation paper)",
+        help="lines that must tie two bodies for one scale, 1 asks nothing (with paper 1; else lines must keep their "
+        "depth when others are left out)",
     )  # fmt: skip
     _add_loudness(convert)
 
@@ -130,7 +130,8 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
 def _add_objective(command: argparse.ArgumentParser) -> None:
     """What the objective of the program is made of."""
     command.add_argument(
-        "--weights", choices=["ones", "junctions", "fitted", "odds"],
+        "--weights",
+        choices=["ones", "junctions", "fitted", "odds"],
         help="weights of crossings (odds; for the paper's graph junctions)",
     )
     command.add_argument(

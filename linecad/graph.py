@@ -67,8 +67,8 @@ def build_line_graph(
 ) -> LineGraph:
     """The line graph of segments that pass through their vanishing points (paper, section "Line Graph").
 
-    `extension` and `least_length` are in px at REFERENCE_WIDTH; shorter segments are left out. `collinear` adds a second
-    kind of edge that the paper does not have: two segments on one image line may be one line in space.
+    `extension` and `least_length` are in px at REFERENCE_WIDTH; shorter segments are left out. `collinear` adds a
+    second kind of edge that the paper does not have: two segments on one image line may be one line in space.
     """
     scale = camera.width / REFERENCE_WIDTH
     segments = segments.subset(segments.length >= max(least_length * scale, MIN_LENGTH_FLOOR))

@@ -158,7 +158,7 @@ def place(
     if left_out:
         notes.append(_left_out(left_out, "touch too few others in the photo", options))
     solution = _within_groups(graph, solution)
-    held, why = _held(graph, solution, found.camera.width, options)
+    held, firm, why = _held(graph, solution, found.camera.width, options)
     if held is not None:
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
@@ -167,23 +167,26 @@ def place(
                 "join is often a near edge before a far wall"
             )
         solution = replace(solution, connected=solution.connected & ~refused)
-    return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options, held)
+    lifted = lift(graph, solution)
+    return _scene(photo, found.camera, found.frame, graph, solution, lifted, notes, options, held, firm)
 
 
 def _held(
     graph: LineGraph, solution: Solution, width: int, options: ReconstructOptions
-) -> tuple[Held | None, str]:
-    """What holds the lines of a solution, and in words what holds those that it refuses too little; or nothing."""
+) -> tuple[Held | None, Bool, str]:
+    """What holds the lines of a solution, which lines (N,) it holds firmly, and in words what it refuses; or None."""
     witnesses = options.witnesses
     if witnesses == 1 or (witnesses is None and options.is_paper):
-        return None, ""
+        return None, np.ones(len(graph.segments), bool), ""
     agrees = agreeing(graph, solution.connected, solution.log_depth)
     if witnesses is not None:
-        return find_held(graph, agrees, witnesses), f"fewer than {witnesses} lines tie to each other"
+        held = find_held(graph, agrees, witnesses)
+        return held, held.within, f"fewer than {witnesses} lines tie to each other"
     fit = RobustFit(graph)
     draws = draw(graph, lambda present: fit.depths(present=present), options.solve.seed)
-    held, asked = find_supported(graph, agrees, solution.log_depth, draws, width)
-    return held, f"do not keep their place in {asked:.0%} of the fits with some lines left out"
+    supported = find_supported(graph, agrees, solution.log_depth, draws, width)
+    why = f"keep their place in less than {supported.asked:.0%} of the fits with some lines left out"
+    return supported.held, supported.firm, why
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
@@ -242,6 +245,7 @@ def _scene(
     notes: list[str],
     options: ReconstructOptions,
     held: Held | None = None,
+    firm: Bool | None = None,
 ) -> Scene:
     """The scene of the lines that a chosen crossing ties to others, each component with its scale."""
     telling = solution.connected & graph.informative
@@ -250,7 +254,8 @@ def _scene(
     if held is not None and parts:  # the largest body comes first, also where more lines hang together loosely
         largest = max(parts, key=lambda part: int(held.within[part].sum()))
         parts.sort(key=lambda part: part is not largest)
-        hinged |= ~held.within
+    if firm is not None:
+        hinged |= ~firm
     if not parts:
         raise ReconstructionError(
             "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"

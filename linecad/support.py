@@ -22,7 +22,7 @@ from linecad.geometry import REFERENCE_WIDTH
 from linecad.hinges import HANGING, Held
 from linecad.scene import Bool, Float, Int, LineGraph
 
-FITS = 20
+FITS = 30
 LEFT_OUT = 0.3  # of the lines, in each fit
 SAME_DEPTH = 0.015  # log depth; a line that moves less against its body keeps its place
 LEAST_BODY = 5  # lines
@@ -34,8 +34,8 @@ CONTRADICTION = 3.0  # tolerances, and CONTRADICTION times LEAST_TOLERANCE at le
 LEAST_TOLERANCE = 0.01  # log depth
 PRIOR_CORNERS, PRIOR_FAKE = 20.0, 0.1  # corners that are taken as seen, with this share of contradictions
 UNSTABLE = 0.3  # of the mean lack of support, that counts as much as one contradiction
-CALM, DOUBTFUL = 0.12, 0.17  # doubt up to which a photo is trusted, and from which nothing unstable is taken
-LEAST_SUPPORT, MOST_SUPPORT = 0.45, 0.95  # asked in a calm photo and in a doubtful one
+CALM, DOUBTFUL = 0.14, 0.18  # doubt up to which a photo is trusted, and from which nothing unstable is taken
+LEAST_SUPPORT, MOST_SUPPORT = 0.55, 0.95  # asked in a calm photo and in a doubtful one
 
 Refit = Callable[[Bool], Float]  # log depths (N,) by the lines that are present (N,) alone
 
@@ -70,11 +70,20 @@ def draw(graph: LineGraph, refit: Refit, seed: int = 0) -> Draws:
     return Draws(present, depth, group)
 
 
-def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draws, width: int) -> tuple[Held, float]:
-    """Part the lines of a solved graph into bodies that keep together in the draws; and the support that was asked.
+@dataclass(frozen=True, eq=False)
+class Supported:
+    """Bodies of lines that keep together, and by how much."""
 
-    `chosen` (E,) are the crossings that agree with the depths `log_depth` (N,); `width` is the photo's, in px. Groups of
-    up to HANGING lines that fall off a body stay with it: too few to carry a false wall.
+    held: Held
+    firm: Bool  # (N,) lines of bodies with a support of FIRM or more: as sure as the solution
+    asked: float  # the support that every line of a body has
+
+
+def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draws, width: int) -> Supported:
+    """Part the lines of a solved graph into bodies that keep together in the draws.
+
+    `chosen` (E,) are the crossings that agree with the depths `log_depth` (N,); `width` is the photo's, in px. Groups
+    of up to HANGING lines that fall off a body stay with it: too few to carry a false wall.
     """
     count = len(graph.segments)
     edges = graph.edges[chosen & graph.informative]
@@ -98,7 +107,7 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
         firm[kept] = share[kept] >= FIRM
         free &= ~kept
         bodies += 1
-    return Held(_with_hanging(body, bodies, edges), bodies, firm), asked
+    return Supported(Held(_with_hanging(body, bodies, edges), bodies, body >= 0), firm, asked)
 
 
 def support(part: Bool, log_depth: Float, draws: Draws) -> Float:

@@ -1,7 +1,7 @@
 """A robust fit of depths: log s_i - log s_j = c_ij for all crossings at once, of which some are fake.
 
-The crossings' squared residuals go through the function of Geman and McClure, r^2 / (1 + r^2), so that a crossing far off
-its equation costs a constant and pulls no more. Graduated non-convexity finds a good minimum without a start: the
+The residuals of the crossings go through the function of Geman and McClure, r^2 / (1 + r^2), so that a crossing far
+off its equation costs a constant and pulls no more. Graduated non-convexity finds a good minimum without a start: the
 function is first so wide that it is least squares, and narrows step by step (Blake and Zisserman 1987; Yang, Antonante,
 Tzoumas and Carlone 2020). Each step is one sparse linear system of one fixed pattern, so a fit takes tenths of a second
 where the exact search takes minutes. Nothing is proven.
@@ -21,9 +21,9 @@ from solver.depths import end_ratios
 from solver.problem import Progress, SolveOptions
 
 WIDTH = 0.01  # log depth; a crossing this far off pulls no longer, whatever its tolerance: frame and lens are not exact
+SLACK = 0.005  # log depth, within which a crossing agrees with a fit whatever its tolerance
 NARROWING = 3.0  # of the square of the width, from one step to the next
-LAST_STEPS = 4  # at the final width
-FINE_STEPS = 4  # with the tolerances of the crossings themselves
+LAST_STEPS = 4  # at the final width; narrower ones would follow small groups of crossings and measured worse
 ANCHOR = 1e-9  # of the crossings of a line; holds what nothing ties where it is, and the whole
 
 
@@ -67,8 +67,6 @@ class RobustFit:
             widening /= NARROWING
         for _ in range(LAST_STEPS):
             depth = self._narrowed(depth, own, width, 1.0)
-        for _ in range(FINE_STEPS):
-            depth = self._narrowed(depth, own, self.tolerance, 1.0)
         return depth[self.place]
 
     def _narrowed(self, depth: Float, weight: Float, width: Float, widening: float) -> Float:
@@ -126,9 +124,12 @@ def solve_robust(graph: LineGraph, options: SolveOptions, on_progress: Callable[
 
 
 def agreeing_with(graph: LineGraph, depth: Float) -> Bool:
-    """(E,) the crossings that depths (N,) put within their tolerance, and those that say nothing about depth."""
+    """(E,) the crossings that fitted depths (N,) put within their tolerance, and those that say nothing about depth.
+
+    At least SLACK: a fit spreads what is left over, where a search keeps each crossing within its tolerance.
+    """
     i, j = graph.edges.T
-    agrees: Bool = np.abs(depth[i] - depth[j] - graph.log_ratio) <= graph.tolerance
+    agrees: Bool = np.abs(depth[i] - depth[j] - graph.log_ratio) <= np.maximum(graph.tolerance, SLACK)
     return graph.possible & (agrees | ~graph.informative)
 
 
