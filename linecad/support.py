@@ -26,6 +26,8 @@ FITS = 30
 LEFT_OUT = 0.3  # of the lines, in each fit
 SAME_DEPTH = 0.015  # log depth; a line that moves less against its body keeps its place
 LEAST_BODY = 5  # lines
+SEEDS = 60  # lines about which the core of a body is looked for
+LEAST_SEEN = 3  # draws in which two lines of a core are tied and in place
 MANY_BODIES = 40  # bodies that are sought; what is left after so many is crumbs
 FIRM = 0.95  # support from which a line is as sure as the solution
 
@@ -91,41 +93,64 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
     largest = whole == np.bincount(whole, minlength=1).argmax() if count else np.zeros(0, bool)
     asked = support_asked(doubt(graph, largest, log_depth, support(largest, log_depth, draws), width))
     body = np.full(count, -1)
-    firm = np.zeros(count, bool)
-    free = np.ones(count, bool)
+    firm, free, loose = np.zeros(count, bool), np.ones(count, bool), np.zeros(count, bool)
     bodies = 0
     while bodies < MANY_BODIES:
         part = _largest_part(count, edges, free)
         if part.sum() < LEAST_BODY:
             break
-        share = support(part, log_depth, draws)
+        share = support(part, log_depth, draws, _core(part, log_depth, draws, asked))
         kept = _largest_part(count, edges, part & (share >= asked))
         if kept.sum() < LEAST_BODY:
             free &= ~part
+            loose |= part
             continue
         body[kept] = bodies
         firm[kept] = share[kept] >= FIRM
         free &= ~kept
         bodies += 1
+    edges = edges[~loose[edges].any(axis=1)]
     return Supported(Held(_with_hanging(body, bodies, edges), bodies, body >= 0), firm, asked)
 
 
-def support(part: Bool, log_depth: Float, draws: Draws) -> Float:
+def support(part: Bool, log_depth: Float, draws: Draws, core: Bool | None = None) -> Float:
     """(N,) share of the draws that leave a line of `part` (N,) where `log_depth` has it, relative to the others.
 
-    Draws in which the line is absent, or not tied to most of the part, say nothing; without any the share is 1.
+    Relative to the lines of `core` (N,) if it is given. Draws in which the line is absent, or not tied to most of
+    these, say nothing; without any the share is 1.
     """
+    core = part if core is None else core
     kept, moved = np.zeros(len(part)), np.zeros(len(part))
     for present, depth, group in zip(draws.present, draws.depth, draws.group, strict=True):
-        seen = part & present
+        seen = core & present
         if not seen.any():
             continue
-        tied = seen & (group == np.bincount(group[seen]).argmax())
+        tied = part & present & (group == np.bincount(group[seen]).argmax())
         shift = depth - log_depth
-        same = np.abs(shift - _densest(shift[tied])) < SAME_DEPTH
+        same = np.abs(shift - _densest(shift[tied & core])) < SAME_DEPTH
         kept += tied & same
         moved += tied & ~same
     return np.asarray(np.where(kept + moved > 0, kept / np.maximum(kept + moved, 1), 1.0))
+
+
+def _core(part: Bool, log_depth: Float, draws: Draws, asked: float) -> Bool:
+    """Mask (N,) of the most lines of `part` (N,) that keep their place relative to one line of it.
+
+    In a photo of two bodies of one size most lines are now of the one, now of the other: the majority is no reference.
+    """
+    lines = np.flatnonzero(part)
+    seeds = lines[np.linspace(0, len(lines) - 1, min(SEEDS, len(lines))).astype(np.int64)]
+    kept, moved = np.zeros((len(seeds), len(lines))), np.zeros((len(seeds), len(lines)))
+    for present, depth, group in zip(draws.present, draws.depth, draws.group, strict=True):
+        tied = (group[seeds, None] == group[lines]) & present[seeds, None] & present[lines]
+        shift = depth - log_depth
+        same = np.abs(shift[seeds, None] - shift[lines]) < SAME_DEPTH
+        kept += tied & same
+        moved += tied & ~same
+    holds = (kept >= LEAST_SEEN) & (kept >= asked * (kept + moved))
+    core = np.zeros(len(part), bool)
+    core[lines[holds[holds.sum(axis=1).argmax()]]] = True
+    return core
 
 
 def doubt(graph: LineGraph, part: Bool, log_depth: Float, share: Float, width: int) -> float:
