@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -30,7 +31,7 @@ from linecad.scene import (
     Text,
 )  # fmt: skip
 from linecad.segments import GROUP_ALONG, find_segments, group_segments, label_segments
-from linecad.support import draw, find_supported
+from linecad.support import FITS_FOR_DOUBT, MOST_DOUBT, SUPPORT, SUPPORT_IN_DOUBT, doubt, draw, find_supported
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
 from solver.robust import RobustFit
@@ -59,6 +60,8 @@ class Reach:
 SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH)  # as in the paper
 # 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
 LONG_REACH = Reach(75.0, 125.0, 18.75)
+MIDDLE_REACH = Reach(37.5, 62.5, 18.75)  # for photos in which little can be believed
+WITNESSES_IN_DOUBT = 2
 
 
 @dataclass(frozen=True)
@@ -67,7 +70,7 @@ class ReconstructOptions:
 
     # px at 3840 px width by which segments are extended to find crossings; None: that of the reach.
     extension: float | None = None
-    reach: Reach | None = None  # None: long with formulation gain, short with the paper's
+    reach: Reach | None = None  # None: long with formulation gain, middle in doubt; short with the paper's
     weights: Weights | None = None  # None: odds with formulation gain, junctions with the paper's
     collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
@@ -81,10 +84,11 @@ class ReconstructOptions:
         """Whether what is not said is as in the paper."""
         return self.solve.formulation == "paper"
 
-    @property
-    def reach_used(self) -> Reach:
+    def reach_for(self, found: "FoundLines") -> Reach:
         """`reach` and `extension` in use."""
-        reach = self.reach if self.reach is not None else SHORT_REACH if self.is_paper else LONG_REACH
+        reach = self.reach
+        if reach is None:
+            reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if found.is_doubtful else LONG_REACH
         return reach if self.extension is None else replace(reach, extension=self.extension)
 
     @property
@@ -101,6 +105,26 @@ class FoundLines:
     frame: ManhattanFrame
     segments: Segments  # labelled fragments, not grouped yet
     notes: tuple[str, ...]  # doubts so far
+
+    def graph(self, reach: Reach, weights: Weights, collinear: bool) -> LineGraph:
+        """The line graph of these lines."""
+        grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
+        return build_line_graph(
+            grouped, self.camera, self.frame, reach.extension, weights, collinear, reach.least_length
+        )
+
+    @cached_property
+    def widest_graph(self) -> LineGraph:
+        """The line graph at long reach."""
+        return self.graph(LONG_REACH, "odds", True)
+
+    @cached_property
+    def is_doubtful(self) -> bool:
+        """Whether agreement is worth little in this photo (linecad.support), as a fit at long reach tells."""
+        graph = self.widest_graph
+        fit = RobustFit(graph)
+        draws = draw(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_DOUBT)
+        return doubt(graph, fit.depths(), draws, self.camera.width) > MOST_DOUBT
 
 
 def reconstruct(
@@ -132,16 +156,9 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
     """The line graph of all found lines, and the part of it that is solved; ReconstructionError when that is none."""
-    reach = options.reach_used
-    whole = build_line_graph(
-        group_segments(found.segments, found.camera, found.frame, reach.largest_gap),
-        found.camera,
-        found.frame,
-        reach.extension,
-        options.weights_used,
-        options.collinear,
-        reach.least_length,
-    )
+    reach, weights = options.reach_for(found), options.weights_used
+    is_widest = reach == LONG_REACH and weights == "odds" and options.collinear
+    whole = found.widest_graph if is_widest else found.graph(reach, weights, options.collinear)
     return whole, _kept(whole, options)
 
 
@@ -158,7 +175,7 @@ def place(
     if left_out:
         notes.append(_left_out(left_out, "touch too few others in the photo", options))
     solution = _within_groups(graph, solution)
-    held, firm, why = _held(graph, solution, found.camera.width, options)
+    held, firm, why = _held(found, graph, solution, options)
     if held is not None:
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
@@ -172,7 +189,7 @@ def place(
 
 
 def _held(
-    graph: LineGraph, solution: Solution, width: int, options: ReconstructOptions
+    found: FoundLines, graph: LineGraph, solution: Solution, options: ReconstructOptions
 ) -> tuple[Held | None, Bool, str]:
     """What holds the lines of a solution, which lines (N,) it holds firmly, and in words what it refuses; or None."""
     witnesses = options.witnesses
@@ -184,9 +201,16 @@ def _held(
         return held, held.within, f"fewer than {witnesses} lines tie to each other"
     fit = RobustFit(graph)
     draws = draw(graph, lambda present: fit.depths(present=present), options.solve.seed)
-    supported = find_supported(graph, agrees, solution.log_depth, draws, width)
-    why = f"keep their place in less than {supported.asked:.0%} of the fits with some lines left out"
-    return supported.held, supported.firm, why
+    supported = find_supported(graph, agrees, solution.log_depth, draws, found.is_doubtful)
+    if not found.is_doubtful:
+        return supported.held, supported.firm, _unstable(SUPPORT)
+    held = find_held(graph, agrees & supported.held.joins(graph), WITNESSES_IN_DOUBT)
+    why = f"{_unstable(SUPPORT_IN_DOUBT)} or that fewer than {WITNESSES_IN_DOUBT} lines tie to each other"
+    return held, held.within & supported.firm, why
+
+
+def _unstable(asked: float) -> str:
+    return f"keep their place in less than {asked:.0%} of the fits with some lines left out"
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:

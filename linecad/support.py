@@ -8,7 +8,8 @@ depth relative to the body.
 
 How much support is asked depends on the photo, since agreement is worth less where much is fake. Two figures tell: how
 many wide corners (both lines end well before they would meet) contradict the depths, and how unstable the lines are on
-the whole. Facades seen alone have few such contradictions, streets of several buildings many.
+the whole. Their sum is the *doubt* about the photo: small for one building, whatever its shape, large for streets of
+several buildings that hide each other.
 """
 
 from collections.abc import Callable
@@ -23,6 +24,7 @@ from linecad.hinges import HANGING, Held
 from linecad.scene import Bool, Float, Int, LineGraph
 
 FITS = 30
+FITS_FOR_DOUBT = 9
 LEFT_OUT = 0.3  # of the lines, in each fit
 SAME_DEPTH = 0.015  # log depth; a line that moves less against its body keeps its place
 LEAST_BODY = 5  # lines
@@ -36,8 +38,9 @@ CONTRADICTION = 3.0  # tolerances, and CONTRADICTION times LEAST_TOLERANCE at le
 LEAST_TOLERANCE = 0.01  # log depth
 PRIOR_CORNERS, PRIOR_FAKE = 20.0, 0.1  # corners that are taken as seen, with this share of contradictions
 UNSTABLE = 0.3  # of the mean lack of support, that counts as much as one contradiction
-CALM, DOUBTFUL = 0.14, 0.18  # doubt up to which a photo is trusted, and from which nothing unstable is taken
-LEAST_SUPPORT, MOST_SUPPORT = 0.55, 0.95  # asked in a calm photo and in a doubtful one
+MOST_DOUBT = 0.16  # of a calm photo
+SUPPORT = 0.55  # asked in a calm photo
+SUPPORT_IN_DOUBT = 0.95  # asked in a doubtful one
 
 Refit = Callable[[Bool], Float]  # log depths (N,) by the lines that are present (N,) alone
 
@@ -51,15 +54,15 @@ class Draws:
     group: Int  # (F, N) lines of one number are tied by crossings that agree in this fit
 
 
-def draw(graph: LineGraph, refit: Refit, seed: int = 0) -> Draws:
-    """FITS fits, each without LEFT_OUT of the lines; over three fits running no line is left out twice."""
+def draw(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Draws:
+    """So many fits, each without LEFT_OUT of the lines; in each three of them no line is left out twice."""
     count = len(graph.segments)
     random = np.random.default_rng(seed)
     first, second = graph.edges.T
-    present = np.ones((FITS, count), bool)
-    depth, group = np.zeros((FITS, count)), np.zeros((FITS, count), np.int64)
+    present = np.ones((fits, count), bool)
+    depth, group = np.zeros((fits, count)), np.zeros((fits, count), np.int64)
     in_turn = int(1 / LEFT_OUT)
-    for number in range(FITS):
+    for number in range(fits):
         if number % in_turn == 0:
             rank = random.permutation(count) / max(1, count)
         out = LEFT_OUT * (number % in_turn)
@@ -78,20 +81,18 @@ class Supported:
 
     held: Held
     firm: Bool  # (N,) lines of bodies with a support of FIRM or more: as sure as the solution
-    asked: float  # the support that every line of a body has
 
 
-def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draws, width: int) -> Supported:
+def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draws, in_doubt: bool) -> Supported:
     """Part the lines of a solved graph into bodies that keep together in the draws.
 
-    `chosen` (E,) are the crossings that agree with the depths `log_depth` (N,); `width` is the photo's, in px. Groups
-    of up to HANGING lines that fall off a body stay with it: too few to carry a false wall.
+    `chosen` (E,) are the crossings that agree with the depths `log_depth` (N,). In doubt more support is asked, and
+    relative to the majority of what hangs together. Groups of up to HANGING lines that fall off a body stay with it:
+    too few to carry a false wall.
     """
     count = len(graph.segments)
     edges = graph.edges[chosen & graph.informative]
-    whole = _groups(count, edges)
-    largest = whole == np.bincount(whole, minlength=1).argmax() if count else np.zeros(0, bool)
-    asked = support_asked(doubt(graph, largest, log_depth, support(largest, log_depth, draws), width))
+    asked = SUPPORT_IN_DOUBT if in_doubt else SUPPORT
     body = np.full(count, -1)
     firm, free, loose = np.zeros(count, bool), np.ones(count, bool), np.zeros(count, bool)
     bodies = 0
@@ -99,7 +100,8 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
         part = _largest_part(count, edges, free)
         if part.sum() < LEAST_BODY:
             break
-        share = support(part, log_depth, draws, _core(part, log_depth, draws, asked))
+        core = part if in_doubt else _core(part, log_depth, draws, asked)
+        share = support(part, log_depth, draws, core)
         kept = _largest_part(count, edges, part & (share >= asked))
         if kept.sum() < LEAST_BODY:
             free &= ~part
@@ -110,7 +112,7 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
         free &= ~kept
         bodies += 1
     edges = edges[~loose[edges].any(axis=1)]
-    return Supported(Held(_with_hanging(body, bodies, edges), bodies, body >= 0), firm, asked)
+    return Supported(Held(_with_hanging(body, bodies, edges), bodies, body >= 0), firm)
 
 
 def support(part: Bool, log_depth: Float, draws: Draws, core: Bool | None = None) -> Float:
@@ -153,20 +155,18 @@ def _core(part: Bool, log_depth: Float, draws: Draws, asked: float) -> Bool:
     return core
 
 
-def doubt(graph: LineGraph, part: Bool, log_depth: Float, share: Float, width: int) -> float:
-    """How little agreement is worth in a photo, from its largest part (N,) and the support (N,) of its lines."""
+def doubt(graph: LineGraph, log_depth: Float, draws: Draws, width: int) -> float:
+    """How little agreement is worth in a photo `width` px wide, from its largest part as fitted depths (N,) tie it."""
     first, second = graph.edges.T
+    off = np.abs(log_depth[first] - log_depth[second] - graph.log_ratio)
+    agrees = graph.informative & (off <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
+    part = _largest_part(len(graph.segments), graph.edges[agrees], np.ones(len(graph.segments), bool))
     inside = graph.informative & part[first] & part[second]
     wide = inside & (graph.kind == "L") & (graph.gap.max(axis=1) * REFERENCE_WIDTH / width > WIDE_CORNER)
-    off = np.abs(log_depth[first] - log_depth[second] - graph.log_ratio)
     against = off > CONTRADICTION * np.maximum(graph.tolerance, LEAST_TOLERANCE)
     fake = (float((wide & against).sum()) + PRIOR_CORNERS * PRIOR_FAKE) / (float(wide.sum()) + PRIOR_CORNERS)
-    return fake + UNSTABLE * float(1 - share[part].mean()) if part.any() else fake
-
-
-def support_asked(doubt: float) -> float:
-    """The support that a line needs in a photo of this doubt."""
-    return float(np.interp(doubt, [CALM, DOUBTFUL], [LEAST_SUPPORT, MOST_SUPPORT]))
+    lack = float(1 - support(part, log_depth, draws)[part].mean()) if part.any() else 0.0
+    return fake + UNSTABLE * lack
 
 
 def _densest(values: Float) -> float:
