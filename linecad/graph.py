@@ -64,11 +64,13 @@ def build_line_graph(
     weights: Weights = "junctions",
     collinear: bool = False,
     least_length: float = MIN_LENGTH,
+    least_tolerance: float = MIN_TOLERANCE,
 ) -> LineGraph:
     """The line graph of segments that pass through their vanishing points (paper, section "Line Graph").
 
     `extension` and `least_length` are in px at REFERENCE_WIDTH; shorter segments are left out. `collinear` adds a
     second kind of edge that the paper does not have: two segments on one image line may be one line in space.
+    `least_tolerance` is the least tolerance of an edge, relative depth.
     """
     scale = camera.width / REFERENCE_WIDTH
     segments = segments.subset(segments.length >= max(least_length * scale, MIN_LENGTH_FLOOR))
@@ -95,7 +97,7 @@ def build_line_graph(
     noise = np.abs(np.stack([spread[i, coordinate], spread[j, coordinate]], axis=1))
     possible = component.prod(axis=1) > 0
     size = np.maximum(np.abs(component), np.finfo(float).tiny)
-    tolerance = np.maximum(NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T), MIN_TOLERANCE)
+    tolerance = np.maximum(NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T), least_tolerance)
     log_ratio = np.where(possible, np.log(size[:, 1] / size[:, 0]), 0.0)
     graph = LineGraph(
         segments=segments,

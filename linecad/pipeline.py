@@ -10,7 +10,16 @@ from linecad.agreement import disagreements
 from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
-from linecad.graph import EXTENSION, MIN_LENGTH, Weights, build_line_graph, components, hinged_nodes, spanning_tree
+from linecad.graph import (
+    EXTENSION,
+    MIN_LENGTH,
+    MIN_TOLERANCE,
+    Weights,
+    build_line_graph,
+    components,
+    hinged_nodes,
+    spanning_tree,
+)
 from linecad.hinges import Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
 from linecad.photo import Photo
@@ -55,12 +64,13 @@ class Reach:
     extension: float  # by which segments are extended to find crossings
     largest_gap: float  # between fragments of one segment
     least_length: float  # of a line
+    least_tolerance: float  # of a crossing, relative depth: errors of frame and lens add up along the way
 
 
-SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH)  # as in the paper
+SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH, MIN_TOLERANCE)  # as in the paper
 # 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
-LONG_REACH = Reach(75.0, 125.0, 18.75)
-MIDDLE_REACH = Reach(37.5, 62.5, 18.75)  # for photos in which little can be believed
+LONG_REACH = Reach(75.0, 125.0, 18.75, 0.005)
+MIDDLE_REACH = Reach(37.5, 62.5, 18.75, MIN_TOLERANCE)  # for photos in which little can be believed
 WITNESSES_IN_DOUBT = 2
 
 
@@ -110,8 +120,9 @@ class FoundLines:
         """The line graph of these lines."""
         grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
         return build_line_graph(
-            grouped, self.camera, self.frame, reach.extension, weights, collinear, reach.least_length
-        )
+            grouped, self.camera, self.frame, reach.extension, weights, collinear,
+            reach.least_length, reach.least_tolerance,
+        )  # fmt: skip
 
     @cached_property
     def widest_graph(self) -> LineGraph:

@@ -43,14 +43,12 @@ def test_a_wider_gap_convinces_less(one, other):
 
 
 def test_a_longer_stem_convinces_more():
-    (_, [short]), (_, [long]) = (
-        odds_of(level(400, 800, 500), upright(540, 540 + length, 600)) for length in (60, 600)
-    )
+    (_, [short]), (_, [long]) = (odds_of(level(400, 800, 500), upright(540, 540 + length, 600)) for length in (60, 600))
     assert long > short
 
 
 def test_two_level_lines_convince_less():
-    away = np.array([1920.0, 1080]) + [[-600.0, -200], [-300, -100]]  # to the vanishing point in the photo's middle
+    away = np.array([[1320.0, 880], [1620, 980]])  # to the vanishing point in the photo's middle
     _, [weight] = odds_of(level(1000, 1700, 930), (away.tolist(), 1))
     assert weight == pytest.approx(AT_ONCE - BOTH_HORIZONTAL)
 

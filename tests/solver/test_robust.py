@@ -80,7 +80,7 @@ def test_an_edge_without_weight_has_no_say():
 
 
 def test_absent_lines_have_no_say():
-    graph, depth, real = random_graph(30, 160, 0, 1)
+    graph, depth, _ = random_graph(30, 160, 0, 1)
     liar = 7
     lies = (graph.edges == liar).any(axis=1)
     off = np.where(lies, 0.3 * (graph.edges[:, 0] == liar) - 0.2, 0.0)
@@ -91,7 +91,7 @@ def test_absent_lines_have_no_say():
 
 
 def test_groups_that_nothing_ties_are_both_fitted():
-    graph, depth, _ = random_graph(20, 60, 0, 5)
+    graph, _, _ = random_graph(20, 60, 0, 5)
     inside = (graph.edges < 10).all(axis=1) | (graph.edges >= 10).all(axis=1)
     weight = inside.astype(float)
     found = RobustFit(graph).depths(weight)
