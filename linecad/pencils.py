@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from linecad.geometry import vanishing_points
 from linecad.scene import Bool, Camera, Float, Int, ManhattanFrame, Segments
 
-WIDEST = 1600  # px; wider photos are reduced to it: what cannot be seen there has a sharp fragment or is texture
+SMALL_WIDTH = 640.0  # px; in photos of that width or less a line needs LEAST_EVIDENCE
+WIDE = 1280.0  # px; towards that width the evidence asked for grows without limit: fragments are long enough there
 FAR = 1e8  # px; a vanishing point further away is put there, which moves no line of a photo by as much as 0.1 px
 NEAR = 5.0  # px; nearer to a vanishing point its lines cannot be told apart
 BLUR = 0.7  # px, standard deviation, before the derivative
@@ -25,8 +26,9 @@ GRADIENT_CUT = 20.0  # grey levels per px; a stronger gradient counts as that mu
 LEAST_NOISE = 2.0  # grey levels per px
 STEP = 1.0  # noises, the step across a line that is on
 LARGEST_STEP = 3.0  # noises; a stronger one is no better witness
-START = 15.0  # nats that switching on costs; two lines on one row are joined over a gap that costs less
-LEAST_EVIDENCE = 24.0  # nats for a line against nothing
+START = 15.0  # nats that switching on costs, when a whole line is looked for
+PIECE_START = 5.0  # nats, when the pieces of a line are: a gap of 10 px without a step parts it
+LEAST_EVIDENCE = 24.0  # nats for a line against nothing, in small photos (least_evidence)
 ROWS = 1024  # rows sampled at a time: bounds the memory
 
 Float32 = NDArray[np.float32]
@@ -48,14 +50,25 @@ class _Pencil:
         return directions
 
 
+def least_evidence(width: int) -> float:
+    """Nats that speak for a line against nothing, for a photo of that width, px: 24, 40 at 800, 72 at 960, inf from 1280 on.
+
+    Continuous in the width. In wide photos the fragments carry the graph, and what is found here beside them brought
+    more false joins than true ones (CONTRIBUTING, "lines along vanishing points").
+    """
+    room = WIDE / width - 1
+    return LEAST_EVIDENCE / min(room * SMALL_WIDTH / (WIDE - SMALL_WIDTH), 1.0) if room > 0 else np.inf
+
+
 def find_pencil_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame) -> Segments:
-    """Segments of a grey photo (H, W) on lines through its vanishing points, labelled by their axis."""
-    scale = min(1.0, WIDEST / grey.shape[1])
-    if scale < 1:
-        size = (round(grey.shape[1] * scale), round(grey.shape[0] * scale))
-        grey = np.asarray(cv2.resize(grey, size, interpolation=cv2.INTER_AREA), np.uint8)
-    to_small = np.array([[scale, 0, (scale - 1) / 2], [0, scale, (scale - 1) / 2], [0, 0, 1]])  # centres of px at 0
-    points = vanishing_points(to_small @ camera.matrix, frame.rotation)
+    """Segments of a grey photo (H, W) on lines through its vanishing points, labelled by their axis.
+
+    None in photos of WIDE px or more.
+    """
+    least = least_evidence(grey.shape[1])
+    if np.isinf(least):
+        return Segments(np.zeros((0, 2, 2)), np.zeros(0, np.int64))
+    points = vanishing_points(camera.matrix, frame.rotation)
     smooth = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), BLUR)
     gradient = (cv2.Scharr(smooth, cv2.CV_32F, 1, 0) / 32, cv2.Scharr(smooth, cv2.CV_32F, 0, 1) / 32)
     size = cv2.min(cv2.magnitude(*gradient), GRADIENT_CUT)
@@ -64,8 +77,9 @@ def find_pencil_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanF
     for axis in range(3):
         pencil = _pencil_of(points[axis], grey.shape[1], grey.shape[0])
         for first in range(0, len(pencil.angle), ROWS):
-            found = _lines_of_rows(pencil, np.arange(first, min(first + ROWS, len(pencil.angle))), gradient, noise)
-            ends.append((found - (scale - 1) / 2) / scale)
+            rows = np.arange(first, min(first + ROWS, len(pencil.angle)))
+            found = _lines_of_rows(pencil, rows, gradient, noise, least)
+            ends.append(found)
             axes.append(np.full(len(found), axis))
     return Segments(np.concatenate(ends), np.concatenate(axes))
 
@@ -90,7 +104,9 @@ def _pencil_of(vanishing: Float, width: int, height: int) -> _Pencil:
     return _Pencil(point, towards, np.linspace(low, high, rows), np.arange(max(nearest, NEAR), furthest))
 
 
-def _lines_of_rows(pencil: _Pencil, rows: Int, gradient: tuple[Float32, Float32], noise: Float32) -> Float:
+def _lines_of_rows(
+    pencil: _Pencil, rows: Int, gradient: tuple[Float32, Float32], noise: Float32, least: float
+) -> Float:
     """Segments (M, 2, 2) on some neighbouring rows of a pencil."""
     margin = 1  # a row on either side, with which steps are compared
     first, last = max(rows[0] - margin, 0), min(rows[-1] + margin, len(pencil.angle) - 1)
@@ -103,10 +119,10 @@ def _lines_of_rows(pencil: _Pencil, rows: Int, gradient: tuple[Float32, Float32]
     ends = [np.zeros((0, 2, 2))]
     for sign in (1, -1):  # from dark to bright and back: one line keeps its sign
         evidence = np.where(inside, STEP * sign * witness - STEP**2 / 2, -START).astype(np.float32)[own]
-        row, start, end = _runs(evidence)
+        row, start, end = _runs(evidence, START)
         total = np.concatenate([np.zeros((len(evidence), 1)), np.cumsum(evidence, axis=1, dtype=np.float64)], axis=1)
-        enough = total[row, end + 1] - total[row, start] >= LEAST_EVIDENCE
-        row, start, end = row[enough], start[enough], end[enough]
+        enough = total[row, end + 1] - total[row, start] >= least
+        row, start, end = _pieces(evidence, row[enough], start[enough], end[enough])
         angle = pencil.angle[rows[row]] + _between_rows(pencil, step, row + own.start, start, end)
         away = pencil.directions(angle)
         ends.append(pencil.vanishing + pencil.radius[np.stack([start, end], axis=1)][..., None] * away[:, None])
@@ -130,17 +146,29 @@ def _sample(
     return step, at_place, inside
 
 
-def _runs(evidence: Float32) -> tuple[Int, Int, Int]:
+def _pieces(evidence: Float32, row: Int, start: Int, end: Int) -> tuple[Int, Int, Int]:
+    """The stretches of lines along which their edge is seen: longer gaps are no part of a line (linecad.graph)."""
+    rows, which = np.unique(row, return_inverse=True)
+    on_line = np.zeros((len(rows), evidence.shape[1] + 1), np.int8)
+    np.add.at(on_line, (which, start), 1)
+    np.add.at(on_line, (which, end + 1), -1)
+    within = np.cumsum(on_line[:, :-1], axis=1) > 0
+    piece, start, end = _runs(np.where(within, evidence[rows], -PIECE_START).astype(np.float32), PIECE_START)
+    return rows[piece], start, end
+
+
+def _runs(evidence: Float32, cost: float) -> tuple[Int, Int, Int]:
     """Row, first and last column of each stretch that is on in the likeliest course of each row (N, S).
 
-    Viterbi's recursion over the states off and on: being on earns the evidence of a place, switching on costs START.
+    Viterbi's recursion over the states off and on: being on earns the evidence of a place, nats, switching on costs
+    `cost`.
     """
     rows, columns = evidence.shape
     by_column = np.ascontiguousarray(evidence.T)
     off, on = np.zeros(rows, np.float32), np.full(rows, -np.inf, np.float32)
     switched_on, switched_off = np.zeros((columns, rows), bool), np.zeros((columns, rows), bool)
     for column in range(columns):
-        starting = off - np.float32(START)
+        starting = off - np.float32(cost)
         switched_off[column] = on > off
         switched_on[column] = starting > on
         off, on = np.maximum(off, on), np.maximum(starting, on) + by_column[column]

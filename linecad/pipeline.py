@@ -12,6 +12,7 @@ from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
 from linecad.hinges import WITNESSES, Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
+from linecad.pencils import find_pencil_lines
 from linecad.photo import Photo
 from linecad.planes import find_planes
 from linecad.scene import (
@@ -99,7 +100,9 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
-    segments = group_segments(label_segments(raw, camera, frame), camera, frame)
+    on_stage("following lines along their vanishing points")
+    pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
+    segments = group_segments(pieces, camera, frame)
     return FoundLines(camera, frame, segments, tuple(notes))
 
 

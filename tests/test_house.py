@@ -42,6 +42,7 @@ FLOORS = [
     [
         "linecad.photo",
         "linecad.segments",
+        "linecad.pencils",
         "linecad.vanishing",
         "linecad.graph",
         "linecad.lifting",

@@ -47,7 +47,9 @@ def measure(case: Case, limit: float) -> np.ndarray:
             stages.append(Segments(scene.lines.segment, scene.lines.axis))
     except LinecadError as error:
         print(f"{case.name}: {error}")
-    rows += [(len(part), covered_length(marked.ends, marked.axis, part.ends, names[part.axis]), length) for part in stages]
+    rows += [
+        (len(part), covered_length(marked.ends, marked.axis, part.ends, names[part.axis]), length) for part in stages
+    ]
     return np.array(rows + [(0, 0.0, length)] * (len(STAGES) - len(rows)))
 
 
