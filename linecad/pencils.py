@@ -19,6 +19,7 @@ SMALL_WIDTH = 640.0  # px; in photos of that width or less a line needs LEAST_EV
 WIDE = 1280.0  # px; towards that width the evidence asked for grows without limit: fragments are long enough there
 FAR = 1e8  # px; a vanishing point further away is put there, which moves no line of a photo by as much as 0.1 px
 NEAR = 5.0  # px; nearer to a vanishing point its lines cannot be told apart
+SCHARR_UNIT = 32.0  # what Scharr's filter gives for one grey level per px
 BLUR = 0.7  # px, standard deviation, before the derivative
 ALONG = 5  # px along a row over which a step must be the largest of its neighbours across
 SURROUNDINGS = 31  # px, side of the square whose mean gradient is the noise of a place
@@ -26,8 +27,7 @@ GRADIENT_CUT = 20.0  # grey levels per px; a stronger gradient counts as that mu
 LEAST_NOISE = 2.0  # grey levels per px
 STEP = 1.0  # noises, the step across a line that is on
 LARGEST_STEP = 3.0  # noises; a stronger one is no better witness
-START = 15.0  # nats that switching on costs, when a whole line is looked for
-PIECE_START = 5.0  # nats, when the pieces of a line are: a gap of 10 px without a step parts it
+START = 15.0  # nats that switching on costs: a gap of 30 px without any step parts a line
 LEAST_EVIDENCE = 24.0  # nats for a line against nothing, in small photos (least_evidence)
 ROWS = 1024  # rows sampled at a time: bounds the memory
 
@@ -51,7 +51,7 @@ class _Pencil:
 
 
 def least_evidence(width: int) -> float:
-    """Nats that speak for a line against nothing, for a photo of that width, px: 24, 40 at 800, 72 at 960, inf from 1280 on.
+    """Nats asked of a line in a photo of that width, px: 24 up to 640, 40 at 800, 72 at 960, infinite from 1280 on.
 
     Continuous in the width. In wide photos the fragments carry the graph, and what is found here beside them brought
     more false joins than true ones (CONTRIBUTING, "lines along vanishing points").
@@ -69,10 +69,10 @@ def find_pencil_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanF
     if np.isinf(least):
         return Segments(np.zeros((0, 2, 2)), np.zeros(0, np.int64))
     points = vanishing_points(camera.matrix, frame.rotation)
-    smooth = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), BLUR)
-    gradient = (cv2.Scharr(smooth, cv2.CV_32F, 1, 0) / 32, cv2.Scharr(smooth, cv2.CV_32F, 0, 1) / 32)
-    size = cv2.min(cv2.magnitude(*gradient), GRADIENT_CUT)
-    noise = np.maximum(cv2.boxFilter(size, -1, (SURROUNDINGS, SURROUNDINGS)), LEAST_NOISE)
+    smooth = np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), BLUR), np.float32)
+    gradient = _derivative(smooth, 1, 0), _derivative(smooth, 0, 1)
+    size = np.minimum(np.hypot(*gradient), np.float32(GRADIENT_CUT))
+    noise = np.maximum(cv2.boxFilter(size, -1, (SURROUNDINGS, SURROUNDINGS)), np.float32(LEAST_NOISE))
     ends, axes = [np.zeros((0, 2, 2))], [np.zeros(0, np.int64)]
     for axis in range(3):
         pencil = _pencil_of(points[axis], grey.shape[1], grey.shape[0])
@@ -82,6 +82,12 @@ def find_pencil_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanF
             ends.append(found)
             axes.append(np.full(len(found), axis))
     return Segments(np.concatenate(ends), np.concatenate(axes))
+
+
+def _derivative(smooth: Float32, along_x: int, along_y: int) -> Float32:
+    """Grey levels per px along one side of the photo."""
+    scharr = cv2.Scharr(smooth, cv2.CV_32F, along_x, along_y)
+    return np.asarray(scharr / SCHARR_UNIT, np.float32)
 
 
 def _pencil_of(vanishing: Float, width: int, height: int) -> _Pencil:
@@ -119,10 +125,10 @@ def _lines_of_rows(
     ends = [np.zeros((0, 2, 2))]
     for sign in (1, -1):  # from dark to bright and back: one line keeps its sign
         evidence = np.where(inside, STEP * sign * witness - STEP**2 / 2, -START).astype(np.float32)[own]
-        row, start, end = _runs(evidence, START)
+        row, start, end = _runs(evidence)
         total = np.concatenate([np.zeros((len(evidence), 1)), np.cumsum(evidence, axis=1, dtype=np.float64)], axis=1)
         enough = total[row, end + 1] - total[row, start] >= least
-        row, start, end = _pieces(evidence, row[enough], start[enough], end[enough])
+        row, start, end = row[enough], start[enough], end[enough]
         angle = pencil.angle[rows[row]] + _between_rows(pencil, step, row + own.start, start, end)
         away = pencil.directions(angle)
         ends.append(pencil.vanishing + pencil.radius[np.stack([start, end], axis=1)][..., None] * away[:, None])
@@ -146,29 +152,17 @@ def _sample(
     return step, at_place, inside
 
 
-def _pieces(evidence: Float32, row: Int, start: Int, end: Int) -> tuple[Int, Int, Int]:
-    """The stretches of lines along which their edge is seen: longer gaps are no part of a line (linecad.graph)."""
-    rows, which = np.unique(row, return_inverse=True)
-    on_line = np.zeros((len(rows), evidence.shape[1] + 1), np.int8)
-    np.add.at(on_line, (which, start), 1)
-    np.add.at(on_line, (which, end + 1), -1)
-    within = np.cumsum(on_line[:, :-1], axis=1) > 0
-    piece, start, end = _runs(np.where(within, evidence[rows], -PIECE_START).astype(np.float32), PIECE_START)
-    return rows[piece], start, end
-
-
-def _runs(evidence: Float32, cost: float) -> tuple[Int, Int, Int]:
+def _runs(evidence: Float32) -> tuple[Int, Int, Int]:
     """Row, first and last column of each stretch that is on in the likeliest course of each row (N, S).
 
-    Viterbi's recursion over the states off and on: being on earns the evidence of a place, nats, switching on costs
-    `cost`.
+    Viterbi's recursion over the states off and on: being on earns the evidence of a place, switching on costs START.
     """
     rows, columns = evidence.shape
     by_column = np.ascontiguousarray(evidence.T)
     off, on = np.zeros(rows, np.float32), np.full(rows, -np.inf, np.float32)
     switched_on, switched_off = np.zeros((columns, rows), bool), np.zeros((columns, rows), bool)
     for column in range(columns):
-        starting = off - np.float32(cost)
+        starting = off - np.float32(START)
         switched_off[column] = on > off
         switched_on[column] = starting > on
         off, on = np.maximum(off, on), np.maximum(starting, on) + by_column[column]

@@ -119,7 +119,7 @@ def test_the_evidence_asked_for_grows_steadily_with_the_width(width):
 
 @given(arrays(np.float32, (3, 7), elements=some.floats(-30, 30, width=16)))
 def test_runs_are_the_best_of_all_courses(evidence):
-    row, start, end = _runs(evidence, START)
+    row, start, end = _runs(evidence)
     for number, places in enumerate(evidence):
         own = [(first, last) for r, first, last in zip(row, start, end, strict=True) if r == number]
         found = sum(places[first : last + 1].sum() - START for first, last in own)
