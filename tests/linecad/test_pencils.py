@@ -8,8 +8,13 @@ from hypothesis import given
 from hypothesis import strategies as some
 from hypothesis.extra.numpy import arrays
 
+from linecad.evaluation.datasets import find_dataset
+from linecad.evaluation.frames import true_axes
+from linecad.evaluation.measure import covered_length
+from linecad.evaluation.references import open_case
 from linecad.geometry import angles_to, central_camera, rotation_about, vanishing_points
 from linecad.pencils import START, _runs, find_pencil_lines, least_evidence
+from linecad.pipeline import find_lines
 from linecad.scene import Camera, ManhattanFrame
 from linecad.segments import find_segments
 
@@ -131,3 +136,14 @@ def _worth(places: np.ndarray, course: tuple[int, ...]) -> float:
     """What a course of on (1) and off (0) earns."""
     switched = np.diff((0, *course)) == 1
     return float(places[np.array(course, bool)].sum() - START * switched.sum())
+
+
+def test_faint_lines_of_a_small_photo_reach_the_line_graph(shared_data):
+    photo, reference = open_case(
+        next(c for c in find_dataset(shared_data / "york_urban").cases if c.name == "P1020867")
+    )
+    found = find_lines(photo)
+    axis = true_axes(found.frame.rotation, reference.rotation)[found.segments.axis]
+    marked = reference.lines
+    length = np.linalg.norm(marked.ends[:, 1] - marked.ends[:, 0], axis=1).sum()
+    assert covered_length(marked.ends, marked.axis, found.segments.ends, axis) > 0.65 * length
