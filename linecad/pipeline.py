@@ -22,6 +22,7 @@ from linecad.graph import (
 )
 from linecad.hinges import Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
+from linecad.pencils import find_pencil_lines
 from linecad.photo import Photo
 from linecad.planes import find_planes
 from linecad.scene import (
@@ -162,7 +163,9 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
-    return FoundLines(camera, frame, label_segments(raw, camera, frame), tuple(notes))
+    on_stage("following lines along their vanishing points")
+    pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
+    return FoundLines(camera, frame, pieces, tuple(notes))
 
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
