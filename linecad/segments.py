@@ -85,7 +85,9 @@ def _group_axis(ends: Float, vanishing: Float, across: float, along: float) -> l
         if not free[leader]:
             continue
         normal = np.array([-direction[leader, 1], direction[leader, 0]])
-        near = np.flatnonzero(free & (np.abs((middle - middle[leader]) @ normal) < across))
+        # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
+        one_side = direction @ direction[leader] > 0
+        near = np.flatnonzero(free & one_side & (np.abs((middle - middle[leader]) @ normal) < across))
         reach = (ends[near] - middle[leader]) @ direction[leader]
         members = near[_touching(reach.min(axis=1), reach.max(axis=1), along, int(np.flatnonzero(near == leader)[0]))]
         free[members] = False

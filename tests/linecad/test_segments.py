@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from linecad.geometry import REFERENCE_WIDTH, angles_to, vanishing_points
-from linecad.scene import Segments
+from linecad.scene import Camera, ManhattanFrame, Segments
 from linecad.segments import (
     GROUP_ACROSS,
     GROUP_ALONG,
@@ -140,3 +140,12 @@ def test_joined_segments_keep_their_labels(made):
     both = first.joined(second)
     assert both.axis.tolist() == first.axis.tolist() + second.axis.tolist()
     assert both.ends[len(first) :].tobytes() == second.ends.tobytes()
+
+
+def test_fragments_on_both_sides_of_their_vanishing_point_stay_apart():
+    # Seen from the front, the lines that lead away meet in the middle of the photo.
+    camera = Camera(3840, 2160, np.array([[2000.0, 0, 1920], [0, 2000, 1080], [0, 0, 1]]), "file")
+    frame = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), 0.0, 1.0)
+    ends = [[[1700.0, 1080], [1900, 1080]], [[1940.0, 1080], [2100, 1080]]]
+    grouped = group_segments(Segments(ends, [1, 1]), camera, frame, 125.0)
+    assert len(grouped) == 2
