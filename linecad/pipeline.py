@@ -70,7 +70,7 @@ class Reach:
 
 SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH, MIN_TOLERANCE)  # as in the paper
 # 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
-LONG_REACH = Reach(75.0, 125.0, 18.75, 0.005)
+LONG_REACH = Reach(75.0, 125.0, 18.75, 0.0035)
 MIDDLE_REACH = Reach(37.5, 62.5, 18.75, MIN_TOLERANCE)  # for photos in which little can be believed
 WITNESSES_IN_DOUBT = 2
 
