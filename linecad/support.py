@@ -100,10 +100,13 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
         part = _largest_part(count, edges, free)
         if part.sum() < LEAST_BODY:
             break
-        core = part if in_doubt else _core(part, log_depth, draws, asked)
-        share = support(part, log_depth, draws, core)
-        kept = _largest_part(count, edges, part & (share >= asked))
-        if kept.sum() < LEAST_BODY:
+        # In doubt against the majority first; where two bodies are of one size, that keeps nothing in place.
+        for core in [part] * in_doubt + [_core(part, log_depth, draws, asked)]:
+            share = support(part, log_depth, draws, core)
+            kept = _largest_part(count, edges, part & (share >= asked))
+            if kept.sum() >= LEAST_BODY:
+                break
+        else:
             free &= ~part
             loose |= part
             continue
