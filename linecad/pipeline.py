@@ -10,6 +10,7 @@ from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
+from linecad.grids import find_grid_ties
 from linecad.hinges import WITNESSES, Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
 from linecad.photo import Photo
@@ -30,6 +31,7 @@ from linecad.scene import (
     Text,
 )  # fmt: skip
 from linecad.segments import find_segments, group_segments, label_segments
+from linecad.ties import join_bodies
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
 
@@ -126,16 +128,20 @@ def place(
     solution = _within_groups(graph, solution)
     held = None
     if options.witnesses_asked > 1:
-        witnessed = agreeing(graph, solution.connected, solution.log_depth)
-        held = find_held(graph, witnessed, options.witnesses_asked)
-        refused = solution.connected & ~held.joins(graph)
-        if (refused & graph.informative).any():
-            notes.append(
-                f"{int(refused.sum())} crossings join bodies of lines that fewer than {options.witnesses_asked} lines "
-                "tie to each other, and are not taken for real: such a join is often a near edge before a far wall"
-            )
-        solution = replace(solution, connected=solution.connected & ~refused)
+        solution, held = _refuse_hinges(graph, solution, options.witnesses_asked, notes)
     return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options, held)
+
+
+def _refuse_hinges(graph: LineGraph, solution: Solution, witnesses: int, notes: list[str]) -> tuple[Solution, Held]:
+    """The solution without crossings that join two bodies, and the bodies; what was refused is added to the notes."""
+    held = find_held(graph, agreeing(graph, solution.connected, solution.log_depth), witnesses)
+    refused = solution.connected & ~held.joins(graph)
+    if (refused & graph.informative).any():
+        notes.append(
+            f"{int(refused.sum())} crossings join bodies of lines that fewer than {witnesses} lines tie to each other, "
+            "and are not taken for real: such a join is often a near edge before a far wall"
+        )
+    return replace(solution, connected=solution.connected & ~refused), held
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
@@ -199,10 +205,14 @@ def _scene(
     telling = solution.connected & graph.informative
     parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
     hinged = hinged_nodes(graph, telling)
-    if held is not None and parts:  # the largest body comes first, also where more lines hang together loosely
-        largest = max(parts, key=lambda part: int(held.within[part].sum()))
-        parts.sort(key=lambda part: part is not largest)
-        hinged |= ~held.within
+    if held is not None and parts:
+        parts, lifted, tied = _tie_parts(graph, camera, frame, lifted, parts)
+        hinged |= ~held.within | tied
+        if tied[parts[0]].any():
+            notes.append(
+                f"{int(tied[parts[0]].sum())} lines of component 0 are not connected to the rest of it by crossings: "
+                "their place follows from window grids that continue (supported)"
+            )
     if not parts:
         raise ReconstructionError(
             "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
@@ -256,6 +266,32 @@ def _scene(
         ),
         notes=tuple(notes),
     )  # fmt: skip
+
+
+def _tie_parts(
+    graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int]
+) -> tuple[list[Int], Lifted, Bool]:
+    """The parts joined where window grids tie them, each with one scale; that with the most line length comes first.
+
+    The others follow by their number of lines. A tied part is scaled as a whole, so that all crossings in it stay
+    exact. The mask (N,) tells the lines of parts that are not the longest of those they were joined with.
+    """
+    joined = join_bodies(find_grid_ties(graph, camera, frame.rotation, parts, lifted.offset), len(parts))
+    shown = [float(graph.segments.length[part].sum()) for part in parts]
+    scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
+    groups: list[tuple[float, Int]] = []
+    for group in np.unique(joined.group).tolist():
+        members = np.flatnonzero(joined.group == group).tolist()
+        lead = max(members, key=lambda member: shown[member])
+        for member in members:
+            scale[parts[member]] = np.exp(joined.log_scale[member] - joined.log_scale[lead])
+            tied[parts[member]] = member != lead
+        lines = np.sort(np.concatenate([parts[member] for member in members]))
+        groups.append((sum(shown[member] for member in members), lines))
+    first = max(range(len(groups)), key=lambda number: groups[number][0])
+    order = sorted(range(len(groups)), key=lambda number: (number != first, -len(groups[number][1])))
+    lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
+    return [groups[number][1] for number in order], lifted, tied
 
 
 def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
