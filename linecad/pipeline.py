@@ -271,10 +271,10 @@ def _scene(
 def _tie_parts(
     graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int]
 ) -> tuple[list[Int], Lifted, Bool]:
-    """The parts joined where window grids tie them, each with one scale; that with the most line length comes first.
+    """The parts joined where window grids tie them, each with one scale, in the order of their length in the photo.
 
-    The others follow by their number of lines. A tied part is scaled as a whole, so that all crossings in it stay
-    exact. The mask (N,) tells the lines of parts that are not the longest of those they were joined with.
+    A tied part is scaled as a whole, so that all crossings in it stay exact. The mask (N,) tells the lines of parts
+    that are not the longest of those they were joined with.
     """
     joined = join_bodies(find_grid_ties(graph, camera, frame.rotation, parts, lifted.offset), len(parts))
     shown = [float(graph.segments.length[part].sum()) for part in parts]
@@ -288,10 +288,9 @@ def _tie_parts(
             tied[parts[member]] = member != lead
         lines = np.sort(np.concatenate([parts[member] for member in members]))
         groups.append((sum(shown[member] for member in members), lines))
-    first = max(range(len(groups)), key=lambda number: groups[number][0])
-    order = sorted(range(len(groups)), key=lambda number: (number != first, -len(groups[number][1])))
+    groups.sort(key=lambda group: (-group[0], int(group[1][0])))
     lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
-    return [groups[number][1] for number in order], lifted, tied
+    return [lines for _, lines in groups], lifted, tied
 
 
 def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:

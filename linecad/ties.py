@@ -15,7 +15,7 @@ from scipy.special import pdtrc
 
 from linecad.scene import Bool, Float, Int
 
-ENOUGH = 1.3  # decades of evidence that join two groups of bodies
+ENOUGH = 1.6  # decades of evidence that join two groups of bodies
 DOUBT = 0.3  # coincidences that are expected beside those that the photo tells: no tie is made of few alone
 CLOSEST = 1e-9  # log scale; what is less is rounding, not a contradiction
 MOST_BRANCHES = 2000  # sets of ties that are tried; then all ties of a contradiction are given up
@@ -151,5 +151,5 @@ def _log_scales(ties: Ties, held: Bool, group: Int) -> Float:
     right[at] = weight * ties.log_ratio[used]
     lead = np.flatnonzero(group == np.arange(len(group)))
     rows[len(used) + lead, lead] = 1.0
-    scale: Float = np.linalg.lstsq(rows, right, rcond=None)[0]
+    scale = np.asarray(np.linalg.lstsq(rows, right, rcond=None)[0], np.float64)
     return scale - scale[group]
