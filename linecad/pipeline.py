@@ -30,7 +30,7 @@ from linecad.scene import (
     SolveReport,
     Text,
 )  # fmt: skip
-from linecad.segments import find_segments, group_segments, label_segments
+from linecad.segments import find_faint_segments, find_segments, group_segments, label_segments
 from linecad.ties import join_bodies
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
@@ -58,7 +58,13 @@ class ReconstructOptions:
     # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: as usual with
     # formulation gain, 1 with the paper's.
     witnesses: int | None = None
+    faint: bool | None = None  # a second look for faint segments; None: with formulation gain, not with the paper's
     solve: SolveOptions = field(default_factory=SolveOptions)
+
+    @property
+    def faint_wanted(self) -> bool:
+        """`faint` in use."""
+        return self.solve.formulation == "gain" if self.faint is None else self.faint
 
     @property
     def witnesses_asked(self) -> int:
@@ -84,7 +90,7 @@ def reconstruct(
     on_stage: StageReport = _silent,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
-    found = find_lines(photo, on_stage)
+    found = find_lines(photo, on_stage, options.faint_wanted)
     whole, graph = connect(found, options)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = solve(graph, options.solve, on_progress)
@@ -92,8 +98,11 @@ def reconstruct(
     return place(photo, found, graph, solution, options, len(whole.segments) - len(graph.segments))
 
 
-def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
-    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame."""
+def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = False) -> FoundLines:
+    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame.
+
+    With `faint`, a second look adds what the grain of the photo hides. The frame is always that of the first look.
+    """
     on_stage("finding segments")
     raw = find_segments(photo.grey)
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
@@ -101,6 +110,9 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
+    if faint:
+        on_stage("finding faint segments")
+        raw = raw.joined(find_faint_segments(photo.grey))
     segments = group_segments(label_segments(raw, camera, frame), camera, frame)
     return FoundLines(camera, frame, segments, tuple(notes))
 

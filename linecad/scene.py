@@ -139,6 +139,10 @@ class Segments:
         """The segments that a mask or an index array selects."""
         return Segments(self.ends[keep], self.axis[keep])
 
+    def joined(self, other: "Segments") -> "Segments":
+        """These segments, then the others."""
+        return Segments(np.concatenate([self.ends, other.ends]), np.concatenate([self.axis, other.axis]))
+
 
 @dataclass(frozen=True, eq=False)
 class ManhattanFrame:
