@@ -15,7 +15,6 @@ SMALL_PHOTO_WIDTH = 1200  # px; below it the detector looks at an enlarged photo
 DETECTOR_SCALE = 0.8
 DETECTOR_SCALE_SMALL = 1.6
 GRAIN = 5  # px, side of the median filter before the second look
-FAINT_SHARE = 0.625  # of the detector's scale at the second look
 MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
 MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
 
@@ -29,22 +28,21 @@ GROUP_ALONG_FLOOR = 4.0  # px
 
 def find_segments(grey: NDArray[np.uint8]) -> Segments:
     """All straight segments of a grey photo (H, W), not labelled yet, in the detector's order."""
-    return _detect(grey, DETECTOR_SCALE_SMALL if grey.shape[1] < SMALL_PHOTO_WIDTH else DETECTOR_SCALE)
-
-
-def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
-    """What a second look finds at a photo (H, W) without its grain, and smaller: edges that noise hides, less exact."""
-    scale = DETECTOR_SCALE_SMALL if grey.shape[1] < SMALL_PHOTO_WIDTH else DETECTOR_SCALE
-    return _detect(np.asarray(cv2.medianBlur(grey, GRAIN), np.uint8), FAINT_SHARE * scale)
-
-
-def _detect(grey: NDArray[np.uint8], detector_scale: float) -> Segments:
-    found = cv2.createLineSegmentDetector(cv2.LSD_REFINE_ADV, scale=detector_scale).detect(grey)[0]
+    small = grey.shape[1] < SMALL_PHOTO_WIDTH
+    detector = cv2.createLineSegmentDetector(
+        cv2.LSD_REFINE_ADV, scale=DETECTOR_SCALE_SMALL if small else DETECTOR_SCALE
+    )
+    found = detector.detect(grey)[0]
     ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
     scale = grey.shape[1] / REFERENCE_WIDTH
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) >= max(MIN_FRAGMENT * scale, MIN_FRAGMENT_FLOOR)
     ends = ends[long_enough]
     return Segments(ends, np.full(len(ends), -1))
+
+
+def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
+    """What a second look finds at a photo (H, W) without its grain: edges that noise hides from the first."""
+    return find_segments(np.asarray(cv2.medianBlur(grey, GRAIN), np.uint8))
 
 
 def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:

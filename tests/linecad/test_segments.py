@@ -46,7 +46,7 @@ def test_the_edges_of_a_drawn_rectangle_are_found(width):
         assert (off < 1.5).sum() == 1
 
 
-@pytest.mark.parametrize(("width", "deviation"), [(800, 8), (1600, 14)])
+@pytest.mark.parametrize(("width", "deviation"), [(800, 8), (1600, 12)])
 def test_a_faint_edge_in_grain_is_found_at_the_second_look_alone(width, deviation):
     grain = np.random.default_rng(5).normal(0, deviation, (width * 3 // 4, width))
     image = np.full(grain.shape, 120.0) + grain
