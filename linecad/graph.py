@@ -25,7 +25,7 @@ CORNER_REACH = 12.0  # px at the reference width between the crossings of a Y or
 CORNER_REACH_FLOOR = 3.0  # px
 
 COLLINEAR_ACROSS = 2.5  # px at the reference width between two segments of one line
-COLLINEAR_ACROSS_FLOOR = 0.8  # px
+COLLINEAR_ACROSS_FLOOR = 1.25  # px, as for grouping (linecad.segments)
 COLLINEAR_GAP = 1000.0  # px at the reference width; what is further apart says nothing about each other
 COLLINEAR_GAP_SHARE = 1.5  # of the shorter segment; a larger gap needs longer segments to be believed
 

@@ -13,6 +13,7 @@ from linecad.graph import EXTENSION, Weights, build_line_graph, components, hing
 from linecad.grids import find_grid_ties
 from linecad.hinges import WITNESSES, Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
+from linecad.pencils import find_pencil_lines
 from linecad.photo import Photo
 from linecad.planes import find_planes
 from linecad.scene import (
@@ -30,7 +31,7 @@ from linecad.scene import (
     SolveReport,
     Text,
 )  # fmt: skip
-from linecad.segments import find_faint_segments, find_segments, group_segments, label_segments
+from linecad.segments import SMALL_WIDTH, find_faint_segments, find_segments, group_segments, label_segments
 from linecad.ties import join_bodies
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
@@ -101,7 +102,8 @@ def reconstruct(
 def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = False) -> FoundLines:
     """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame.
 
-    With `faint`, a second look adds what the grain of the photo hides. The frame is always that of the first look.
+    With `faint`, a second look adds what the grain of a photo hides that is not small. The frame is always that of the
+    first look.
     """
     on_stage("finding segments")
     raw = find_segments(photo.grey)
@@ -110,10 +112,12 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = Fals
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
-    if faint:
+    if faint and photo.width >= SMALL_WIDTH:
         on_stage("finding faint segments")
         raw = raw.joined(find_faint_segments(photo.grey))
-    segments = group_segments(label_segments(raw, camera, frame), camera, frame)
+    on_stage("following lines along their vanishing points")
+    pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
+    segments = group_segments(pieces, camera, frame)
     return FoundLines(camera, frame, segments, tuple(notes))
 
 

@@ -139,9 +139,9 @@ class Segments:
         """The segments that a mask or an index array selects."""
         return Segments(self.ends[keep], self.axis[keep])
 
-    def joined(self, other: "Segments") -> "Segments":
-        """These segments, then the others."""
-        return Segments(np.concatenate([self.ends, other.ends]), np.concatenate([self.axis, other.axis]))
+    def joined(self, others: "Segments") -> "Segments":
+        """These segments and the others after them."""
+        return Segments(np.concatenate([self.ends, others.ends]), np.concatenate([self.axis, others.axis]))
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,28 +11,34 @@ from numpy.typing import NDArray
 from linecad.geometry import REFERENCE_WIDTH, angles_to, directions_to, vanishing_points
 from linecad.scene import Camera, Float, Int, ManhattanFrame, Segments
 
-SMALL_PHOTO_WIDTH = 1200  # px; below it the detector looks at an enlarged photo, for its noise floor is in pixels
-DETECTOR_SCALE = 0.8
-DETECTOR_SCALE_SMALL = 1.6
+SMALL_WIDTH = 1280.0  # px; narrower photos show lines in fewer pixels than detector and labels ask for
+DETECTOR_SCALE = 0.8  # from SMALL_WIDTH on; more in proportion below: the detector's noise floor is in pixels
+DETECTOR_SCALE_LIMIT = 1.6  # an enlarged photo has no more to show
 GRAIN = 5  # px, side of the median filter before the second look
-GRAIN_SMALL = 3  # px, the same for small photos
 MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
 MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
 
-LABEL_ANGLE = np.radians(3.0)  # largest angle between a segment and its vanishing point
-LABEL_ANGLE_SMALL = np.radians(5.0)  # the same for small photos, where segments are short
+LABEL_ANGLE = np.radians(3.0)  # largest angle between a segment and its vanishing point, from SMALL_WIDTH on
+LABEL_ANGLE_LIMIT = np.radians(5.0)  # the most in narrower photos, where segments are short and it grows in proportion
 GROUP_ACROSS = 2.5  # px at the reference width, between fragments of one line
-GROUP_ACROSS_FLOOR = 0.8  # px
+GROUP_ACROSS_FLOOR = 1.25  # px in any photo: no segment is placed better, and the frame of a small photo is worse
 GROUP_ALONG = 31.0  # px at the reference width; longer gaps fuse lines of two planes
 GROUP_ALONG_FLOOR = 4.0  # px
 
 
+def detector_scale(width: int) -> float:
+    """How much a photo of that width, px, is enlarged for the detector; falls continuously from 1.6 to 0.8."""
+    return min(DETECTOR_SCALE * max(SMALL_WIDTH / width, 1.0), DETECTOR_SCALE_LIMIT)
+
+
+def label_angle(width: int) -> float:
+    """The largest angle, rad, between a segment and its axis in a photo of that width, px; 5 to 3 degrees."""
+    return float(min(LABEL_ANGLE * max(SMALL_WIDTH / width, 1.0), LABEL_ANGLE_LIMIT))
+
+
 def find_segments(grey: NDArray[np.uint8]) -> Segments:
     """All straight segments of a grey photo (H, W), not labelled yet, in the detector's order."""
-    small = grey.shape[1] < SMALL_PHOTO_WIDTH
-    detector = cv2.createLineSegmentDetector(
-        cv2.LSD_REFINE_ADV, scale=DETECTOR_SCALE_SMALL if small else DETECTOR_SCALE
-    )
+    detector = cv2.createLineSegmentDetector(cv2.LSD_REFINE_ADV, scale=detector_scale(grey.shape[1]))
     found = detector.detect(grey)[0]
     ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
     scale = grey.shape[1] / REFERENCE_WIDTH
@@ -43,15 +49,13 @@ def find_segments(grey: NDArray[np.uint8]) -> Segments:
 
 def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
     """What a second look finds at a photo (H, W) without its grain: edges that noise hides from the first."""
-    grain = GRAIN_SMALL if grey.shape[1] < SMALL_PHOTO_WIDTH else GRAIN
-    return find_segments(np.asarray(cv2.medianBlur(grey, grain), np.uint8))
+    return find_segments(np.asarray(cv2.medianBlur(grey, GRAIN), np.uint8))
 
 
 def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
     """The segments that point to one of the three vanishing points, labelled by it (the paper's D_i)."""
-    limit = LABEL_ANGLE_SMALL if camera.width < SMALL_PHOTO_WIDTH else LABEL_ANGLE
     sines = angles_to(segments.ends, vanishing_points(camera.matrix, frame.rotation))
-    return Segments(segments.ends, sines.argmin(axis=0)).subset(sines.min(axis=0) < np.sin(limit))
+    return Segments(segments.ends, sines.argmin(axis=0)).subset(sines.min(axis=0) < np.sin(label_angle(camera.width)))
 
 
 def group_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:

@@ -43,6 +43,7 @@ FLOORS = [
     [
         "linecad.photo",
         "linecad.segments",
+        "linecad.pencils",
         "linecad.vanishing",
         "linecad.graph",
         "linecad.lifting",

@@ -20,7 +20,7 @@ from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.lifting import lift
 from linecad.photo import Photo
 from linecad.pipeline import connect, find_lines, place
-from linecad.scene import Bool, Formulation, Int, LineGraph, Scene
+from linecad.scene import Bool, Float, Formulation, Int, LineGraph, Scene
 from solver.problem import solve
 
 MARKED_REACH = 3.0  # px between a line marked by hand and a reconstructed one
@@ -164,16 +164,22 @@ def _rotation_error(reference: Reference, scene: Scene) -> float | None:
     return float(np.degrees(rotation_error(scene.rotation, reference.rotation)[0]))
 
 
+def covered_length(marked: Float, marked_axis: Int, lines: Float, axis: Int) -> float:
+    """Length, px, of marked lines (M, 2, 2) along which lines (N, 2, 2) of the same axis run within MARKED_REACH."""
+    covered = 0.0
+    for ends, own in zip(marked, marked_axis.tolist(), strict=True):
+        along = find_overlaps(ends, lines[axis == own], MARKED_REACH, MARKED_ANGLE)
+        covered += union_length(along.start, along.end)
+    return covered
+
+
 def _marked(reference: Reference, marked: MarkedLines, scene: Scene) -> MarkedScore:
     """Coverage and labels of lines that were marked by hand (method: the same axis, within MARKED_REACH)."""
     assert reference.rotation is not None  # who marks lines by axis knows the axes
     names = true_axes(scene.rotation, reference.rotation)
     axis = names[scene.lines.axis]
     nearest = names[nearest_axes(marked.ends, scene.camera.matrix, scene.rotation)]
-    covered = 0.0
-    for ends, own in zip(marked.ends, marked.axis.tolist(), strict=True):
-        along = find_overlaps(ends, scene.lines.segment[axis == own], MARKED_REACH, MARKED_ANGLE)
-        covered += union_length(along.start, along.end)
+    covered = covered_length(marked.ends, marked.axis, scene.lines.segment, axis)
     length = float(np.linalg.norm(marked.ends[:, 1] - marked.ends[:, 0], axis=1).sum())
     return MarkedScore(int((nearest == marked.axis).sum()), len(marked.axis), covered, length)
 

@@ -255,7 +255,14 @@ def test_focal_length_is_assumed_and_noted_when_it_cannot_be_told():
 def test_stages_are_reported_in_order(drawn):
     stages = []
     reconstruct(drawn, ReconstructOptions(largest_component=True), on_stage=stages.append)
-    words = ["finding segments", "finding the Manhattan frame", "finding faint segments", "solving", "lifting"]
+    words = [
+        "finding segments",
+        "finding the Manhattan frame",
+        "finding faint",
+        "following lines",
+        "solving",
+        "lifting",
+    ]
     assert [word for word, stage in zip(words, stages, strict=True) if stage.startswith(word)] == words
 
 

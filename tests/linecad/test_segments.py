@@ -9,9 +9,11 @@ from linecad.scene import Segments
 from linecad.segments import (
     GROUP_ACROSS,
     GROUP_ALONG,
+    detector_scale,
     find_faint_segments,
     find_segments,
     group_segments,
+    label_angle,
     label_segments,
 )
 
@@ -46,7 +48,7 @@ def test_the_edges_of_a_drawn_rectangle_are_found(width):
         assert (off < 1.5).sum() == 1
 
 
-@pytest.mark.parametrize(("width", "deviation"), [(800, 4), (1600, 8), (1600, 10)])
+@pytest.mark.parametrize(("width", "deviation"), [(1600, 8), (1600, 10), (2400, 9)])
 def test_the_second_look_finds_more_of_a_faint_edge_in_grain(width, deviation):
     grain = np.random.default_rng(5).normal(0, deviation, (width * 3 // 4, width))
     image = np.full(grain.shape, 120.0) + grain
@@ -138,3 +140,18 @@ def test_fragments_of_different_axes_are_never_joined(made, fragments):
 def test_nothing_to_group_gives_nothing(made):
     grouped = group_segments(Segments([], []), made.camera, made.frame)
     assert len(grouped) == 0
+
+
+@pytest.mark.parametrize("rule", [detector_scale, label_angle])
+def test_what_small_photos_get_changes_steadily_with_the_width(rule):
+    values = np.array([rule(width) for width in range(200, 2000)])
+    assert (np.diff(values) <= 0).all()
+    assert np.abs(np.diff(values)).max() < 0.002 * values[0]
+    assert values[-1] < 0.7 * values[0]
+
+
+def test_joined_segments_keep_their_labels(made):
+    first, second = made.segments.subset(made.axis == 2), made.segments.subset(made.axis == 0)
+    both = first.joined(second)
+    assert both.axis.tolist() == first.axis.tolist() + second.axis.tolist()
+    assert both.ends[len(first) :].tobytes() == second.ends.tobytes()

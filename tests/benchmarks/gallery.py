@@ -1,0 +1,108 @@
+"""What is right and wrong on photos of known depth, to look at: python tests/benchmarks/gallery.py DATASET... --out DIR
+
+One picture a photo, without the photo's own pixels, so that it may be shown where the photo may not: on the left the
+lines and faces that were found (weak ones pale), on the right the points of known depth: right within 5 %, wrong, or
+without a depth in component 0. Prints a line a photo.
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from exporters.canvas import Canvas
+from exporters.colours import line_colour
+from exporters.picture_faces import draw_dashed, draw_faces
+from linecad.errors import LinecadError
+from linecad.evaluation.datasets import Case, find_dataset
+from linecad.evaluation.depth import face_depths, line_depths, score
+from linecad.evaluation.references import Points, open_case
+from linecad.pipeline import ReconstructOptions, reconstruct
+from linecad.scene import Bool, Float, Scene
+from solver.problem import SolveOptions
+
+WIDTH = 780  # px of each of the two panels
+LINE_WIDTH = 2  # px
+PAPER, INK = (1.0, 1.0, 1.0), (0.15, 0.15, 0.17)
+RIGHT, WRONG, MISSING = (0.05, 0.55, 0.25), (0.85, 0.1, 0.1), (0.78, 0.78, 0.8)
+RADIUS = {"edges": 2.0, "dense": 1.2}  # px of a point
+MOST_POINTS = 6000
+TITLE_HEIGHT, TITLE_SIZE = 34, 18  # px
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("dataset", type=Path, nargs="+")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the pictures")
+    parser.add_argument("--only", default="", help="photos with this in their name")
+    parser.add_argument("--time-limit", type=float, default=20.0)
+    chosen = parser.parse_args()
+    chosen.out.mkdir(parents=True, exist_ok=True)
+    options = ReconstructOptions(solve=SolveOptions(time_limit_s=chosen.time_limit))
+    for folder in chosen.dataset:
+        for case in find_dataset(folder).cases:
+            if chosen.only in case.name:
+                try:
+                    show(case, options, chosen.out / f"{folder.name}-{case.name}.png")
+                except LinecadError as error:
+                    print(f"{case.name}: {error}")
+
+
+def show(case: Case, options: ReconstructOptions, path: Path) -> None:
+    """Draw the picture of one photo."""
+    photo, reference = open_case(case)
+    scene = reconstruct(photo, options)
+    own = scene.lines.component == 0
+    height = round(WIDTH * scene.camera.height / scene.camera.width)
+    canvas = Canvas(2 * WIDTH, height + TITLE_HEIGHT, PAPER)
+    draw_model(canvas.window(0, TITLE_HEIGHT, WIDTH, height), scene)
+    said = [case.name, f"{len(scene.lines)} lines, {own.sum()} in component 0"]
+    panel = canvas.window(WIDTH, TITLE_HEIGHT, WIDTH, height)
+    for kind, points in (("dense", reference.dense), ("edges", reference.edges)):
+        if points is not None:
+            depth = depths(scene, points, own, faces=kind == "dense")
+            found = score(depth, points.depth)
+            said.append(f"{kind}: recall {found.recall_5:.2f}, precision {found.precision_5:.3f}")
+            draw_points(panel, scene, points, depth / found.scale, RADIUS[kind])
+    panel.frame(MISSING)
+    canvas.text(10, 24, "   ".join(said), TITLE_SIZE, INK)
+    canvas.image().quantize(64).save(path, optimize=True)
+    print("   ".join(said), flush=True)
+
+
+def depths(scene: Scene, points: Points, own: Bool, *, faces: bool) -> Float:
+    """Depth (M,) that component 0 gives to each point, NaN for none."""
+    depth = line_depths(scene, points.pixels, own)
+    if faces:
+        bare = ~np.isfinite(depth)
+        ids = set(scene.lines.id[own].tolist())
+        shown = [pair for pair in scene.faces if ids & set(pair[0].lines)]
+        depth[bare] = face_depths(scene, points.pixels[bare], shown)
+    return depth
+
+
+def draw_model(panel: Canvas, scene: Scene) -> None:
+    """Faces and lines as found."""
+    scale = np.array([panel.width / scene.camera.width, panel.height / scene.camera.height])
+    draw_faces(panel, scene, scale)
+    shown = (scene.lines.segment + 0.5) * scale - 0.5
+    for number in range(len(scene.lines)):
+        draw = draw_dashed if scene.lines.confidence[number] == "weak" else Canvas.line
+        colour = line_colour(int(scene.lines.axis[number]), bool(scene.lines.is_boundary[number]))
+        draw(panel, shown[number, 0].tolist(), shown[number, 1].tolist(), colour, LINE_WIDTH)
+    panel.frame(MISSING)
+
+
+def draw_points(panel: Canvas, scene: Scene, points: Points, depth: Float, radius: float) -> None:
+    """The points of known depth, by what the scene says of them."""
+    scale = np.array([panel.width / scene.camera.width, panel.height / scene.camera.height])
+    step = -(-len(depth) // MOST_POINTS)
+    with np.errstate(invalid="ignore"):
+        right = np.abs(depth / points.depth - 1) < 0.05
+    for number in range(0, len(depth), step):
+        colour = MISSING if not np.isfinite(depth[number]) else RIGHT if right[number] else WRONG
+        panel.disc(((points.pixels[number] + 0.5) * scale - 0.5).tolist(), radius, colour)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,71 @@
+"""Where the length of lines marked by hand is lost: `PYTHONPATH=. python tests/benchmarks/stages.py DATASET ...`.
+
+For each dataset with marked lines (York Urban) prints the share of the marked length along which the lines of each
+stage run, as `linecad evaluate` measures it for the scene: all segments, the labelled ones, the grouped ones, those
+that are long enough for the line graph, those that touch enough others to be solved, those that the chosen crossings
+tie to a group, and those left when bodies with too few witnesses are parted. In front, how many lines a stage has.
+"""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from linecad.errors import LinecadError
+from linecad.evaluation.datasets import Case, find_dataset
+from linecad.evaluation.frames import true_axes
+from linecad.evaluation.measure import covered_length
+from linecad.evaluation.references import open_case
+from linecad.pipeline import ReconstructOptions, connect, find_lines, place
+from linecad.scene import Segments
+from linecad.segments import find_segments, label_segments
+from solver.problem import SolveOptions, solve
+
+STAGES = ("detected", "labelled", "grouped", "long enough", "solved", "tied", "in the scene")
+
+
+def measure(case: Case, limit: float) -> np.ndarray:
+    """Rows of STAGES: lines, covered px, marked px."""
+    photo, reference = open_case(case)
+    marked = reference.lines
+    if marked is None or reference.rotation is None:
+        raise LinecadError(f"{case.name} has no marked lines")
+    options = ReconstructOptions(solve=SolveOptions(time_limit_s=limit))
+    raw = find_segments(photo.grey)
+    found = find_lines(photo)
+    names = true_axes(found.frame.rotation, reference.rotation)
+    stages = [label_segments(raw, found.camera, found.frame), found.segments]
+    length = float(np.linalg.norm(marked.ends[:, 1] - marked.ends[:, 0], axis=1).sum())
+    anything = covered_length(marked.ends, np.zeros(len(marked.axis), int), raw.ends, np.zeros(len(raw), int))
+    rows = [(len(raw), anything, length)]
+    try:
+        whole, graph = connect(found, options)
+        stages += [whole.segments, graph.segments]
+        solution = solve(graph, options.solve)
+        for witnesses in (1, None):
+            scene = place(photo, found, graph, solution, ReconstructOptions(witnesses=witnesses))
+            stages.append(Segments(scene.lines.segment, scene.lines.axis))
+    except LinecadError as error:
+        print(f"{case.name}: {error}")
+    rows += [
+        (len(part), covered_length(marked.ends, marked.axis, part.ends, names[part.axis]), length) for part in stages
+    ]
+    return np.array(rows + [(0, 0.0, length)] * (len(STAGES) - len(rows)))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("dataset", type=Path, nargs="+")
+    parser.add_argument("--limit", type=int, default=None, help="only the first photos")
+    parser.add_argument("--time-limit", type=float, default=20.0)
+    chosen = parser.parse_args()
+    for folder in chosen.dataset:
+        table = np.array([measure(case, chosen.time_limit) for case in find_dataset(folder).cases[: chosen.limit]])
+        print(f"{folder.name}, {len(table)} photos")
+        for number, stage in enumerate(STAGES):
+            lines, covered, length = table[:, number].T
+            print(f"{stage:14} {lines.mean():6.0f} lines a photo, {covered.sum() / length.sum():.3f} of the length")
+
+
+if __name__ == "__main__":
+    main()
