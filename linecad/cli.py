@@ -115,8 +115,8 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
     convert.add_argument(
-        "--faint", action=argparse.BooleanOptionalAction, default=None,
-        help="look a second time, for segments that the photo's grain hides (on, but off with --formulation paper)",
+        "--faint", action="store_true",
+        help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
     )  # fmt: skip
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(

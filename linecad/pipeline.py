@@ -59,13 +59,8 @@ class ReconstructOptions:
     # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: as usual with
     # formulation gain, 1 with the paper's.
     witnesses: int | None = None
-    faint: bool | None = None  # a second look for faint segments; None: with formulation gain, not with the paper's
+    faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     solve: SolveOptions = field(default_factory=SolveOptions)
-
-    @property
-    def faint_wanted(self) -> bool:
-        """`faint` in use."""
-        return self.solve.formulation == "gain" if self.faint is None else self.faint
 
     @property
     def witnesses_asked(self) -> int:
@@ -91,7 +86,7 @@ def reconstruct(
     on_stage: StageReport = _silent,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
-    found = find_lines(photo, on_stage, options.faint_wanted)
+    found = find_lines(photo, on_stage, options.faint)
     whole, graph = connect(found, options)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = solve(graph, options.solve, on_progress)
@@ -222,7 +217,7 @@ def _scene(
     parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
     hinged = hinged_nodes(graph, telling)
     if held is not None and parts:
-        parts, lifted, tied = _tie_parts(graph, camera, frame, lifted, parts)
+        parts, lifted, tied = _tie_parts(graph, camera, frame, lifted, parts, held)
         hinged |= ~held.within | tied
         if tied[parts[0]].any():
             notes.append(
@@ -285,28 +280,30 @@ def _scene(
 
 
 def _tie_parts(
-    graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int]
+    graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int], held: Held
 ) -> tuple[list[Int], Lifted, Bool]:
-    """The parts joined where window grids tie them, each with one scale, in the order of their length in the photo.
+    """The parts joined where window grids tie them, each with one scale.
 
-    A tied part is scaled as a whole, so that all crossings in it stay exact. The mask (N,) tells the lines of parts
-    that are not the longest of those they were joined with.
+    The one with the most lines in bodies comes first, also where more lines hang together loosely, the others in the
+    order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The mask
+    (N,) tells the lines of parts that are not the largest of those they were joined with.
     """
     joined = join_bodies(find_grid_ties(graph, camera, frame.rotation, parts, lifted.offset), len(parts))
-    shown = [float(graph.segments.length[part].sum()) for part in parts]
+    sizes = [(int(held.within[part].sum()), len(part)) for part in parts]
     scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
-    groups: list[tuple[float, Int]] = []
+    groups: list[Int] = []
     for group in np.unique(joined.group).tolist():
         members = np.flatnonzero(joined.group == group).tolist()
-        lead = max(members, key=lambda member: shown[member])
+        lead = max(members, key=lambda member: sizes[member])
         for member in members:
             scale[parts[member]] = np.exp(joined.log_scale[member] - joined.log_scale[lead])
             tied[parts[member]] = member != lead
-        lines = np.sort(np.concatenate([parts[member] for member in members]))
-        groups.append((sum(shown[member] for member in members), lines))
-    groups.sort(key=lambda group: (-group[0], int(group[1][0])))
+        groups.append(np.sort(np.concatenate([parts[member] for member in members])))
+    groups.sort(key=lambda lines: (-len(lines), int(lines[0])))
+    largest = max(groups, key=lambda lines: int(held.within[lines].sum()))
+    groups.sort(key=lambda lines: lines is not largest)
     lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
-    return [lines for _, lines in groups], lifted, tied
+    return groups, lifted, tied
 
 
 def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:

@@ -19,7 +19,7 @@ from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.lifting import lift
 from linecad.photo import Photo
-from linecad.pipeline import connect, find_lines, place
+from linecad.pipeline import FoundLines, connect, find_lines, place
 from linecad.scene import Bool, Float, Formulation, Int, LineGraph, Scene
 from solver.problem import solve
 
@@ -113,13 +113,14 @@ def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -
                 }
                 for formulation in settings.formulations
             }
-    whole, picture = _whole(photo, reference, settings)
+    whole, picture = _whole(photo, found, reference, settings)
     return PhotoResult(name, None, statistics, methods, whole, picture)
 
 
-def _whole(photo: Photo, reference: Reference, settings: Settings) -> tuple[WholeResult, Picture | None]:
+def _whole(
+    photo: Photo, found: FoundLines, reference: Reference, settings: Settings
+) -> tuple[WholeResult, Picture | None]:
     options = settings.whole_photo()
-    found = find_lines(photo, faint=options.faint_wanted)
     everything, graph = connect(found, options)
     solution = solve(graph, options.solve)
     scene = place(photo, found, graph, solution, options)

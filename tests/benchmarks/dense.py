@@ -63,7 +63,7 @@ def main() -> None:
 
 def truly(photo: Photo, reference: Reference, options: ReconstructOptions) -> Scene:
     """The scene of the crossings that are real by the truth."""
-    found = find_lines(photo, faint=options.faint_wanted)
+    found = find_lines(photo)
     _, graph = connect(found, options)
     real = reference.label(graph, found.camera, found.frame.rotation) == REAL
     count = len(graph.segments)

@@ -27,7 +27,7 @@ def measure(case: Case, limit: float, variants: list[Variant]) -> dict[Variant, 
     photo, reference = open_case(case)
     if reference.edges is None:
         return {}
-    found = find_lines(photo, faint=True)
+    found = find_lines(photo)
     _, graph = connect(found, ReconstructOptions())
     solution = solve(graph, SolveOptions(time_limit_s=limit))
     rows = {}

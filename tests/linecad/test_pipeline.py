@@ -165,10 +165,9 @@ def test_components_are_numbered_by_size_and_hold_what_real_crossings_connect(an
     ids = [set(lines.id[own].tolist()) for own in named]
     assert all(any(part <= component for component in ids) for part in parts_of(any_scene))
     assert len(named) > 1
-    length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
-    shown = [length[own].sum() for own in named]
-    assert shown == sorted(shown, reverse=True)
-    assert min(map(len, ids)) >= 4
+    sizes = [len(component) for component in ids]
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[-1] >= 4
 
 
 def test_the_spanning_tree_spans_each_component(any_scene):
@@ -254,7 +253,7 @@ def test_focal_length_is_assumed_and_noted_when_it_cannot_be_told():
 
 def test_stages_are_reported_in_order(drawn):
     stages = []
-    reconstruct(drawn, ReconstructOptions(largest_component=True), on_stage=stages.append)
+    reconstruct(drawn, ReconstructOptions(largest_component=True, faint=True), on_stage=stages.append)
     words = [
         "finding segments",
         "finding the Manhattan frame",
