@@ -8,7 +8,7 @@ than chance explains.
 
 import heapq
 from dataclasses import dataclass
-from itertools import count as counted
+from itertools import count as numbers
 
 import numpy as np
 from scipy.special import pdtrc
@@ -16,6 +16,7 @@ from scipy.special import pdtrc
 from linecad.scene import Bool, Float, Int
 
 ENOUGH = 1.6  # decades of evidence that join two groups of bodies
+LEAST = 0.6  # decades; ties of less are as often wrong as right, and count nowhere
 DOUBT = 0.3  # coincidences that are expected beside those that the photo tells: no tie is made of few alone
 CLOSEST = 1e-9  # log scale; what is less is rounding, not a contradiction
 MOST_BRANCHES = 2000  # sets of ties that are tried; then all ties of a contradiction are given up
@@ -31,6 +32,10 @@ class Ties:
     seen: Float  # (T,) coincidences that say so
     expected: Float  # (T,) coincidences of that kind if the bodies had nothing to do with each other
 
+    def subset(self, keep: Int) -> "Ties":
+        """The ties that an index array selects."""
+        return Ties(self.bodies[keep], self.log_ratio[keep], self.tolerance[keep], self.seen[keep], self.expected[keep])
+
     @property
     def evidence(self) -> Float:
         """(T,) decades, see `evidence_of`."""
@@ -43,7 +48,7 @@ class Joined:
 
     group: Int  # (B,) the smallest body of each one's group
     log_scale: Float  # (B,) by which each body must grow to have its group's scale; 0 for the smallest
-    held: Bool  # (T,) the ties that do not contradict each other
+    held: Bool  # (T,) the ties that count and do not contradict each other
 
 
 def evidence_of(seen: float, expected: float) -> float:
@@ -55,7 +60,9 @@ def evidence_of(seen: float, expected: float) -> float:
 
 def join_bodies(ties: Ties, count: int, enough: float = ENOUGH) -> Joined:
     """Groups of `count` bodies that ties hold together with `enough` decades of evidence, and their scales."""
-    held = find_held_ties(ties, count)
+    counted = np.flatnonzero(ties.evidence >= LEAST)
+    held = np.zeros(len(ties.bodies), bool)
+    held[counted] = find_held_ties(ties.subset(counted), count)
     group = np.arange(count)
     while True:
         between: dict[tuple[int, int], list[float]] = {}
@@ -80,7 +87,7 @@ def find_held_ties(ties: Ties, count: int) -> Bool:
     ties of each contradiction are given up, since a wrong depth is worse than none.
     """
     worth = ties.evidence
-    order = counted()
+    order = numbers()
     start: frozenset[int] = frozenset()
     waiting = [(0.0, next(order), start)]
     known = {start}

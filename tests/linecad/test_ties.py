@@ -10,7 +10,7 @@ from scipy.optimize import linprog
 from scipy.stats import poisson
 
 import linecad.ties
-from linecad.ties import DOUBT, ENOUGH, Ties, evidence_of, find_held_ties, join_bodies
+from linecad.ties import DOUBT, ENOUGH, LEAST, Ties, evidence_of, find_held_ties, join_bodies
 
 
 def ties_of(*rows, tolerance=0.02):
@@ -97,6 +97,13 @@ def test_coincidences_of_a_group_count_together():
     assert join_bodies(alone, 3).group.tolist() == [0, 1, 2]
     grouped = ties_of((0, 1, 0.0, 6, 0), (0, 2, 0.3, 2, 0.1), (1, 2, 0.3, 2, 0.1))
     assert join_bodies(grouped, 3).group.tolist() == [0, 0, 0]
+
+
+def test_ties_that_say_next_to_nothing_do_not_add_up():
+    rows = [(a, b, 0.3, 2, 1.5) for a in range(4) for b in range(4, 8)]
+    rows += [(a, a + 1, 0.0, 6, 0) for a in (0, 1, 2, 4, 5, 6)]
+    assert evidence_of(2, 1.5) < LEAST
+    assert join_bodies(ties_of(*rows), 8).group.tolist() == [0] * 4 + [4] * 4
 
 
 def test_beyond_the_limit_all_of_a_contradiction_is_given_up(monkeypatch):
