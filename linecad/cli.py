@@ -118,6 +118,10 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--collinear", action=argparse.BooleanOptionalAction, default=None,
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
+    convert.add_argument(
+        "--faint", action="store_true",
+        help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
+    )  # fmt: skip
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(
         "--witnesses", type=_count, metavar="N",
@@ -283,6 +287,7 @@ def _convert(parsed: argparse.Namespace) -> int:
         collinear=is_gain if parsed.collinear is None else parsed.collinear,
         largest_component=parsed.largest_component,
         witnesses=parsed.witnesses,
+        faint=parsed.faint,
         solve=SolveOptions(
             formulation=parsed.formulation,
             without=parsed.without,

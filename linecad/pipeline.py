@@ -20,6 +20,7 @@ from linecad.graph import (
     hinged_nodes,
     spanning_tree,
 )
+from linecad.grids import find_grid_ties
 from linecad.hinges import Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
 from linecad.pencils import find_pencil_lines
@@ -40,8 +41,16 @@ from linecad.scene import (
     SolveReport,
     Text,
 )  # fmt: skip
-from linecad.segments import GROUP_ALONG, find_segments, group_segments, label_segments
+from linecad.segments import (
+    GROUP_ALONG,
+    SMALL_WIDTH,
+    find_faint_segments,
+    find_segments,
+    group_segments,
+    label_segments,
+)
 from linecad.support import FITS_FOR_DOUBT, MOST_DOUBT, SUPPORT, SUPPORT_IN_DOUBT, doubt, draw, find_supported
+from linecad.ties import join_bodies
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
 from solver.robust import RobustFit
@@ -88,6 +97,7 @@ class ReconstructOptions:
     # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: lines must keep
     # their place in resampling (linecad.support) with formulation gain, 1 with the paper's.
     witnesses: int | None = None
+    faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     solve: SolveOptions = field(default_factory=SolveOptions)
 
     @property
@@ -146,7 +156,7 @@ def reconstruct(
     on_stage: StageReport = _silent,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
-    found = find_lines(photo, on_stage)
+    found = find_lines(photo, on_stage, options.faint)
     whole, graph = connect(found, options)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = solve(graph, options.solve, on_progress)
@@ -154,8 +164,12 @@ def reconstruct(
     return place(photo, found, graph, solution, options, len(whole.segments) - len(graph.segments))
 
 
-def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
-    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame."""
+def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = False) -> FoundLines:
+    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame.
+
+    With `faint`, a second look adds what the grain of a photo hides that is not small. The frame is always that of the
+    first look.
+    """
     on_stage("finding segments")
     raw = find_segments(photo.grey)
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
@@ -163,6 +177,9 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
+    if faint and photo.width >= SMALL_WIDTH:
+        on_stage("finding faint segments")
+        raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
     pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
     return FoundLines(camera, frame, pieces, tuple(notes))
@@ -289,11 +306,16 @@ def _scene(
     telling = solution.connected & graph.informative
     parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
     hinged = hinged_nodes(graph, telling)
-    if held is not None and parts:  # the largest body comes first, also where more lines hang together loosely
-        largest = max(parts, key=lambda part: int(held.within[part].sum()))
-        parts.sort(key=lambda part: part is not largest)
     if firm is not None:
         hinged |= ~firm
+    if held is not None and parts:
+        parts, lifted, tied = _tie_parts(graph, camera, frame, lifted, parts, held)
+        hinged |= tied
+        if tied[parts[0]].any():
+            notes.append(
+                f"{int(tied[parts[0]].sum())} lines of component 0 are not connected to the rest of it by crossings: "
+                "their place follows from window grids that continue (supported)"
+            )
     if not parts:
         raise ReconstructionError(
             "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
@@ -347,6 +369,33 @@ def _scene(
         ),
         notes=tuple(notes),
     )  # fmt: skip
+
+
+def _tie_parts(
+    graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int], held: Held
+) -> tuple[list[Int], Lifted, Bool]:
+    """The parts joined where window grids tie them, each with one scale.
+
+    The one with the most lines in bodies comes first, also where more lines hang together loosely, the others in the
+    order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The mask
+    (N,) tells the lines of parts that are not the largest of those they were joined with.
+    """
+    joined = join_bodies(find_grid_ties(graph, camera, frame.rotation, parts, lifted.offset), len(parts))
+    sizes = [(int(held.within[part].sum()), len(part)) for part in parts]
+    scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
+    groups: list[Int] = []
+    for group in np.unique(joined.group).tolist():
+        members = np.flatnonzero(joined.group == group).tolist()
+        lead = max(members, key=lambda member: sizes[member])
+        for member in members:
+            scale[parts[member]] = np.exp(joined.log_scale[member] - joined.log_scale[lead])
+            tied[parts[member]] = member != lead
+        groups.append(np.sort(np.concatenate([parts[member] for member in members])))
+    groups.sort(key=lambda lines: (-len(lines), int(lines[0])))
+    largest = max(groups, key=lambda lines: int(held.within[lines].sum()))
+    groups.sort(key=lambda lines: lines is not largest)
+    lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
+    return groups, lifted, tied
 
 
 def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:

@@ -14,6 +14,7 @@ from linecad.scene import Camera, Float, Int, ManhattanFrame, Segments
 SMALL_WIDTH = 1280.0  # px; narrower photos show lines in fewer pixels than detector and labels ask for
 DETECTOR_SCALE = 0.8  # from SMALL_WIDTH on; more in proportion below: the detector's noise floor is in pixels
 DETECTOR_SCALE_LIMIT = 1.6  # an enlarged photo has no more to show
+GRAIN = 5  # px, side of the median filter before the second look
 MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
 MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
 
@@ -44,6 +45,11 @@ def find_segments(grey: NDArray[np.uint8]) -> Segments:
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) >= max(MIN_FRAGMENT * scale, MIN_FRAGMENT_FLOOR)
     ends = ends[long_enough]
     return Segments(ends, np.full(len(ends), -1))
+
+
+def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
+    """What a second look finds at a photo (H, W) without its grain: edges that noise hides from the first."""
+    return find_segments(np.asarray(cv2.medianBlur(grey, GRAIN), np.uint8))
 
 
 def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:

@@ -10,6 +10,7 @@ from linecad.segments import (
     GROUP_ACROSS,
     GROUP_ALONG,
     detector_scale,
+    find_faint_segments,
     find_segments,
     group_segments,
     label_angle,
@@ -45,6 +46,20 @@ def test_the_edges_of_a_drawn_rectangle_are_found(width):
     for place, column in expected:
         off = np.abs(long[:, :, column] - place).max(axis=1)
         assert (off < 1.5).sum() == 1
+
+
+@pytest.mark.parametrize(("width", "deviation"), [(1600, 8), (1600, 10), (2400, 9)])
+def test_the_second_look_finds_more_of_a_faint_edge_in_grain(width, deviation):
+    grain = np.random.default_rng(5).normal(0, deviation, (width * 3 // 4, width))
+    image = np.full(grain.shape, 120.0) + grain
+    image[:, width // 2 :] += 22
+    image = np.clip(image, 0, 255).astype(np.uint8)
+
+    def shown(found):
+        on_edge = np.abs(found.ends[:, :, 0] - width / 2).max(axis=1) < 3
+        return found.length[on_edge].sum() / len(image)
+
+    assert shown(find_faint_segments(image)) > shown(find_segments(image)) + 0.15
 
 
 def test_texture_is_no_segment():
