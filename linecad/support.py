@@ -12,7 +12,9 @@ the whole. Their sum is the *doubt* about the photo: small for one building, wha
 several buildings that hide each other.
 """
 
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
@@ -60,19 +62,27 @@ def draw(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Dra
     random = np.random.default_rng(seed)
     first, second = graph.edges.T
     present = np.ones((fits, count), bool)
-    depth, group = np.zeros((fits, count)), np.zeros((fits, count), np.int64)
     in_turn = int(1 / LEFT_OUT)
     for number in range(fits):
         if number % in_turn == 0:
             rank = random.permutation(count) / max(1, count)
         out = LEFT_OUT * (number % in_turn)
         present[number] = (rank < out) | (rank >= out + LEFT_OUT)
-        depth[number] = refit(present[number])
+    with ThreadPoolExecutor(_threads()) as pool:  # the linear algebra of sparse systems runs beside the interpreter
+        depth = np.array(list(pool.map(refit, present))).reshape(fits, count)
+    group = np.zeros((fits, count), np.int64)
+    for number in range(fits):
         apart = np.abs(depth[number, first] - depth[number, second] - graph.log_ratio)
         ties = graph.informative & present[number, first] & present[number, second]
         ties &= apart <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
         group[number] = _groups(count, graph.edges[ties])
     return Draws(present, depth, group)
+
+
+def _threads() -> int:
+    """As many as this process may use: OMP_NUM_THREADS where that is set, as by runs of many photos, else the cores."""
+    asked = os.environ.get("OMP_NUM_THREADS", "")
+    return max(1, int(asked)) if asked.isdigit() else os.cpu_count() or 1
 
 
 @dataclass(frozen=True, eq=False)
