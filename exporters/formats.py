@@ -1,16 +1,19 @@
 """The formats that a scene can be written in, and the one function that writes them all.
 
-To add a format, write one module with `write(scene, path)` and give it a row in FORMATS.
+To add a format, write one module with `write(scene, path)` and give it a row in FORMATS. What a user can choose about
+a format stands in its row; `write` takes it by keyword.
 """
 
 import importlib
 import threading
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from exporters.options import Option, Value, read_options
 from linecad.errors import OutputError
 from linecad.files import check_output, write_atomically
 from linecad.scene import Camera, Scene
@@ -29,12 +32,19 @@ class Format(NamedTuple):
     phrase: str  # what the file holds, for people
     unit: str  # of the lengths in the file
     shows_photo: bool = False  # its `write` also takes the photo
+    options: tuple[Option, ...] = ()  # its `write` takes each by keyword
 
+
+_VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
+_SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
+_TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
 
 FORMATS: dict[str, Format] = {
-    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres"),
-    ".step": Format("exporters.step", "lines and faces as named and coloured parts", "millimetres"),
-    ".glb": Format("exporters.gltf", "lines, faces and the camera for viewers and Blender", "metres"),
+    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION,)),
+    ".step": Format("exporters.step", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN,)),
+    ".glb": Format(
+        "exporters.gltf", "lines, faces and the camera for viewers and Blender", "metres", options=(_TUBES,)
+    ),
     ".usda": Format("exporters.usd", "a USD stage as text: lines, faces, camera", "metres"),
     ".usdc": Format("exporters.usd", "a USD stage as a compact file: lines, faces, camera", "metres"),
     ".usdz": Format("exporters.usd", "a USD stage as a package: lines, faces, camera", "metres"),
@@ -60,14 +70,33 @@ def find_format(path: Path) -> Format:
     return FORMATS[suffix]
 
 
-def export(scene: Scene, path: Path, photo: NDArray[np.uint8] | None = None) -> None:
+def options_for(paths: Iterable[Path], texts: Iterable[str]) -> dict[str, Value]:
+    """The values of the options KEY=VALUE, by key, for `export` to all of `paths`.
+
+    Raises OutputError for an unknown suffix, a value that is not accepted, and a key that none of the formats has.
+    """
+    formats = {path.suffix.lower(): find_format(path).options for path in paths}
+    return read_options(texts, formats)
+
+
+def export(
+    scene: Scene,
+    path: Path,
+    photo: NDArray[np.uint8] | None = None,
+    options: Mapping[str, Value] | None = None,
+) -> None:
     """Write a scene in the format that the suffix of `path` chooses, whole or not at all.
 
     `photo` is RGB, (H, W, 3), of exactly the size of the scene's camera; formats that show the photo do without it
-    where it is None. Raises ValueError for a photo of another kind, and OutputError for an unknown suffix, a place
-    that cannot be written, a full disk, or a scene that holds nothing for this format.
+    where it is None. `options` has values by key, as `options_for` returns them; the format takes those of its own.
+    Raises ValueError for a photo of another kind, and OutputError for an unknown suffix, a place that cannot be
+    written, a full disk, or a scene that holds nothing for this format.
     """
     chosen = find_format(path)
+    given = {} if options is None else options
+    arguments: dict[str, Any] = {option.name: given.get(option.key, option.default) for option in chosen.options}
+    if chosen.shows_photo:
+        arguments["photo"] = photo
     _check_photo(photo, scene.camera)
     if not len(scene.lines) and not scene.faces:
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
@@ -76,10 +105,7 @@ def export(scene: Scene, path: Path, photo: NDArray[np.uint8] | None = None) -> 
 
     def write(temporary: Path) -> None:
         with _ONE_AT_A_TIME:
-            if chosen.shows_photo:
-                module.write(scene, temporary, photo)
-            else:
-                module.write(scene, temporary)
+            module.write(scene, temporary, **arguments)
 
     write_atomically(path, write)
 

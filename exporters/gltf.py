@@ -9,6 +9,8 @@ holds the photo, and its extras `linecad_...` tell that frame and the camera mat
 
 Line ids stand in the extras of each group of lines, and as vertex attribute _LINEID where all ids of the group are
 small enough for a float32, the only kind of number that holds them there.
+
+Renderers leave out what has no surface. So the lines can be written as thin tubes instead.
 """
 
 import math
@@ -23,10 +25,11 @@ from trimesh.path.entities import Line
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point
+from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
 from exporters.colours import FACE, RGB, line_colour, linear
 from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from exporters.tubes import build_tubes
 from linecad.scene import AXES, Scene
 
 _ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
@@ -34,14 +37,13 @@ _FACE_MATERIAL = "face"
 _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)
 _LARGEST_EXACT_FLOAT32 = 2**24  # all integers up to here have their own float32
 _VERTEX_TARGET, _INDEX_TARGET = 34962, 34963  # bufferView.target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
-_LINE_MODE = 1  # primitive.mode of pairs of points
 _UNLIT = "KHR_materials_unlit"
 
 _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
-def write(scene: Scene, path: Path) -> None:
-    """Write the scene as GLB to `path`; OSError where that fails."""
+def write(scene: Scene, path: Path, tubes: bool = False) -> None:
+    """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails."""
     model = build_model(scene)
 
     def complete(tree: _Tree) -> None:
@@ -52,10 +54,10 @@ def write(scene: Scene, path: Path) -> None:
         _add_camera(tree, scene, model)
         _add_planes(tree, scene)
 
-    path.write_bytes(export_glb(_build_scene(model), include_normals=True, tree_postprocessor=complete))
+    path.write_bytes(export_glb(_build_scene(scene, model, tubes), include_normals=True, tree_postprocessor=complete))
 
 
-def _build_scene(model: Model) -> trimesh.Scene:
+def _build_scene(scene: Scene, model: Model, tubes: bool) -> trimesh.Scene:
     graph = trimesh.Scene(base_frame="world")
     graph.graph.update(frame_from="world", frame_to=_ROOT)
     if model.groups:
@@ -63,7 +65,9 @@ def _build_scene(model: Model) -> trimesh.Scene:
     if model.faces:
         graph.graph.update(frame_from=_ROOT, frame_to=_FACES)
     for group in model.groups:
-        graph.add_geometry(_path(group), node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
+        width = line_width(model, scene.rotation, group.is_boundary)
+        lines = _tubes(group, width) if tubes else _path(group)
+        graph.add_geometry(lines, node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
     material = PBRMaterial(name=_FACE_MATERIAL, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
     for face in model.faces:
         mesh = _mesh(face, material)
@@ -76,11 +80,29 @@ def _path(group: LineGroup) -> Path3D:
         entities=[Line([2 * number, 2 * number + 1]) for number in range(len(group.ids))],
         vertices=group.ends.reshape(-1, 3) @ _Y_UP.T,
         process=False,  # merged points would be shared by lines, which have their own ids
-        metadata={"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()},
+        metadata=_told(group),
     )
-    if group.ids.max() <= _LARGEST_EXACT_FLOAT32:
-        path.vertex_attributes["_LINEID"] = np.repeat(group.ids, 2).astype(np.float32)
+    _set_ids(path, group, 2)
     return path
+
+
+def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
+    """The lines of a group as one mesh of closed tubes."""
+    vertices, triangles, normals = build_tubes(group.ends, width / 2)
+    mesh = trimesh.Trimesh(
+        vertices @ _Y_UP.T, triangles, process=False, vertex_normals=normals @ _Y_UP.T, metadata=_told(group)
+    )
+    _set_ids(mesh, group, len(vertices) // len(group.ids))
+    return mesh
+
+
+def _told(group: LineGroup) -> _Tree:
+    return {"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()}
+
+
+def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_line: int) -> None:
+    if group.ids.max() <= _LARGEST_EXACT_FLOAT32:
+        shape.vertex_attributes["_LINEID"] = np.repeat(group.ids, vertices_per_line).astype(np.float32)
 
 
 def _mesh(face: FlatFace, material: PBRMaterial) -> trimesh.Trimesh:
@@ -103,10 +125,8 @@ def _set_materials(tree: _Tree, model: Model) -> None:
     tree["materials"] = [*faces, *materials.values()]
     for mesh in tree["meshes"]:
         for primitive in mesh["primitives"]:
-            if primitive["mode"] == _LINE_MODE:
-                primitive["material"] = tree["materials"].index(materials[mesh["name"]])
-            else:
-                primitive["material"] = 0
+            material = materials.get(mesh["name"])
+            primitive["material"] = 0 if material is None else tree["materials"].index(material)
     if materials:
         tree["extensionsUsed"] = [_UNLIT]
 

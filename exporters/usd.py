@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdShade, Vt
 
-from exporters.camera import camera_to_world, clipping_range, principal_point
+from exporters.camera import camera_to_world, clipping_range, line_width, principal_point
 from exporters.colours import FACE, RGB, line_colour, linear
 from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
@@ -24,7 +24,6 @@ _FACE_MATERIAL = _MATERIALS.AppendChild("face")
 _CONTENT = {"full": (True, True), "wireframe": (True, False), "faces": (False, True)}  # variant: lines, faces shown
 
 _APERTURE = 0.36  # width of the film in tenths of a unit, as USD counts them: 36 mm where the unit is a metre
-_WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of the curves over the middle depth of the model, by boundary
 _LARGEST_INT32 = 2**31 - 1
 _ALIGNMENT = 64  # bytes; a package's layers start at multiples of it, so that they can be mapped into memory
 _PADDING_ID = 0x1986  # of the zip extra field that makes up the alignment, as USD's own writer calls it
@@ -77,7 +76,7 @@ def _build_stage(scene: Scene) -> Usd.Stage:
     for path in (_LINES, _FACES, _MATERIALS):
         UsdGeom.Scope.Define(stage, path)
     for group in model.groups:
-        _add_lines(stage, group, _width(model, scene, group.is_boundary))
+        _add_lines(stage, group, line_width(model, scene.rotation, group.is_boundary))
     if model.faces:
         _add_material(stage, _FACE_MATERIAL, FACE, emits=False)
     for face in model.faces:
@@ -89,11 +88,6 @@ def _build_stage(scene: Scene) -> Usd.Stage:
     hint = UsdGeom.ModelAPI.Apply(root.GetPrim())
     hint.SetExtentsHint(hint.ComputeExtentsHint(boxes))
     return stage
-
-
-def _width(model: Model, scene: Scene, is_boundary: bool) -> float:
-    """How thick curves are drawn, in m: thin as seen from the camera, whatever the scale of the scene."""
-    return _WIDTH_SHARE[is_boundary] * float(np.median(np.abs(model.points @ scene.rotation[2])))
 
 
 def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:

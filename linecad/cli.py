@@ -17,6 +17,7 @@ from linecad import __version__
 from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
+    from exporters.options import Value
     from linecad.photo import Photo
     from linecad.scene import Scene
     from solver.problem import Progress
@@ -206,6 +207,10 @@ def _add_outputs(parser: argparse.ArgumentParser) -> None:
         "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
         help="file to write, its suffix chooses the format (see linecad export --formats); may be given again",
     )  # fmt: skip
+    parser.add_argument(
+        "--option", action="append", default=[], metavar="KEY=VALUE",
+        help="what one format alone needs (see linecad export --formats); may be given again",
+    )  # fmt: skip
 
 
 def _add_loudness(parser: argparse.ArgumentParser) -> None:
@@ -264,7 +269,7 @@ def _families(text: str) -> frozenset[str]:
 
 
 def _convert(parsed: argparse.Namespace) -> int:
-    _check_outputs(parsed.output, [parsed.photo, parsed.camera])
+    values = _check_outputs(parsed.output, [parsed.photo, parsed.camera], parsed.option)
     from linecad.photo import read_photo
     from linecad.pipeline import ReconstructOptions, reconstruct
     from solver.problem import SolveOptions
@@ -291,7 +296,7 @@ def _convert(parsed: argparse.Namespace) -> int:
         show.stage("reading the photo")
         photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
         scene = reconstruct(photo, options, show.progress, show.stage)
-        _write(scene, photo, parsed.output, show)
+        _write(scene, photo, parsed.output, values, show)
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
@@ -350,14 +355,14 @@ def _export(parsed: argparse.Namespace) -> int:
         return _print_formats()
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
-    _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    values = _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera], parsed.option)
     from linecad.scenefile import read_scene
 
     with _Shown(parsed) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
         photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
-        _write(scene, photo, parsed.output, show)
+        _write(scene, photo, parsed.output, values, show)
     return 0
 
 
@@ -397,19 +402,19 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     return photo
 
 
-def _check_outputs(outputs: list[Path], inputs: list[Path | None]) -> None:
-    """Everything that can be known to fail is refused before the long work starts."""
-    from exporters.formats import find_format
+def _check_outputs(outputs: list[Path], inputs: list[Path | None], options: list[str]) -> "dict[str, Value]":
+    """Refuse, before the long work starts, everything that can be known to fail; the values of the formats' options."""
+    from exporters.formats import options_for
     from linecad.files import check_output
 
     if not outputs:
         raise OutputError("no output was named; give one or more, such as -o scene.json -o scene.step")
+    values = options_for([path for path in outputs if path.suffix.lower() != SCENE_SUFFIX], options)
     for path in outputs:
-        if path.suffix.lower() != SCENE_SUFFIX:
-            find_format(path)
         check_output(path)
     _check_kept(outputs, [path for path in inputs if path is not None])
     _check_distinct(outputs)
+    return values
 
 
 def _check_kept(outputs: list[Path], inputs: list[Path]) -> None:
@@ -425,7 +430,9 @@ def _check_distinct(outputs: list[Path]) -> None:
         raise OutputError("the same output was named twice; name each once")
 
 
-def _write(scene: "Scene", photo: "Photo | None", outputs: list[Path], show: "_Shown") -> None:
+def _write(
+    scene: "Scene", photo: "Photo | None", outputs: list[Path], values: "dict[str, Value]", show: "_Shown"
+) -> None:
     from exporters.formats import export
     from linecad.scenefile import write_scene
 
@@ -434,7 +441,7 @@ def _write(scene: "Scene", photo: "Photo | None", outputs: list[Path], show: "_S
         if path.suffix.lower() == SCENE_SUFFIX:
             write_scene(scene, path)
         else:
-            export(scene, path, None if photo is None else photo.pixels)
+            export(scene, path, None if photo is None else photo.pixels, values)
 
 
 def _print_formats() -> int:
@@ -443,6 +450,8 @@ def _print_formats() -> int:
     print(f"{SCENE_SUFFIX:6} the scene file, which `linecad export` reads (docs/scene-file.md)")
     for suffix, row in FORMATS.items():
         print(f"{suffix:6} {row.phrase} (in {row.unit})")
+        for option in row.options:
+            print(f"         --option {option.key}={option.usual}: {option.phrase}; {option.accepted}")
     return 0
 
 

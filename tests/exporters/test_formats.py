@@ -248,7 +248,7 @@ def test_only_the_module_of_the_format_is_loaded(scene, tmp_path):
 def test_a_writer_that_fails_midway_leaves_the_old_file(scene, tmp_path, monkeypatch):
     class Failing:
         @staticmethod
-        def write(_, path):
+        def write(_, path, **_options):
             path.write_text("half")
             raise OSError(28, "No space left on device")
 

@@ -262,8 +262,46 @@ def test_commands_that_say_too_little(fails, arguments):
 def test_formats_lists_every_suffix(capsys):
     assert main(["export", "--formats"]) == 0
     out, err = capsys.readouterr()
-    assert [line.split()[0] for line in out.splitlines()] == [".json", *FORMATS]
+    assert [line.split()[0] for line in out.splitlines() if line.startswith(".")] == [".json", *FORMATS]
     assert err == ""
+
+
+def test_formats_lists_every_option_with_its_default(capsys):
+    main(["export", "--formats"])
+    listed = [line.strip() for line in capsys.readouterr().out.splitlines() if line.startswith(" ")]
+    expected = [option for row in FORMATS.values() for option in row.options]
+    assert len(listed) == len(expected) >= 3
+    for line, option in zip(listed, expected, strict=True):
+        assert line.startswith(f"--option {option.key}={option.usual}: ")
+        assert option.accepted in line
+
+
+@pytest.mark.parametrize(
+    ("output", "option", "words"),
+    [
+        ("a.glb", "tubes", "no value; write it like KEY=VALUE"),
+        ("a.glb", "tubes=perhaps", "option tubes is 'perhaps', expected on or off"),
+        ("a.dxf", "version=R12", "option version is 'R12', expected R2010 or R2018"),
+        ("a.glb", "tube=on", "no option 'tube' for .glb, which has tubes"),
+        ("a.step", "tubes=on", "no option 'tubes' for .step"),
+        ("a.stl", "tubes=on", "for .stl, which has no options"),
+        ("a.json", "tubes=on", "no option 'tubes' for the scene file, which has no options"),
+    ],
+)
+@pytest.mark.parametrize("command", ["convert", "export"])
+def test_a_bad_option_is_refused_before_the_work(fails, scene_file, command, output, option, words):
+    source = ROOM if command == "convert" else scene_file
+    assert words in fails(command, source, "-o", output, "--option", option)
+
+
+def test_an_option_reaches_its_format(folder, scene_file):
+    outputs = ["-o", "a.dxf", "-o", "a.glb", "-o", "a.json"]
+    options = ["--option", "version=R2018", "--option", "tubes=on"]
+    assert main(["export", str(scene_file), *outputs, *options, "--quiet"]) == 0
+    assert main(["export", str(scene_file), "-o", "b.dxf", "-o", "b.glb", "--quiet"]) == 0
+    versions = [(folder / name).read_text()[:400].count("AC1032") for name in ("a.dxf", "b.dxf")]
+    assert versions == [1, 0]
+    assert (folder / "a.glb").stat().st_size > (folder / "b.glb").stat().st_size
 
 
 def test_version_and_help(folder):
