@@ -79,8 +79,9 @@ def read_options(texts: Iterable[str], formats: Mapping[str, tuple[Option, ...]]
             raise OutputError(f"option {_shown(text)} has no value; write it like KEY=VALUE")
         if key not in known:
             given = f"has {', '.join(known)}" if known else "has no options"
+            written = ", ".join(sorted(formats)) or "the scene file"
             raise OutputError(
-                f"there is no option {_shown(key)} for {', '.join(sorted(formats)) or 'the scene file'}, which {given}; "
+                f"there is no option {_shown(key)} for {written}, which {given}; "
                 "`linecad export --formats` lists them all"
             )
         values[key] = known[key].read(value)
