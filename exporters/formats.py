@@ -32,6 +32,7 @@ class Format(NamedTuple):
     phrase: str  # what the file holds, for people
     unit: str  # of the lengths in the file
     shows_photo: bool = False  # its `write` also takes the photo
+    needs_photo: bool = False  # and raises OutputError where it is None
     options: tuple[Option, ...] = ()  # its `write` takes each by keyword
 
 
@@ -51,7 +52,12 @@ FORMATS: dict[str, Format] = {
     ".obj": Format("exporters.mesh", "faces as triangles, and lines", "metres"),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres"),
     ".stl": Format("exporters.mesh", "faces as triangles", "metres"),
-    ".png": Format("exporters.picture", "the photo with its lines, and three views of them in space", "pixels", True),
+    ".fspy": Format(
+        "exporters.fspy", "the photo with its camera, to correct in fSpy", "metres", shows_photo=True, needs_photo=True
+    ),
+    ".png": Format(
+        "exporters.picture", "the photo with its lines, and three views of them in space", "pixels", shows_photo=True
+    ),
 }
 
 

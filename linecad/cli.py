@@ -87,8 +87,9 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_outputs(convert)
     camera = convert.add_mutually_exclusive_group()
     camera.add_argument(
-        "--camera", type=Path, metavar="FILE", help='calibration: JSON with width, height, K, "distortion"'
-    )
+        "--camera", type=Path, metavar="FILE",
+        help='calibration: JSON with width, height, K, "distortion", or an fSpy project',
+    )  # fmt: skip
     camera.add_argument(
         "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
     )
@@ -177,7 +178,7 @@ def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
     export.add_argument("scene", type=Path, metavar="SCENE.json", nargs="?")
     _add_outputs(export)
     export.add_argument(
-        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for the picture (else looked for)"
+        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for formats that show it (else looked for)"
     )
     export.add_argument(
         "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
@@ -361,9 +362,16 @@ def _export(parsed: argparse.Namespace) -> int:
     with _Shown(parsed) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
-        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
+        photo = _photo_of(scene, parsed) if _show_photo(parsed.output) else None
         _write(scene, photo, parsed.output, values, show)
     return 0
+
+
+def _show_photo(outputs: list[Path]) -> bool:
+    """Whether a format of any of them shows the photo."""
+    from exporters.formats import find_format
+
+    return any(path.suffix.lower() != SCENE_SUFFIX and find_format(path).shows_photo for path in outputs)
 
 
 def _dataset(parsed: argparse.Namespace) -> int:
