@@ -18,12 +18,15 @@ from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
     from exporters.options import Value
+    from linecad.metric import Known
     from linecad.photo import Photo
     from linecad.scene import Scene
     from solver.problem import Progress
 
 SCENE_SUFFIX = ".json"
 SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibration
+LONGEST_ID = 17  # digits; ids are below 2^53
+LARGEST_PIXEL = 1e6
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
 
 
@@ -116,6 +119,7 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--collinear", action=argparse.BooleanOptionalAction, default=None,
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
+    _add_scale(convert)
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(
         "--witnesses", type=_count, metavar="N",
@@ -183,6 +187,7 @@ def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
     export.add_argument(
         "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
     )
+    _add_scale(export)
     export.add_argument("--formats", action="store_true", help="list the formats and end")
     _add_loudness(export)
 
@@ -201,6 +206,19 @@ def _add_dataset(commands: "argparse._SubParsersAction[_Parser]") -> None:
     dataset.add_argument("--size", type=_size, default=(3840, 2160), metavar="WxH", help="of the photos (3840x2160)")
     dataset.add_argument("--samples", type=int, default=32, metavar="N", help="rays a pixel: time against noise (32)")
     _add_loudness(dataset)
+
+
+def _add_scale(parser: argparse.ArgumentParser) -> None:
+    scale = parser.add_mutually_exclusive_group()
+    scale.add_argument(
+        "--scale", type=_scale, dest="known", metavar="LINE=METRES",
+        help="a known length: a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo on one "
+        "line or in one plane",
+    )  # fmt: skip
+    scale.add_argument(
+        "--camera-height", type=_camera_height, dest="known", metavar="METRES",
+        help="of the camera above the ground, the lowest horizontal plane",
+    )  # fmt: skip
 
 
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
@@ -241,6 +259,38 @@ def _not_negative(text: str) -> float:
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
     return value
+
+
+def _scale(text: str) -> "Known":
+    from linecad.metric import LineLength, PointDistance
+
+    what, equals, length = text.rpartition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 12=3.5 or 840,310:840,655=2.1")
+    metres = _positive(length)
+    if what.isascii() and what.isdecimal() and len(what) < LONGEST_ID:
+        return LineLength(int(what), metres)
+    numbers = re.split("[,:]", what)
+    if len(numbers) != 4 or not re.fullmatch("[^:]*:[^:]*", what):
+        raise argparse.ArgumentTypeError(f"{what!r} is neither the id of a line nor two px like 840,310:840,655")
+    a, b, c, d = map(_pixel, numbers)
+    return PointDistance(((a, b), (c, d)), metres)
+
+
+def _pixel(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of px") from None
+    if not abs(value) <= LARGEST_PIXEL:
+        raise argparse.ArgumentTypeError(f"{text} px lies outside every photo")
+    return value
+
+
+def _camera_height(text: str) -> "Known":
+    from linecad.metric import CameraHeight
+
+    return CameraHeight(_positive(text))
 
 
 def _extension(text: str) -> float:
@@ -296,7 +346,7 @@ def _convert(parsed: argparse.Namespace) -> int:
     with _Shown(parsed) as show:
         show.stage("reading the photo")
         photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
-        scene = reconstruct(photo, options, show.progress, show.stage)
+        scene = _measured(reconstruct(photo, options, show.progress, show.stage), parsed.known)
         _write(scene, photo, parsed.output, values, show)
     real = int(scene.intersections.real.sum())
     print(
@@ -361,10 +411,16 @@ def _export(parsed: argparse.Namespace) -> int:
 
     with _Shown(parsed) as show:
         show.stage("reading the scene")
-        scene = read_scene(parsed.scene)
+        scene = _measured(read_scene(parsed.scene), parsed.known)
         photo = _photo_of(scene, parsed) if _show_photo(parsed.output) else None
         _write(scene, photo, parsed.output, values, show)
     return 0
+
+
+def _measured(scene: "Scene", known: "Known | None") -> "Scene":
+    from linecad.metric import set_scale
+
+    return scene if known is None else set_scale(scene, known)
 
 
 def _show_photo(outputs: list[Path]) -> bool:

@@ -37,6 +37,7 @@ FLOORS = [
         "linecad.weighting",
         "linecad.offsets",
         "linecad.outlines",
+        "linecad.metric",
     ],
     ["linecad.sheets"],  # a part of faces
     [

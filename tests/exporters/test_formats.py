@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pxr import Usd
 
 from exporters import formats
 from exporters.formats import FORMATS, export, find_format, suffixes
@@ -271,3 +272,25 @@ def test_a_writer_that_fails_midway_leaves_the_old_file(scene, tmp_path, monkeyp
         export(scene, tmp_path / "a.dxf")
     assert (tmp_path / "a.dxf").read_text() == "old"
     assert names(tmp_path) == ["a.dxf"]
+
+
+UNITS = {
+    ".dxf": b"$INSUNITS\n 70\n6\n",
+    ".step": b"SI_UNIT(.MILLI.,.METRE.)",
+    ".usda": b"metersPerUnit = 1\n",
+    ".usdc": b"metersPerUnit = 1\n",
+    ".usdz": b"metersPerUnit = 1\n",
+}
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in {".png", ".fspy"}])
+def test_the_unit_is_told_and_the_scale_is_told_or_said_to_be_unknown(scene, free_unit, tmp_path, suffix):
+    """Package and compact stage hold what the stage as text says; the binary forms are read in their own tests."""
+    for each, note in ((scene, b"lengths are in metres"), (free_unit, b"scale of the photo is not known")):
+        path = tmp_path / f"a{suffix}"
+        save(each, path)
+        data = path.read_bytes().replace(b"\r\n", b"\n")
+        if suffix in {".usdc", ".usdz"}:
+            data = Usd.Stage.Open(str(path)).ExportToString().encode()
+        assert note in data
+        assert UNITS.get(suffix, b"") in data

@@ -294,6 +294,48 @@ def test_a_bad_option_is_refused_before_the_work(fails, scene_file, command, out
     assert words in fails(command, source, "-o", output, "--option", option)
 
 
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        (["--scale", "12"], "is no length; write it like 12=3.5"),
+        (["--scale", "=3"], "'' is neither the id of a line nor two px"),
+        (["--scale", "12="], "'' is not a number"),
+        (["--scale", "12=0"], "0 is not a positive number"),
+        (["--scale", "12=inf"], "inf is not a number of zero or more"),
+        (["--scale=-1=2"], "neither the id of a line"),
+        (["--scale", "1,2:3=2"], "neither the id of a line"),
+        (["--scale", "1,2,3,4=2"], "neither the id of a line"),
+        (["--scale", "1,2:3,x=2"], "'x' is not a number of px"),
+        (["--scale", "1,2:3,nan=2"], "nan px lies outside every photo"),
+        (["--camera-height", "-2"], "-2 is not a number of zero or more"),
+        (["--camera-height", "2", "--scale", "1=2"], "not allowed with"),
+    ],
+)
+def test_a_length_that_is_none_is_wrong_usage(fails, scene_file, option, words):
+    assert words in fails("export", scene_file, "-o", "a.json", *option, code=2)
+
+
+def test_a_line_that_is_not_there_cannot_be_measured(fails, scene_file):
+    assert "no line 99999" in fails("export", scene_file, "-o", "a.json", "--scale", "99999=2")
+
+
+def test_a_known_length_scales_the_files_and_not_the_scene(folder, scene_file):
+    before = json.loads(scene_file.read_text())
+    line = before["lines"][7]
+    length = float(np.linalg.norm(np.subtract(*line["ends"])))
+    arguments = ["-o", "a.json", "-o", "a.obj", "-o", "a.dxf", "--scale", f"{line['id']}={length / 4}", "--quiet"]
+    assert main(["export", str(scene_file), *arguments]) == 0
+    after = json.loads((folder / "a.json").read_text())
+    assert after["metres_per_unit"] == pytest.approx(0.25)
+    assert after["lines"] == before["lines"]
+    assert after["planes"] == before["planes"]
+    (u, v), (x, y) = line["segment"]
+    arguments = ["-o", "b.json", "--scale", f"{u},{v}:{x},{y}={length / 4}", "--quiet"]
+    assert main(["export", str(scene_file), *arguments]) == 0
+    assert json.loads((folder / "b.json").read_text())["metres_per_unit"] == pytest.approx(0.25, rel=0.2)
+    assert "lengths are in metres" in (folder / "a.obj").read_text()
+
+
 def test_an_option_reaches_its_format(folder, scene_file):
     outputs = ["-o", "a.dxf", "-o", "a.glb", "-o", "a.json"]
     options = ["--option", "version=R2018", "--option", "tubes=on"]
