@@ -13,7 +13,7 @@ import bpy
 import numpy as np
 from mathutils import Matrix, Vector
 
-SAMPLES = 12  # rays a pixel
+SAMPLES = 24  # rays a pixel
 WIDTH = 1000  # px of each render
 MODEL_SHARE = 0.75  # of the model over the photo
 TURN = math.radians(-35)  # of the second view about the middle of the model
@@ -29,6 +29,7 @@ def main(file, photo, picture):
         bpy.ops.import_scene.gltf(filepath=file)
     else:
         bpy.ops.wm.usd_import(filepath=file)
+        colour_lines()
     scene = bpy.context.scene
     camera = next(item for item in bpy.data.objects if item.type == "CAMERA")
     scene.camera = camera
@@ -47,6 +48,20 @@ def main(file, photo, picture):
     beside = render(scene, picture)
     right = beside[..., :3] + (1 - beside[..., 3:])
     save(np.concatenate([left, right], axis=1), picture)
+
+
+def colour_lines():
+    """Give the curves of a USD stage the colours of their axes, for Blender's importer leaves curves without any."""
+    axes = {"x": (0.73, 0.02, 0.02), "y": (0.01, 0.34, 0.04), "z": (0.02, 0.11, 0.83)}
+    for item in bpy.data.objects:
+        if item.type == "CURVES" and item.name.startswith("lines_"):
+            material = bpy.data.materials.new(item.name)
+            material.use_nodes = True
+            shader = material.node_tree.nodes["Principled BSDF"]
+            shader.inputs["Emission Color"].default_value = (*axes[item.name[6]], 1)
+            shader.inputs["Emission Strength"].default_value = 1
+            shader.inputs["Base Color"].default_value = (0, 0, 0, 1)
+            item.data.materials.append(material)
 
 
 def set_lens_and_shift(camera):
@@ -78,14 +93,19 @@ def prepare(scene, width, height):
 def orbit(camera):
     """Turn the camera about the middle of the model, and up a little."""
     bpy.context.view_layer.update()
-    corners = [item.matrix_world @ Vector(c) for item in bpy.data.objects if item.type == "MESH" for c in item.bound_box]
+    corners = [
+        item.matrix_world @ Vector(c) for item in bpy.data.objects if item.type == "MESH" for c in item.bound_box
+    ]
     distances = sorted((camera.matrix_world.inverted() @ corner).z for corner in corners)
     forward = camera.matrix_world.to_quaternion() @ Vector((0, 0, -1))
     middle = camera.matrix_world.translation + forward * -distances[len(distances) // 2]
     turn = Matrix.Rotation(TURN, 4, "Z") @ Matrix.Rotation(math.radians(-12), 4, camera.matrix_world.to_3x3().col[0])
     camera.data.clip_end *= 4
     camera.matrix_world = (
-        Matrix.Translation(middle) @ turn @ Matrix.Translation(-middle) @ camera.matrix_world
+        Matrix.Translation(middle)
+        @ turn
+        @ Matrix.Translation(-middle)
+        @ camera.matrix_world
         @ Matrix.Translation((0, 0, -distances[len(distances) // 2] * 0.3))
     )
 
