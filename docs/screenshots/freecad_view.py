@@ -30,7 +30,8 @@ def main():
             item.ViewObject.PointSize = 12
     window = FreeCADGui.getMainWindow()
     window.showNormal()
-    window.setGeometry(0, 0, WIDTH, HEIGHT)
+    ratio = window.devicePixelRatioF()  # FreeCAD scales its window by the screen's resolution
+    window.setGeometry(0, 0, int(WIDTH / ratio), int(HEIGHT / ratio))
     wait()
     view = FreeCADGui.getDocument(document.Name).ActiveView
     view.setCameraOrientation(
