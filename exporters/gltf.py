@@ -26,38 +26,45 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
-from exporters.colours import FACE, RGB, line_colour, linear
 from exporters.faces import triangulate
+from exporters.gltf_materials import add_pictures, set_materials
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from exporters.textures import Textures
 from exporters.tubes import build_tubes
-from linecad.scene import AXES, Scene
+from linecad.scene import AXES, Float, Scene
 
 _ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
-_FACE_MATERIAL = "face"
 _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)
 _LARGEST_EXACT_FLOAT32 = 2**24  # all integers up to here have their own float32
 _VERTEX_TARGET, _INDEX_TARGET = 34962, 34963  # bufferView.target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
-_UNLIT = "KHR_materials_unlit"
+_PLACEHOLDER = PBRMaterial()  # trimesh wants one; `set_materials` puts ours in its place
 
 _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
-def write(scene: Scene, path: Path, tubes: bool = False) -> None:
+def write(scene: Scene, path: Path, tubes: bool = False, textures: Textures | None = None) -> None:
     """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails."""
     model = build_model(scene)
+
+    def add_to_buffer(buffer: Any, _: _Tree) -> None:
+        if textures is not None:
+            add_pictures(buffer, textures)
 
     def complete(tree: _Tree) -> None:
         tree["asset"]["generator"] = "linecad"
         tree["asset"]["extras"] = {"linecad_unit": model.unit_note, "linecad_photo": model.photo}
-        _set_materials(tree, model)
+        set_materials(tree, model, textures)
         _set_targets(tree)
         _add_camera(tree, scene, model)
         _add_planes(tree, scene)
 
-    path.write_bytes(export_glb(_build_scene(scene, model, tubes), include_normals=True, tree_postprocessor=complete))
+    graph = _build_scene(scene, model, tubes, textures)
+    path.write_bytes(
+        export_glb(graph, include_normals=True, tree_postprocessor=complete, buffer_postprocessor=add_to_buffer)
+    )
 
 
-def _build_scene(scene: Scene, model: Model, tubes: bool) -> trimesh.Scene:
+def _build_scene(scene: Scene, model: Model, tubes: bool, textures: Textures | None) -> trimesh.Scene:
     graph = trimesh.Scene(base_frame="world")
     graph.graph.update(frame_from="world", frame_to=_ROOT)
     if model.groups:
@@ -68,9 +75,8 @@ def _build_scene(scene: Scene, model: Model, tubes: bool) -> trimesh.Scene:
         width = line_width(model, scene.rotation, group.is_boundary)
         lines = _tubes(group, width) if tubes else _path(group)
         graph.add_geometry(lines, node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
-    material = PBRMaterial(name=_FACE_MATERIAL, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
     for face in model.faces:
-        mesh = _mesh(face, material)
+        mesh = _mesh(face, None if textures is None else textures.coordinates(face))
         graph.add_geometry(mesh, node_name=face.name, geom_name=face.name, parent_node_name=_FACES)
     return graph
 
@@ -105,42 +111,15 @@ def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_lin
         shape.vertex_attributes["_LINEID"] = np.repeat(group.ids, vertices_per_line).astype(np.float32)
 
 
-def _mesh(face: FlatFace, material: PBRMaterial) -> trimesh.Trimesh:
+def _mesh(face: FlatFace, coordinates: Float | None) -> trimesh.Trimesh:
     return trimesh.Trimesh(
         face.vertices @ _Y_UP.T,
         triangulate(face),
         process=False,
-        visual=TextureVisuals(material=material),
+        visual=TextureVisuals(uv=coordinates, material=_PLACEHOLDER),
         vertex_normals=np.tile(_Y_UP @ face.normal, (len(face.vertices), 1)),
         metadata={"face_id": face.id, "plane_id": face.plane, "axis": AXES[face.axis], "offset": face.offset},
     )
-
-
-def _set_materials(tree: _Tree, model: Model) -> None:
-    """One material for the faces; one a group of lines, unlit, because a line has no normal for light to fall on."""
-    faces = [material for material in tree["materials"] if material.get("name") == _FACE_MATERIAL]
-    for material in faces:
-        material["pbrMetallicRoughness"]["baseColorFactor"] = [*linear(FACE), 1.0]  # trimesh would round it to bytes
-    materials = {group.name: _unlit(group.name, line_colour(group.axis, group.is_boundary)) for group in model.groups}
-    tree["materials"] = [*faces, *materials.values()]
-    for mesh in tree["meshes"]:
-        for primitive in mesh["primitives"]:
-            material = materials.get(mesh["name"])
-            primitive["material"] = 0 if material is None else tree["materials"].index(material)
-    if materials:
-        tree["extensionsUsed"] = [_UNLIT]
-
-
-def _unlit(name: str, colour: RGB) -> _Tree:
-    return {
-        "name": name,
-        "extensions": {_UNLIT: {}},
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [*linear(colour), 1.0],
-            "metallicFactor": 0.0,
-            "roughnessFactor": 1.0,
-        },
-    }
 
 
 def _set_targets(tree: _Tree) -> None:

@@ -140,7 +140,9 @@ def _density(face: FlatFace, directions: Float, size: Float, view: View) -> Floa
     per_metre = [np.linalg.norm(step[:2] - pixels * step[2], axis=1) / depth[:, 0] for step in steps]
     density = np.array([lengths.max() for lengths in per_metre])
     area = max(abs(signed_area(pixels)), 1.0)
-    return density * min(1.0, np.sqrt(TEXELS_PER_PIXEL * area / float(np.prod(size * density))))
+    too_many = max(1.0, float(np.prod(size * density)) / (TEXELS_PER_PIXEL * area))
+    enough: Float = density / np.sqrt(too_many)
+    return enough
 
 
 def _pack(sizes: list[tuple[int, int]], largest: int) -> tuple[list[tuple[int, int, int]], tuple[tuple[int, int], ...]]:

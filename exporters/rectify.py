@@ -44,9 +44,10 @@ class _Shape:
     def inverse_depths(self) -> _Float32:
         """1/m, of the face's whole plane at every pixel of the box."""
         left, top, right, bottom = self.box
-        x, y = np.arange(left, right)[None, :], np.arange(top, bottom)[:, None]
         a, b, c = self.inverse_depth
-        return (a * x + (b * y + c)).astype(np.float32)
+        across, down = a * np.arange(left, right), b * np.arange(top, bottom) + c
+        inverse: _Float32 = across.astype(np.float32)[None, :] + down.astype(np.float32)[:, None]
+        return inverse
 
 
 def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list[Pixels]:
@@ -130,7 +131,8 @@ def _filled(rings: list[Float], corner: tuple[int, int], shape: tuple[int, ...])
 def _in_front(to_photo: Float, size: tuple[int, int]) -> Bool:
     """(rows, columns) where the plane is before the camera: behind it, too, the mathematics finds a pixel."""
     a, b, c = to_photo[2]
-    return a * np.arange(size[0])[None, :] + (b * np.arange(size[1])[:, None] + c) > 0
+    before: Bool = (a * np.arange(size[0]))[None, :] > -(b * np.arange(size[1]) + c)[:, None]
+    return before
 
 
 def _reduced(colours: Pixels, step: float, to_photo: Float) -> tuple[Pixels, Float]:

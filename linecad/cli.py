@@ -412,7 +412,7 @@ def _export(parsed: argparse.Namespace) -> int:
     with _Shown(parsed) as show:
         show.stage("reading the scene")
         scene = _measured(read_scene(parsed.scene), parsed.known)
-        photo = _photo_of(scene, parsed) if _show_photo(parsed.output) else None
+        photo = _photo_for_outputs(scene, parsed, values, show)
         _write(scene, photo, parsed.output, values, show)
     return 0
 
@@ -439,6 +439,36 @@ def _dataset(parsed: argparse.Namespace) -> int:
         made = make_dataset(parsed.folder, options, show.stage)
     print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")
     return 0
+
+
+def _photo_for_outputs(
+    scene: "Scene", parsed: argparse.Namespace, values: "dict[str, Value]", show: "_Shown"
+) -> "Photo | None":
+    """The scene's photo if an output shows it. Textures do without it, and say so, unless they were asked for."""
+    from exporters.formats import TEXTURES, find_format
+    from exporters.model import photo_name
+
+    drawn = any(path.suffix.lower() == ".png" for path in parsed.output)
+    switch = TEXTURES[0]
+    formats = [find_format(path) for path in parsed.output if path.suffix.lower() != SCENE_SUFFIX]
+    able = bool(scene.faces) and any(switch in row.options for row in formats)
+    textured = able and values.get(switch.key, switch.default) is True
+    if not drawn and not textured:
+        return None
+    asked = able and values.get(switch.key) is True
+    try:
+        photo = _photo_of(scene, parsed)
+    except LinecadError as error:
+        if drawn or asked or parsed.photo is not None:
+            raise
+        show.note(f"{error}; the faces have no textures")
+        return None
+    if photo is None and textured:
+        missing = f"the photo {photo_name(scene)!r} is not beside {parsed.scene}; name it with --photo"
+        if asked:
+            raise OutputError(f"textures were asked for, but {missing}")
+        show.note(f"{missing}; the faces have no textures")
+    return photo
 
 
 def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
@@ -543,6 +573,12 @@ class _Shown:
             self._over(f"{text} ...")
         elif not self.quiet and not self.verbose:
             print(text, file=sys.stderr, flush=True)
+
+    def note(self, text: str) -> None:
+        """What the user should know of the result, in any loudness."""
+        if self.live:
+            self._over("")
+        print(f"linecad: {text}", file=sys.stderr, flush=True)
 
     def progress(self, at: "Progress") -> None:
         """The solver has come further."""
