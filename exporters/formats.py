@@ -155,13 +155,28 @@ def export(
     write_with_pictures(path, write, pictures, library)
 
 
+class _Made(NamedTuple):
+    scene: Scene
+    photo: NDArray[np.uint8]
+    size: int
+    textures: "Textures"
+
+
+_last_made: list[_Made] = []  # at most one: a scene goes to several formats, one after the other
+
+
 def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> "Textures | None":
     """What of the photo lies on the faces; None where there is no photo or no face."""
     if photo is None or not scene.faces:
         return None
+    for made in _last_made[:]:
+        if made.scene is scene and made.photo is photo and made.size == size and not photo.flags.writeable:
+            return made.textures
     from exporters.pages import build_textures  # OpenCV, which the formats do without where there is no photo
 
-    return build_textures(scene, photo, size)
+    textures = build_textures(scene, photo, size)
+    _last_made[:] = [_Made(scene, photo, size, textures)]
+    return textures
 
 
 def _check_photo(photo: NDArray[np.uint8] | None, camera: Camera) -> None:
