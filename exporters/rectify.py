@@ -21,6 +21,7 @@ PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the 
 _SHIFT = 4  # bits after the point in OpenCV's coordinates
 _BORDER = 3  # px about a face in the photo, which the interpolation reaches into
 _BLURRED = 1.5  # px by which the border between two faces may be off: rounding, and the width of an edge in a photo
+_MOST_BLURRED = MARGIN / 2  # texels
 _NEARER = 1e-3  # relative; what differs less in depth touches
 _WHOLLY_SEEN = 250  # of 255: less of a texel is mixed with what hides it
 
@@ -109,7 +110,8 @@ def _paint(face: FlatFace, shape: _Shape, patch: Patch, view: View, nearest: _Fl
     warped = cv2.warpPerspective(
         colours, to_colours, size, flags=cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP, borderMode=cv2.BORDER_REPLICATE
     )
-    return _continued(np.asarray(warped, np.uint8), known)
+    blurred = min(max(_BLURRED / step, 1.0), _MOST_BLURRED)
+    return _continued(np.asarray(warped, np.uint8), _pure(known, blurred), MARGIN + blurred + 1)
 
 
 def _to_space(face: FlatFace, patch: Patch) -> Float:
@@ -147,16 +149,31 @@ def _reduced(colours: Pixels, step: float, to_photo: Float) -> tuple[Pixels, Flo
     return np.asarray(small, np.uint8), shrink @ to_photo
 
 
-def _continued(colours: Pixels, known: Bool) -> Pixels:
-    """The colours where they are known, those of the nearest known texel up to MARGIN texels away, else PLAIN."""
+def _pure(known: Bool, blurred: float) -> Bool:
+    """Where a texel is known and has nothing of what lies beyond the border, which is `blurred` texels wide.
+
+    Parts so thin that they are border alone stay: a mixed colour is better than none.
+    """
+    core = cv2.distanceTransform(_bytes(known), cv2.DIST_L2, cv2.DIST_MASK_5) > blurred
+    from_core = cv2.distanceTransform(_bytes(~core), cv2.DIST_L2, cv2.DIST_MASK_5)
+    pure: Bool = core | (known & (from_core > 2 * blurred + 1)) if core.any() else known
+    return pure
+
+
+def _continued(colours: Pixels, known: Bool, reach: float) -> Pixels:
+    """The colours where they are known, those of the nearest known texel up to `reach` texels away, else PLAIN."""
     painted = np.full_like(colours, PLAIN)
     if not known.any():
         return painted
     distance, label = cv2.distanceTransformWithLabels(
-        (~known).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
+        _bytes(~known), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
     )
     source = np.zeros(int(label.max()) + 1, np.int64)
     source[label[known]] = np.flatnonzero(known)
-    near = distance <= MARGIN
+    near = distance <= reach
     painted[near] = colours.reshape(-1, 3)[source[label[near]]]
     return painted
+
+
+def _bytes(mask: Bool) -> Pixels:
+    return mask.astype(np.uint8)
