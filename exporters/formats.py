@@ -170,12 +170,12 @@ def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> "Text
     if photo is None or not scene.faces:
         return None
     for made in _last_made[:]:
-        if made.scene is scene and made.photo is photo and made.size == size and not photo.flags.writeable:
+        if made.scene is scene and made.photo is photo and made.size == size:
             return made.textures
     from exporters.pages import build_textures  # OpenCV, which the formats do without where there is no photo
 
     textures = build_textures(scene, photo, size)
-    _last_made[:] = [_Made(scene, photo, size, textures)]
+    _last_made[:] = [] if photo.flags.writeable else [_Made(scene, photo, size, textures)]  # that one may change
     return textures
 
 

@@ -448,7 +448,7 @@ def _photo_for_outputs(
     from exporters.formats import TEXTURES, find_format
     from exporters.model import photo_name
 
-    drawn = any(path.suffix.lower() == ".png" for path in parsed.output)
+    drawn = _show_photo(parsed.output)
     switch = TEXTURES[0]
     formats = [find_format(path) for path in parsed.output if path.suffix.lower() != SCENE_SUFFIX]
     able = bool(scene.faces) and any(switch in row.options for row in formats)
