@@ -18,6 +18,7 @@ from exporters.model import FlatFace, Model, signed_area
 from linecad.scene import Bool, Float
 
 PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the photo says nothing about
+_LEAST_AREA = 1e-3  # px^2; a face that is seen from its edge shows nothing
 _SHIFT = 4  # bits after the point in OpenCV's coordinates
 _BORDER = 3  # px about a face in the photo, which the interpolation reaches into
 _BLURRED = 1.5  # px by which the border between two faces may be off: rounding, and the width of an edge in a photo
@@ -66,11 +67,11 @@ def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list
 
 def _shape(face: FlatFace, view: View) -> _Shape:
     seen = [seen_part(ring, view) for ring in face.rings]
+    rings = [ring[:, :2] / ring[:, 2:] for ring in seen if len(ring)] if len(seen[0]) else []
+    if not rings or face.offset == 0 or abs(signed_area(rings[0])) < _LEAST_AREA:
+        return _Shape([], (0, 0, 0, 0), np.zeros(3))
     # World rays of camera depth 1 are linear in the pixel, and the plane cuts them at offset over their coordinate.
     inverse_depth = np.linalg.inv(view.projection)[face.axis] / face.offset
-    if not len(seen[0]):
-        return _Shape([], (0, 0, 0, 0), inverse_depth)
-    rings = [ring[:, :2] / ring[:, 2:] for ring in seen if len(ring)]
     left, top = np.maximum(np.floor(rings[0].min(axis=0)).astype(int) - _BORDER, 0).tolist()
     right, bottom = np.ceil(rings[0].max(axis=0)).astype(int) + _BORDER + 1
     return _Shape(rings, (left, top, min(int(right), view.width), min(int(bottom), view.height)), inverse_depth)

@@ -447,6 +447,15 @@ def test_a_face_that_the_photo_does_not_show_is_plain(scene, coloured, tmp_path)
         assert is_colour(face.pixels()[min(int(y), height - 1), min(int(x), width - 1)], PLAIN, 4)
 
 
+def test_a_face_that_is_seen_from_its_edge_is_plain(scene, coloured, tmp_path):
+    ring = np.array([[0.0, 5, -1], [0, 9, -1], [0, 9, 1], [0, 5, 1]])
+    for offset in (0.0, 1e-9):
+        edge = Plane(id=99, axis=0, offset=offset, lines=(), faces=(Face(99, ring + [offset, 0, 0]),))
+        export(replace(scene, planes=(*scene.planes, edge)), tmp_path / "a.glb", coloured[0])
+        face = read(tmp_path / "a.glb")["face_0099"]
+        assert np.ptp(face.coordinates, axis=0).min() > 0
+
+
 def test_no_pixel_of_the_photo_is_lost_but_where_a_face_would_need_too_many_texels(scene):
     model, view = build_model(scene), view_of(scene)
     layout = build_layout(model, view, 16384)
