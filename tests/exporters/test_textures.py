@@ -450,7 +450,7 @@ def test_a_face_that_the_photo_does_not_show_is_plain(scene, coloured, tmp_path)
 def test_a_face_that_is_seen_from_its_edge_is_plain(scene, coloured, tmp_path):
     ring = np.array([[0.0, 5, -1], [0, 9, -1], [0, 9, 1], [0, 5, 1]])
     for offset in (0.0, 1e-9):
-        edge = Plane(id=99, axis=0, offset=offset, lines=(), faces=(Face(99, ring + [offset, 0, 0]),))
+        edge = Plane(id=99, axis=0, offset=offset, lines=(), faces=(Face(99, ring + np.array([offset, 0, 0])),))
         export(replace(scene, planes=(*scene.planes, edge)), tmp_path / "a.glb", coloured[0])
         face = read(tmp_path / "a.glb")["face_0099"]
         assert np.ptp(face.coordinates, axis=0).min() > 0
