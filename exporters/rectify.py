@@ -21,7 +21,8 @@ PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the 
 _LEAST_AREA = 1e-3  # px^2; a face that is seen from its edge shows nothing
 _SHIFT = 4  # bits after the point in OpenCV's coordinates
 _BORDER = 3  # px about a face in the photo, which the interpolation reaches into
-_BLURRED = 1.5  # px by which the border between two faces may be off: rounding, and the width of an edge in a photo
+_ROUNDED = 0.75  # px by which the border of a face is off where it is filled pixel by pixel
+_BLURRED = 1.5  # px, the width of an edge in a photo: so near to a border the colours are mixed
 _MOST_BLURRED = MARGIN / 2  # texels
 _NEARER = 1e-3  # relative; what differs less in depth touches
 _WHOLLY_SEEN = 250  # of 255: less of a texel is mixed with what hides it
@@ -38,11 +39,6 @@ class _Shape:
     box: tuple[int, int, int, int]  # px: left, top, right, bottom; the last two are outside
     inverse_depth: Float  # (3,) 1/m: the inverse of the depth is its product with (x, y, 1)
 
-    @property
-    def slope(self) -> float:
-        """1/m by which the inverse depth changes over _BLURRED, at most."""
-        return _BLURRED * float(np.abs(self.inverse_depth[:2]).sum())
-
     def inverse_depths(self) -> _Float32:
         """1/m, of the face's whole plane at every pixel of the box."""
         left, top, right, bottom = self.box
@@ -50,6 +46,15 @@ class _Shape:
         across, down = a * np.arange(left, right), b * np.arange(top, bottom) + c
         inverse: _Float32 = across.astype(np.float32)[None, :] + down.astype(np.float32)[:, None]
         return inverse
+
+
+@dataclass(frozen=True, eq=False)
+class _Nearest:
+    """The nearest face at each pixel of the photo."""
+
+    inverse_depth: _Float32  # (H, W) 1/m; 0 where there is none
+    owner: NDArray[np.int32]  # (H, W) the number of the face; any where there is none
+    slopes: _Float32  # (F, 2) 1/m a px, of the inverse depth of each face
 
 
 def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list[Pixels]:
@@ -77,24 +82,39 @@ def _shape(face: FlatFace, view: View) -> _Shape:
     return _Shape(rings, (left, top, min(int(right), view.width), min(int(bottom), view.height)), inverse_depth)
 
 
-def _nearest(shapes: list[_Shape], view: View) -> _Float32:
-    """(H, W) 1/m: the inverse depth of the nearest face at each pixel, less what a border may be off; 0 for none."""
-    nearest = np.zeros((view.height, view.width), np.float32)
-    for shape in shapes:
+def _nearest(shapes: list[_Shape], view: View) -> _Nearest:
+    inverse_depth = np.zeros((view.height, view.width), np.float32)
+    owner = np.zeros((view.height, view.width), np.int32)
+    for number, shape in enumerate(shapes):
         if shape.rings:
             left, top, right, bottom = shape.box
-            part = nearest[top:bottom, left:right]
-            inside = _filled(shape.rings, (left, top), part.shape)
-            np.maximum(part, shape.inverse_depths() - np.float32(shape.slope), out=part, where=inside)
-    return nearest
+            here = np.s_[top:bottom, left:right]
+            inverse = shape.inverse_depths()
+            nearer = _filled(shape.rings, (left, top), inverse.shape) & (inverse > inverse_depth[here])
+            inverse_depth[here][nearer] = inverse[nearer]
+            owner[here][nearer] = number
+    return _Nearest(inverse_depth, owner, np.array([shape.inverse_depth[:2] for shape in shapes], np.float32))
 
 
-def _paint(face: FlatFace, shape: _Shape, patch: Patch, view: View, nearest: _Float32, photo: Pixels) -> Pixels:
+def _hidden(shape: _Shape, nearest: _Nearest) -> Bool:
+    """Where in its box a face is behind another one.
+
+    Not within _ROUNDED of the line where their planes meet: the difference of the inverse depths is linear in the
+    pixel, so that it tells the distance from this line.
+    """
+    left, top, right, bottom = shape.box
+    here = np.s_[top:bottom, left:right]
+    slopes = np.linalg.norm(nearest.slopes - shape.inverse_depth[:2].astype(np.float32), axis=1)[nearest.owner[here]]
+    own = shape.inverse_depths()
+    hidden: Bool = nearest.inverse_depth[here] - own > _ROUNDED * slopes + _NEARER * np.abs(own)
+    return hidden
+
+
+def _paint(face: FlatFace, shape: _Shape, patch: Patch, view: View, nearest: _Nearest, photo: Pixels) -> Pixels:
     """RGB of a patch with its margin."""
     left, top, right, bottom = shape.box
     here = np.s_[top:bottom, left:right]
-    hidden = nearest[here] > shape.inverse_depths() * np.float32(1 + _NEARER) + np.float32(shape.slope)
-    shown = np.where(hidden, np.uint8(0), np.uint8(255))
+    shown = np.where(_hidden(shape, nearest), np.uint8(0), np.uint8(255))
     to_box = np.array([[1.0, 0.0, -left], [0.0, 1.0, -top], [0.0, 0.0, 1.0]])
     to_photo = to_box @ view.projection @ _to_space(face, patch)
     size = (patch.columns + 2 * MARGIN, patch.rows + 2 * MARGIN)

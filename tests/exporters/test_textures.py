@@ -392,8 +392,9 @@ def test_what_stands_before_a_face_is_not_painted_on_it(scene, coloured):
     pixels, patch = painted(scene, photo, FACADE)
     own, plain = is_colour(pixels, colours[FACADE], OVERSHOOT), is_colour(pixels, PLAIN, 0)
     assert (own | plain).mean() > 0.999  # the rest is in tips that are border alone
-    for other in (SLAB, BALCONY):
-        assert not is_colour(pixels, colours[other]).any()
+    assert not is_colour(pixels, colours[BALCONY]).any()
+    # The slab meets the wall and is seen almost from its edge: no more of it than the tip that is a pixel high.
+    assert is_colour(pixels, colours[SLAB]).mean() < 0.0005
     # In the middle of what the balcony hides there is nothing to paint.
     plane, balcony = next((plane, face) for plane, face in scene.faces if face.id == BALCONY)
     facade = next(plane for plane, face in scene.faces if face.id == FACADE)
