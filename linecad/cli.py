@@ -18,12 +18,16 @@ from linecad import __version__
 from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
+    from exporters.options import Value
+    from linecad.metric import Known
     from linecad.photo import Photo
     from linecad.scene import Scene
     from solver.problem import Progress
 
 SCENE_SUFFIX = ".json"
 SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibration
+LONGEST_ID = 17  # digits; ids are below 2^53
+LARGEST_PIXEL = 1e6
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
 
 
@@ -87,8 +91,9 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_outputs(convert)
     camera = convert.add_mutually_exclusive_group()
     camera.add_argument(
-        "--camera", type=Path, metavar="FILE", help='calibration: JSON with width, height, K, "distortion"'
-    )
+        "--camera", type=Path, metavar="FILE",
+        help='calibration: JSON with width, height, K, "distortion", or an fSpy project',
+    )  # fmt: skip
     camera.add_argument(
         "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
     )
@@ -122,6 +127,7 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--faint", action="store_true",
         help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
     )  # fmt: skip
+    _add_scale(convert)
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(
         "--witnesses", type=_count, metavar="N",
@@ -187,11 +193,12 @@ def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
     export.add_argument("scene", type=Path, metavar="SCENE.json", nargs="?")
     _add_outputs(export)
     export.add_argument(
-        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for the picture (else looked for)"
+        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for formats that show it (else looked for)"
     )
     export.add_argument(
         "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
     )
+    _add_scale(export)
     export.add_argument("--formats", action="store_true", help="list the formats and end")
     _add_loudness(export)
 
@@ -212,10 +219,27 @@ def _add_dataset(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_loudness(dataset)
 
 
+def _add_scale(parser: argparse.ArgumentParser) -> None:
+    scale = parser.add_mutually_exclusive_group()
+    scale.add_argument(
+        "--scale", type=_scale, dest="known", metavar="LINE=METRES",
+        help="a known length: a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo on one "
+        "line or in one plane",
+    )  # fmt: skip
+    scale.add_argument(
+        "--camera-height", type=_camera_height, dest="known", metavar="METRES",
+        help="of the camera above the ground, the lowest horizontal plane",
+    )  # fmt: skip
+
+
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
         help="file to write, its suffix chooses the format (see linecad export --formats); may be given again",
+    )  # fmt: skip
+    parser.add_argument(
+        "--option", action="append", default=[], metavar="KEY=VALUE",
+        help="what one format alone needs (see linecad export --formats); may be given again",
     )  # fmt: skip
 
 
@@ -248,6 +272,38 @@ def _not_negative(text: str) -> float:
     return value
 
 
+def _scale(text: str) -> "Known":
+    from linecad.metric import LineLength, PointDistance
+
+    what, equals, length = text.rpartition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 12=3.5 or 840,310:840,655=2.1")
+    metres = _positive(length)
+    if what.isascii() and what.isdecimal() and len(what) < LONGEST_ID:
+        return LineLength(int(what), metres)
+    numbers = re.split("[,:]", what)
+    if len(numbers) != 4 or not re.fullmatch("[^:]*:[^:]*", what):
+        raise argparse.ArgumentTypeError(f"{what!r} is neither the id of a line nor two px like 840,310:840,655")
+    a, b, c, d = map(_pixel, numbers)
+    return PointDistance(((a, b), (c, d)), metres)
+
+
+def _pixel(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of px") from None
+    if not abs(value) <= LARGEST_PIXEL:
+        raise argparse.ArgumentTypeError(f"{text} px lies outside every photo")
+    return value
+
+
+def _camera_height(text: str) -> "Known":
+    from linecad.metric import CameraHeight
+
+    return CameraHeight(_positive(text))
+
+
 def _extension(text: str) -> float:
     value = _positive(text)
     if value > LARGEST_EXTENSION:
@@ -275,7 +331,7 @@ def _families(text: str) -> frozenset[str]:
 
 
 def _convert(parsed: argparse.Namespace) -> int:
-    _check_outputs(parsed.output, [parsed.photo, parsed.camera])
+    values = _check_outputs(parsed.output, [parsed.photo, parsed.camera], parsed.option)
     from linecad.photo import read_photo
     from linecad.pipeline import ReconstructOptions, reconstruct
     from solver.problem import SolveOptions
@@ -303,8 +359,8 @@ def _convert(parsed: argparse.Namespace) -> int:
     with _Shown(parsed) as show:
         show.stage("reading the photo")
         photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
-        scene = reconstruct(photo, options, show.progress, show.stage)
-        _write(scene, photo, parsed.output, show)
+        scene = _measured(reconstruct(photo, options, show.progress, show.stage), parsed.known)
+        _write(scene, photo, parsed.output, values, show)
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
@@ -364,15 +420,28 @@ def _export(parsed: argparse.Namespace) -> int:
         return _print_formats()
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
-    _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    values = _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera], parsed.option)
     from linecad.scenefile import read_scene
 
     with _Shown(parsed) as show:
         show.stage("reading the scene")
-        scene = read_scene(parsed.scene)
-        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
-        _write(scene, photo, parsed.output, show)
+        scene = _measured(read_scene(parsed.scene), parsed.known)
+        photo = _photo_for_outputs(scene, parsed, values, show)
+        _write(scene, photo, parsed.output, values, show)
     return 0
+
+
+def _measured(scene: "Scene", known: "Known | None") -> "Scene":
+    from linecad.metric import set_scale
+
+    return scene if known is None else set_scale(scene, known)
+
+
+def _show_photo(outputs: list[Path]) -> bool:
+    """Whether a format of any of them shows the photo."""
+    from exporters.formats import find_format
+
+    return any(path.suffix.lower() != SCENE_SUFFIX and find_format(path).shows_photo for path in outputs)
 
 
 def _dataset(parsed: argparse.Namespace) -> int:
@@ -384,6 +453,36 @@ def _dataset(parsed: argparse.Namespace) -> int:
         made = make_dataset(parsed.folder, options, show.stage)
     print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")
     return 0
+
+
+def _photo_for_outputs(
+    scene: "Scene", parsed: argparse.Namespace, values: "dict[str, Value]", show: "_Shown"
+) -> "Photo | None":
+    """The scene's photo if an output shows it. Textures do without it, and say so, unless they were asked for."""
+    from exporters.formats import TEXTURES, find_format
+    from exporters.model import photo_name
+
+    drawn = _show_photo(parsed.output)
+    switch = TEXTURES[0]
+    formats = [find_format(path) for path in parsed.output if path.suffix.lower() != SCENE_SUFFIX]
+    able = bool(scene.faces) and any(switch in row.options for row in formats)
+    textured = able and values.get(switch.key, switch.default) is True
+    if not drawn and not textured:
+        return None
+    asked = able and values.get(switch.key) is True
+    try:
+        photo = _photo_of(scene, parsed)
+    except LinecadError as error:
+        if drawn or asked or parsed.photo is not None:
+            raise
+        show.note(f"{error}; the faces have no textures")
+        return None
+    if photo is None and textured:
+        missing = f"the photo {photo_name(scene)!r} is not beside {parsed.scene}; name it with --photo"
+        if asked:
+            raise OutputError(f"textures were asked for, but {missing}")
+        show.note(f"{missing}; the faces have no textures")
+    return photo
 
 
 def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
@@ -411,19 +510,19 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     return photo
 
 
-def _check_outputs(outputs: list[Path], inputs: list[Path | None]) -> None:
-    """Everything that can be known to fail is refused before the long work starts."""
-    from exporters.formats import find_format
+def _check_outputs(outputs: list[Path], inputs: list[Path | None], options: list[str]) -> "dict[str, Value]":
+    """Refuse, before the long work starts, everything that can be known to fail; the values of the formats' options."""
+    from exporters.formats import options_for
     from linecad.files import check_output
 
     if not outputs:
         raise OutputError("no output was named; give one or more, such as -o scene.json -o scene.step")
+    values = options_for([path for path in outputs if path.suffix.lower() != SCENE_SUFFIX], options)
     for path in outputs:
-        if path.suffix.lower() != SCENE_SUFFIX:
-            find_format(path)
         check_output(path)
     _check_kept(outputs, [path for path in inputs if path is not None])
     _check_distinct(outputs)
+    return values
 
 
 def _check_kept(outputs: list[Path], inputs: list[Path]) -> None:
@@ -439,7 +538,9 @@ def _check_distinct(outputs: list[Path]) -> None:
         raise OutputError("the same output was named twice; name each once")
 
 
-def _write(scene: "Scene", photo: "Photo | None", outputs: list[Path], show: "_Shown") -> None:
+def _write(
+    scene: "Scene", photo: "Photo | None", outputs: list[Path], values: "dict[str, Value]", show: "_Shown"
+) -> None:
     from exporters.formats import export
     from linecad.scenefile import write_scene
 
@@ -448,7 +549,7 @@ def _write(scene: "Scene", photo: "Photo | None", outputs: list[Path], show: "_S
         if path.suffix.lower() == SCENE_SUFFIX:
             write_scene(scene, path)
         else:
-            export(scene, path, None if photo is None else photo.pixels)
+            export(scene, path, None if photo is None else photo.pixels, values)
 
 
 def _print_formats() -> int:
@@ -457,6 +558,8 @@ def _print_formats() -> int:
     print(f"{SCENE_SUFFIX:6} the scene file, which `linecad export` reads (docs/scene-file.md)")
     for suffix, row in FORMATS.items():
         print(f"{suffix:6} {row.phrase} (in {row.unit})")
+        for option in row.options:
+            print(f"         --option {option.key}={option.usual}: {option.phrase}; {option.accepted}")
     return 0
 
 
@@ -484,6 +587,12 @@ class _Shown:
             self._over(f"{text} ...")
         elif not self.quiet and not self.verbose:
             print(text, file=sys.stderr, flush=True)
+
+    def note(self, text: str) -> None:
+        """What the user should know of the result, in any loudness."""
+        if self.live:
+            self._over("")
+        print(f"linecad: {text}", file=sys.stderr, flush=True)
 
     def progress(self, at: "Progress") -> None:
         """The solver has come further."""

@@ -6,6 +6,7 @@ LinecadError
 │   ├── CameraError    a calibration that is malformed or of another size
 │   ├── SceneFileError a scene file that does not say what its format promises
 │   └── DatasetError   a made dataset that is damaged or was begun with other options
+├── ScaleError         a known length that the scene does not hold
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
 └── SolverError        the solver ended without any usable answer
@@ -36,6 +37,10 @@ class SceneFileError(InputError):
 
 class DatasetError(InputError):
     """A dataset breaks the promises of docs/dataset.md, or was begun with other options."""
+
+
+class ScaleError(LinecadError):
+    """A known length was given that cannot be measured in the scene."""
 
 
 class OutputError(LinecadError):

@@ -112,7 +112,8 @@ def test_the_command_turns_a_photo_into_every_kind_of_file(tmp_path):
         timeout=100, check=False,
     )  # fmt: skip
     assert (ended.returncode, ended.stderr) == (0, "")
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(outputs)
+    beside = ["model.obj.mtl", "model.obj.textures"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(outputs + beside)
     scene = read_scene(tmp_path / "scene.json")
     assert ended.stdout.startswith(f"{len(scene.lines)} lines, {int(scene.intersections.real.sum())} of ")
     assert ended.stdout.splitlines()[1:] == [f"note: {note}" for note in scene.notes]

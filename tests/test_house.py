@@ -24,7 +24,7 @@ FLOORS = [
     ["linecad"],
     ["linecad.errors"],
     ["linecad.scene", "linecad.strictjson", "linecad.files"],
-    ["linecad.scenedocument", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
+    ["linecad.scenedocument", "linecad.fspy", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
     ["linecad.scenefile", "linecad.dataset.modelling", "linecad.dataset.view", "linecad.dataset.light"],
     ["linecad.dataset.facades", "linecad.dataset.furniture", "linecad.dataset.rasteriser", "linecad.dataset.textures"],
     ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.finishing"],
@@ -39,6 +39,7 @@ FLOORS = [
         "linecad.odds",
         "linecad.offsets",
         "linecad.outlines",
+        "linecad.metric",
     ],
     ["linecad.sheets"],  # a part of faces
     [
