@@ -141,12 +141,17 @@ class FoundLines:
         return self.graph(LONG_REACH, "odds", True)
 
     @cached_property
-    def is_doubtful(self) -> bool:
-        """Whether agreement is worth little in this photo (linecad.support), as a fit at long reach tells."""
+    def doubt(self) -> float:
+        """How little agreement is worth in this photo (linecad.support), as a fit at long reach tells."""
         graph = self.widest_graph
         fit = RobustFit(graph)
         draws = draw(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_DOUBT)
-        return doubt(graph, fit.depths(), draws, self.camera.width) > MOST_DOUBT
+        return doubt(graph, fit.depths(), draws, self.camera.width)
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether agreement is worth so little that more of it is asked."""
+        return self.doubt > MOST_DOUBT
 
 
 def reconstruct(
@@ -208,6 +213,12 @@ def place(
     solution = _within_groups(graph, solution)
     held, firm, why = _held(found, graph, solution, options)
     if held is not None:
+        if options.witnesses is None and found.is_doubtful:
+            notes.append(
+                f"corners in this photo contradict each other often (doubt {found.doubt:.2f}, usual up to "
+                f"{MOST_DOUBT}), as where buildings hide each other: lines reach less far, and more is asked of what "
+                "hangs together"
+            )
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
             notes.append(

@@ -78,6 +78,12 @@ def test_the_depths_of_component_0_are_true(sample):
     assert score.precision_5 >= precision
 
 
+def test_a_photo_that_contradicts_itself_is_said_to(sample):
+    name, options, scene = sample
+    is_said = any("contradict each other often" in note for note in scene.notes)
+    assert is_said == (options == "default" and name != "courtyard")
+
+
 def test_lines_run_along_true_edges(sample):
     # Nearly half of the long true edges, and more, are found under the label of their axis.
     name, _, scene = sample

@@ -116,7 +116,7 @@ def judged(doubtful: bool) -> Row:
 
     def row(photo: Photo, _limit: float) -> Scene:
         found = find_lines(photo)
-        found.__dict__["is_doubtful"] = doubtful  # what the cached property would compute
+        found.__dict__["doubt"] = np.inf if doubtful else 0.0  # what the cached property would compute
         return finished(photo, found, FIT)
 
     return row
@@ -143,6 +143,9 @@ def hulls(photo: Photo, _limit: float) -> Scene:
 
 ROWS: dict[str, Row] = {
     "exact search": with_options(ReconstructOptions()),
+    "exact search without planarity": with_options(
+        ReconstructOptions(solve=SolveOptions(without=frozenset({"planarity"})))
+    ),
     "robust fit (`--fast`); all below change one thing of it": with_options(FIT),
     "short reach, as in the paper": with_options(replace(FIT, reach=SHORT_REACH)),
     "long reach in every photo": with_options(replace(FIT, reach=LONG_REACH)),
