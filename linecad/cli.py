@@ -6,6 +6,7 @@ stderr), 2 wrong usage. argparse, because it costs nothing to load: `--help` ans
 
 import argparse
 import importlib.util
+import math
 import re
 import sys
 import time
@@ -106,24 +107,32 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         help="leave out families of constraints: cycles, planarity, boundary",
     )  # fmt: skip
     _add_objective(convert)
+    convert.add_argument(
+        "--fast", action="store_true", help="depths by a robust fit in tenths of a second, without a search or a proof"
+    )
     convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
     convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
     )
     convert.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
     convert.add_argument(
-        "--extension", type=_extension, default=30.0, metavar="PX",
-        help="how far segments are extended to find crossings, px on a photo 3840 px wide (30)",
+        "--extension", type=_extension, metavar="PX",
+        help="how far segments are extended to find crossings, px on a photo 3840 px wide (75; with paper 30)",
     )  # fmt: skip
     convert.add_argument(
         "--collinear", action=argparse.BooleanOptionalAction, default=None,
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
     _add_scale(convert)
+    convert.add_argument(
+        "--faint", action="store_true",
+        help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
+    )  # fmt: skip
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(
         "--witnesses", type=_count, metavar="N",
-        help="lines that must tie two bodies for one scale; 1 asks nothing (3, but 1 with --formulation paper)",
+        help="lines that must tie two bodies for one scale, 1 asks nothing (with paper 1; else lines must keep their "
+        "depth when others are left out)",
     )  # fmt: skip
     _add_loudness(convert)
 
@@ -131,7 +140,9 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
 def _add_objective(command: argparse.ArgumentParser) -> None:
     """What the objective of the program is made of."""
     command.add_argument(
-        "--weights", choices=["ones", "junctions", "fitted"], default="junctions", help="weights of crossings"
+        "--weights",
+        choices=["ones", "junctions", "fitted", "odds"],
+        help="weights of crossings (odds; for the paper's graph junctions)",
     )
     command.add_argument(
         "--mu-planarity", type=_not_negative, default=0.5, metavar="MU1", help="reward of planar pairs (0.5)"
@@ -332,6 +343,7 @@ def _convert(parsed: argparse.Namespace) -> int:
         collinear=is_gain if parsed.collinear is None else parsed.collinear,
         largest_component=parsed.largest_component,
         witnesses=parsed.witnesses,
+        faint=parsed.faint,
         solve=SolveOptions(
             formulation=parsed.formulation,
             without=parsed.without,
@@ -341,6 +353,7 @@ def _convert(parsed: argparse.Namespace) -> int:
             time_limit_s=parsed.time_limit,
             gap=parsed.gap,
             seed=parsed.seed,
+            fast=parsed.fast,
         ),
     )
     with _Shown(parsed) as show:
@@ -351,7 +364,8 @@ def _convert(parsed: argparse.Namespace) -> int:
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
-        f"{scene.solve.status} in {scene.solve.seconds:.1f} s, gap {scene.solve.gap:.2%}"
+        f"{scene.solve.status} in {scene.solve.seconds:.1f} s, gap "
+        + (f"{scene.solve.gap:.2%}" if math.isfinite(scene.solve.gap) else "unknown")
     )
     _print_notes(scene)
     return 0

@@ -12,6 +12,7 @@ import networkx as nx
 import numpy as np
 
 from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points, world_rays
+from linecad.odds import log_odds
 from linecad.scene import Bool, Camera, Float, Int, LineGraph, ManhattanFrame, Segments, Text
 from linecad.weighting import fitted_weights
 
@@ -35,7 +36,7 @@ NOISE_FACTOR = 3.0  # standard deviations that a tolerance covers
 MIN_TOLERANCE = 0.002  # relative depth; calibration and frame are not better than that
 MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
 
-Weights = Literal["ones", "junctions", "fitted"]
+Weights = Literal["ones", "junctions", "fitted", "odds"]
 
 # w_ij by kind of junction, and where a line of the third axis passes through the same point (Y and W junctions).
 # The paper took its weights from an earlier work that did not print them. These follow the log-odds that a crossing of
@@ -62,14 +63,17 @@ def build_line_graph(
     extension: float = EXTENSION,
     weights: Weights = "junctions",
     collinear: bool = False,
+    least_length: float = MIN_LENGTH,
+    least_tolerance: float = MIN_TOLERANCE,
 ) -> LineGraph:
     """The line graph of segments that pass through their vanishing points (paper, section "Line Graph").
 
-    `extension` is in px at REFERENCE_WIDTH. Segments that are too short to be lines are left out. `collinear` adds a
+    `extension` and `least_length` are in px at REFERENCE_WIDTH; shorter segments are left out. `collinear` adds a
     second kind of edge that the paper does not have: two segments on one image line may be one line in space.
+    `least_tolerance` is the least tolerance of an edge, relative depth.
     """
     scale = camera.width / REFERENCE_WIDTH
-    segments = segments.subset(segments.length >= max(MIN_LENGTH * scale, MIN_LENGTH_FLOOR))
+    segments = segments.subset(segments.length >= max(least_length * scale, MIN_LENGTH_FLOOR))
     found = _find_crossings(segments, max(extension * scale, EXTENSION_FLOOR))
     kind = _junction_kinds(found, max(END_ZONE * scale, END_ZONE_FLOOR))
     corner = _corners(found, segments.axis, max(CORNER_REACH * scale, CORNER_REACH_FLOOR))
@@ -93,7 +97,7 @@ def build_line_graph(
     noise = np.abs(np.stack([spread[i, coordinate], spread[j, coordinate]], axis=1))
     possible = component.prod(axis=1) > 0
     size = np.maximum(np.abs(component), np.finfo(float).tiny)
-    tolerance = np.maximum(NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T), MIN_TOLERANCE)
+    tolerance = np.maximum(NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T), least_tolerance)
     log_ratio = np.where(possible, np.log(size[:, 1] / size[:, 0]), 0.0)
     graph = LineGraph(
         segments=segments,
@@ -111,7 +115,9 @@ def build_line_graph(
         possible=possible,
         informative=possible & (tolerance <= MAX_TOLERANCE),
     )
-    return replace(graph, weight=fitted_weights(graph, camera.width)) if weights == "fitted" else graph
+    if weights == "fitted":
+        return replace(graph, weight=fitted_weights(graph, camera.width))
+    return replace(graph, weight=log_odds(graph, camera, frame)) if weights == "odds" else graph
 
 
 def components(graph: LineGraph, chosen: Bool | None = None) -> list[Int]:

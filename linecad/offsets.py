@@ -91,17 +91,20 @@ def _planes(graph: LineGraph, shared: Int) -> tuple[list[int], Int, list[Int]]:
 
 def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
     """Pairs of classes that a line along their normal leads from one to the other, over SHOWN_STEP px or more."""
-    reached: list[list[tuple[int, Float]]] = [[] for _ in range(len(graph.segments))]
-    for edge in np.flatnonzero(chosen & (graph.kind != "collinear")).tolist():
-        for side in range(2):
-            line, other = graph.edges[edge, side], graph.edges[edge, 1 - side]
-            reached[line].append((int(shared[other, graph.axis[line]]), graph.crossing[edge]))
-    pairs = set()
-    for at in reached:
-        for number, (first, here) in enumerate(at):
-            for second, there in at[number + 1 :]:
-                if first != second and float(np.linalg.norm(here - there)) >= SHOWN_STEP:
-                    pairs.add((min(first, second), max(first, second)))
+    edges = np.flatnonzero(chosen & (graph.kind != "collinear"))
+    line = graph.edges[edges].ravel()
+    at = shared[graph.edges[edges][:, ::-1].ravel(), graph.axis[line]]  # the class of the other line along this one
+    place = np.repeat(graph.crossing[edges], 2, axis=0)
+    order = np.argsort(line, kind="stable")
+    starts = np.searchsorted(line[order], np.arange(len(graph.segments) + 1))
+    pairs: set[tuple[int, int]] = set()
+    for start, end in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True):
+        own = order[start:end]
+        if len(own) < 2:
+            continue
+        apart = np.linalg.norm(place[own, None] - place[None, own], axis=2) >= SHOWN_STEP
+        first, second = np.nonzero(apart & (at[own, None] < at[None, own]))
+        pairs.update(zip(at[own[first]].tolist(), at[own[second]].tolist(), strict=True))
     return pairs
 
 

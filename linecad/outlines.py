@@ -150,6 +150,6 @@ def outlines(kept: Bool) -> list[shapely.Polygon]:
     is left out, since a mesh would have to have one corner twice.
     """
     i, j = np.nonzero(_without_touching_corners(kept))
-    union = shapely.union_all(shapely.box(i, j, i + 1, j + 1))
+    union = shapely.coverage_union_all(shapely.box(i, j, i + 1, j + 1))
     parts = shapely.get_parts(shapely.simplify(union, 0.0))
     return sorted(parts, key=lambda part: part.bounds)

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -9,8 +10,18 @@ from linecad.agreement import disagreements
 from linecad.errors import ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
-from linecad.graph import EXTENSION, Weights, build_line_graph, components, hinged_nodes, spanning_tree
-from linecad.hinges import WITNESSES, Held, agreeing, find_held
+from linecad.graph import (
+    EXTENSION,
+    MIN_LENGTH,
+    MIN_TOLERANCE,
+    Weights,
+    build_line_graph,
+    components,
+    hinged_nodes,
+    spanning_tree,
+)
+from linecad.grids import find_grid_ties
+from linecad.hinges import Held, agreeing, find_held
 from linecad.lifting import Lifted, lift
 from linecad.pencils import find_pencil_lines
 from linecad.photo import Photo
@@ -30,9 +41,19 @@ from linecad.scene import (
     SolveReport,
     Text,
 )  # fmt: skip
-from linecad.segments import find_segments, group_segments, label_segments
+from linecad.segments import (
+    GROUP_ALONG,
+    SMALL_WIDTH,
+    find_faint_segments,
+    find_segments,
+    group_segments,
+    label_segments,
+)
+from linecad.support import FITS_FOR_DOUBT, MOST_DOUBT, SUPPORT, SUPPORT_IN_DOUBT, doubt, draw, find_supported
+from linecad.ties import join_bodies
 from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
 from solver.problem import Progress, SolveOptions, solve
+from solver.robust import RobustFit
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
@@ -47,23 +68,54 @@ def _silent(_stage: str) -> None:
 
 
 @dataclass(frozen=True)
+class Reach:
+    """How far evidence is carried along a segment, in px at 3840 px width."""
+
+    extension: float  # by which segments are extended to find crossings
+    largest_gap: float  # between fragments of one segment
+    least_length: float  # of a line
+    least_tolerance: float  # of a crossing, relative depth: errors of frame and lens add up along the way
+
+
+SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH, MIN_TOLERANCE)  # as in the paper
+# 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
+LONG_REACH = Reach(75.0, 125.0, 18.75, 0.0035)
+MIDDLE_REACH = Reach(37.5, 62.5, 18.75, MIN_TOLERANCE)  # for photos in which little can be believed
+WITNESSES_IN_DOUBT = 2
+
+
+@dataclass(frozen=True)
 class ReconstructOptions:
     """What a user can choose about a reconstruction."""
 
-    extension: float = EXTENSION  # px at 3840 px width by which segments are extended to find crossings
-    weights: Weights = "junctions"
+    # px at 3840 px width by which segments are extended to find crossings; None: that of the reach.
+    extension: float | None = None
+    reach: Reach | None = None  # None: long with formulation gain, middle in doubt; short with the paper's
+    weights: Weights | None = None  # None: odds with formulation gain, junctions with the paper's
     collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
-    # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: as usual with
-    # formulation gain, 1 with the paper's.
+    # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: lines must keep
+    # their place in resampling (linecad.support) with formulation gain, 1 with the paper's.
     witnesses: int | None = None
+    faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     solve: SolveOptions = field(default_factory=SolveOptions)
 
     @property
-    def witnesses_asked(self) -> int:
-        """`witnesses` in use."""
-        usual = WITNESSES if self.solve.formulation == "gain" else 1
-        return usual if self.witnesses is None else self.witnesses
+    def is_paper(self) -> bool:
+        """Whether what is not said is as in the paper."""
+        return self.solve.formulation == "paper"
+
+    def reach_for(self, found: "FoundLines") -> Reach:
+        """`reach` and `extension` in use."""
+        reach = self.reach
+        if reach is None:
+            reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if found.is_doubtful else LONG_REACH
+        return reach if self.extension is None else replace(reach, extension=self.extension)
+
+    @property
+    def weights_used(self) -> Weights:
+        """`weights` in use."""
+        return self.weights if self.weights is not None else "junctions" if self.is_paper else "odds"
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,8 +124,29 @@ class FoundLines:
 
     camera: Camera
     frame: ManhattanFrame
-    segments: Segments  # labelled; each passes exactly through the vanishing point of its axis
+    segments: Segments  # labelled fragments, not grouped yet
     notes: tuple[str, ...]  # doubts so far
+
+    def graph(self, reach: Reach, weights: Weights, collinear: bool) -> LineGraph:
+        """The line graph of these lines."""
+        grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
+        return build_line_graph(
+            grouped, self.camera, self.frame, reach.extension, weights, collinear,
+            reach.least_length, reach.least_tolerance,
+        )  # fmt: skip
+
+    @cached_property
+    def widest_graph(self) -> LineGraph:
+        """The line graph at long reach."""
+        return self.graph(LONG_REACH, "odds", True)
+
+    @cached_property
+    def is_doubtful(self) -> bool:
+        """Whether agreement is worth little in this photo (linecad.support), as a fit at long reach tells."""
+        graph = self.widest_graph
+        fit = RobustFit(graph)
+        draws = draw(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_DOUBT)
+        return doubt(graph, fit.depths(), draws, self.camera.width) > MOST_DOUBT
 
 
 def reconstruct(
@@ -83,7 +156,7 @@ def reconstruct(
     on_stage: StageReport = _silent,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
-    found = find_lines(photo, on_stage)
+    found = find_lines(photo, on_stage, options.faint)
     whole, graph = connect(found, options)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = solve(graph, options.solve, on_progress)
@@ -91,8 +164,12 @@ def reconstruct(
     return place(photo, found, graph, solution, options, len(whole.segments) - len(graph.segments))
 
 
-def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
-    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame."""
+def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = False) -> FoundLines:
+    """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame.
+
+    With `faint`, a second look adds what the grain of a photo hides that is not small. The frame is always that of the
+    first look.
+    """
     on_stage("finding segments")
     raw = find_segments(photo.grey)
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
@@ -100,17 +177,19 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent) -> FoundLines:
     frame = find_frame(raw, camera.matrix)
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
+    if faint and photo.width >= SMALL_WIDTH:
+        on_stage("finding faint segments")
+        raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
     pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
-    segments = group_segments(pieces, camera, frame)
-    return FoundLines(camera, frame, segments, tuple(notes))
+    return FoundLines(camera, frame, pieces, tuple(notes))
 
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
     """The line graph of all found lines, and the part of it that is solved; ReconstructionError when that is none."""
-    whole = build_line_graph(
-        found.segments, found.camera, found.frame, options.extension, options.weights, options.collinear
-    )
+    reach, weights = options.reach_for(found), options.weights_used
+    is_widest = reach == LONG_REACH and weights == "odds" and options.collinear
+    whole = found.widest_graph if is_widest else found.graph(reach, weights, options.collinear)
     return whole, _kept(whole, options)
 
 
@@ -127,18 +206,42 @@ def place(
     if left_out:
         notes.append(_left_out(left_out, "touch too few others in the photo", options))
     solution = _within_groups(graph, solution)
-    held = None
-    if options.witnesses_asked > 1:
-        witnessed = agreeing(graph, solution.connected, solution.log_depth)
-        held = find_held(graph, witnessed, options.witnesses_asked)
+    held, firm, why = _held(found, graph, solution, options)
+    if held is not None:
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
             notes.append(
-                f"{int(refused.sum())} crossings join bodies of lines that fewer than {options.witnesses_asked} lines "
-                "tie to each other, and are not taken for real: such a join is often a near edge before a far wall"
+                f"{int(refused.sum())} crossings join bodies of lines that {why}, and are not taken for real: such a "
+                "join is often a near edge before a far wall"
             )
         solution = replace(solution, connected=solution.connected & ~refused)
-    return _scene(photo, found.camera, found.frame, graph, solution, lift(graph, solution), notes, options, held)
+    lifted = lift(graph, solution)
+    return _scene(photo, found.camera, found.frame, graph, solution, lifted, notes, options, held, firm)
+
+
+def _held(
+    found: FoundLines, graph: LineGraph, solution: Solution, options: ReconstructOptions
+) -> tuple[Held | None, Bool, str]:
+    """What holds the lines of a solution, which lines (N,) it holds firmly, and in words what it refuses; or None."""
+    witnesses = options.witnesses
+    if witnesses == 1 or (witnesses is None and options.is_paper):
+        return None, np.ones(len(graph.segments), bool), ""
+    agrees = agreeing(graph, solution.connected, solution.log_depth)
+    if witnesses is not None:
+        held = find_held(graph, agrees, witnesses)
+        return held, held.within, f"fewer than {witnesses} lines tie to each other"
+    fit = RobustFit(graph)
+    draws = draw(graph, lambda present: fit.depths(present=present), options.solve.seed)
+    supported = find_supported(graph, agrees, solution.log_depth, draws, found.is_doubtful)
+    if not found.is_doubtful:
+        return supported.held, supported.firm, _unstable(SUPPORT)
+    held = find_held(graph, agrees & supported.held.joins(graph), WITNESSES_IN_DOUBT)
+    why = f"{_unstable(SUPPORT_IN_DOUBT)} or that fewer than {WITNESSES_IN_DOUBT} lines tie to each other"
+    return held, held.within & supported.firm, why
+
+
+def _unstable(asked: float) -> str:
+    return f"keep their place in less than {asked:.0%} of the fits with some lines left out"
 
 
 def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
@@ -197,15 +300,22 @@ def _scene(
     notes: list[str],
     options: ReconstructOptions,
     held: Held | None = None,
+    firm: Bool | None = None,
 ) -> Scene:
     """The scene of the lines that a chosen crossing ties to others, each component with its scale."""
     telling = solution.connected & graph.informative
     parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
     hinged = hinged_nodes(graph, telling)
-    if held is not None and parts:  # the largest body comes first, also where more lines hang together loosely
-        largest = max(parts, key=lambda part: int(held.within[part].sum()))
-        parts.sort(key=lambda part: part is not largest)
-        hinged |= ~held.within
+    if firm is not None:
+        hinged |= ~firm
+    if held is not None and parts:
+        parts, lifted, tied = _tie_parts(graph, camera, frame, lifted, parts, held)
+        hinged |= tied
+        if tied[parts[0]].any():
+            notes.append(
+                f"{int(tied[parts[0]].sum())} lines of component 0 are not connected to the rest of it by crossings: "
+                "their place follows from window grids that continue (supported)"
+            )
     if not parts:
         raise ReconstructionError(
             "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
@@ -261,6 +371,33 @@ def _scene(
     )  # fmt: skip
 
 
+def _tie_parts(
+    graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int], held: Held
+) -> tuple[list[Int], Lifted, Bool]:
+    """The parts joined where window grids tie them, each with one scale.
+
+    The one with the most lines in bodies comes first, also where more lines hang together loosely, the others in the
+    order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The mask
+    (N,) tells the lines of parts that are not the largest of those they were joined with.
+    """
+    joined = join_bodies(find_grid_ties(graph, camera, frame.rotation, parts, lifted.offset), len(parts))
+    sizes = [(int(held.within[part].sum()), len(part)) for part in parts]
+    scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
+    groups: list[Int] = []
+    for group in np.unique(joined.group).tolist():
+        members = np.flatnonzero(joined.group == group).tolist()
+        lead = max(members, key=lambda member: sizes[member])
+        for member in members:
+            scale[parts[member]] = np.exp(joined.log_scale[member] - joined.log_scale[lead])
+            tied[parts[member]] = member != lead
+        groups.append(np.sort(np.concatenate([parts[member] for member in members])))
+    groups.sort(key=lambda lines: (-len(lines), int(lines[0])))
+    largest = max(groups, key=lambda lines: int(held.within[lines].sum()))
+    groups.sort(key=lambda lines: lines is not largest)
+    lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
+    return groups, lifted, tied
+
+
 def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     """The planar pairs (P, 3) whose lines are in the scene and in one component, with their numbers there."""
     own = component[pairs[:, :2]]
@@ -302,7 +439,9 @@ def _left_out(count: int, why: str, options: ReconstructOptions) -> str:
 
 def _doubts(solution: Solution, parts: list[Int], shift: Float) -> list[str]:
     notes = []
-    if solution.status == "heuristic":
+    if solution.status == "robust fit":
+        notes.append("depths by a robust fit to all crossings, without a search: nothing is proven, the gap is unknown")
+    elif solution.status == "heuristic":
         notes.append(f"the time was over before the exact search began; the gap is {solution.gap:.1%}")
     elif solution.status != "optimal":
         ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"

@@ -29,7 +29,9 @@ CameraSource = Literal["file", "focal option", "exif", "vanishing points", "defa
 EdgeKind = Literal["L", "T", "X", "collinear"]
 Confidence = Literal["proven", "supported", "weak"]
 Formulation = Literal["gain", "paper"]
-Status = Literal["optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit", "heuristic"]
+Status = Literal[
+    "optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit", "heuristic", "robust fit"
+]  # fmt: skip
 
 CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 EDGE_KINDS: tuple[EdgeKind, ...] = get_args(EdgeKind)
@@ -237,7 +239,7 @@ class Solution:
     solver: str  # name and version
     formulation: Formulation
     objective: float
-    bound: float  # proven upper bound of the objective
+    bound: float  # proven upper bound of the objective, infinite where nothing was proven
     gap: float  # (bound - objective) / max(|objective|, 1e-9)
     seconds: float
     nodes: int  # branch-and-bound nodes

@@ -14,6 +14,7 @@ from linecad.scene import Camera, Float, Int, ManhattanFrame, Segments
 SMALL_WIDTH = 1280.0  # px; narrower photos show lines in fewer pixels than detector and labels ask for
 DETECTOR_SCALE = 0.8  # from SMALL_WIDTH on; more in proportion below: the detector's noise floor is in pixels
 DETECTOR_SCALE_LIMIT = 1.6  # an enlarged photo has no more to show
+GRAIN = 5  # px, side of the median filter before the second look
 MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
 MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
 
@@ -46,21 +47,29 @@ def find_segments(grey: NDArray[np.uint8]) -> Segments:
     return Segments(ends, np.full(len(ends), -1))
 
 
+def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
+    """What a second look finds at a photo (H, W) without its grain: edges that noise hides from the first."""
+    return find_segments(np.asarray(cv2.medianBlur(grey, GRAIN), np.uint8))
+
+
 def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
     """The segments that point to one of the three vanishing points, labelled by it (the paper's D_i)."""
     sines = angles_to(segments.ends, vanishing_points(camera.matrix, frame.rotation))
     return Segments(segments.ends, sines.argmin(axis=0)).subset(sines.min(axis=0) < np.sin(label_angle(camera.width)))
 
 
-def group_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
+def group_segments(
+    segments: Segments, camera: Camera, frame: ManhattanFrame, largest_gap: float = GROUP_ALONG
+) -> Segments:
     """Labelled fragments joined into whole segments that pass exactly through their vanishing points.
 
     The longest fragment of a line leads: it gathers the fragments of its axis within GROUP_ACROSS of its image line
-    whose gaps along the line are at most GROUP_ALONG. The joined segment runs through the length-weighted mean.
+    whose gaps along the line are at most `largest_gap`, in px at REFERENCE_WIDTH. The joined segment runs through the
+    length-weighted mean.
     """
     scale = camera.width / REFERENCE_WIDTH
     across = max(GROUP_ACROSS * scale, GROUP_ACROSS_FLOOR)
-    along = max(GROUP_ALONG * scale, GROUP_ALONG_FLOOR)
+    along = max(largest_gap * scale, GROUP_ALONG_FLOOR)
     points = vanishing_points(camera.matrix, frame.rotation)
     ends: list[Float] = []
     axes: list[int] = []
@@ -82,7 +91,9 @@ def _group_axis(ends: Float, vanishing: Float, across: float, along: float) -> l
         if not free[leader]:
             continue
         normal = np.array([-direction[leader, 1], direction[leader, 0]])
-        near = np.flatnonzero(free & (np.abs((middle - middle[leader]) @ normal) < across))
+        # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
+        one_side = direction @ direction[leader] > 0
+        near = np.flatnonzero(free & one_side & (np.abs((middle - middle[leader]) @ normal) < across))
         reach = (ends[near] - middle[leader]) @ direction[leader]
         members = near[_touching(reach.min(axis=1), reach.max(axis=1), along, int(np.flatnonzero(near == leader)[0]))]
         free[members] = False

@@ -39,6 +39,7 @@ class SolveOptions:
     memory_limit_mb: float = 4096.0  # MB, of the solver itself
     node_limit: int | None = None  # branch-and-bound nodes
     backend: BackendName = "scip"  # the solver; HiGHS is the extra `highs`
+    fast: bool = False  # a robust fit instead of a search: tenths of a second, nothing proven
     real: tuple[int, ...] = ()  # edges of the graph that a person called real: every answer has them
     fake: tuple[int, ...] = ()  # edges that a person called fake: no answer has them
 
@@ -47,6 +48,8 @@ class SolveOptions:
             raise SolverError(f"formulation {self.formulation!r} is unknown; use one of {', '.join(FORMULATIONS)}")
         if self.backend not in BACKENDS:
             raise SolverError(f"backend {self.backend!r} is unknown; use one of {', '.join(BACKENDS)}")
+        if self.fast and self.formulation != "gain":
+            raise SolverError(f"a fast answer has no formulation {self.formulation!r}; leave one of the two out")
         unknown = sorted(set(self.without) - set(FAMILIES))
         if unknown:
             raise SolverError(f"family {unknown[0]!r} is unknown; use {', '.join(FAMILIES)}")
@@ -101,6 +104,10 @@ def solve(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progre
     breaks the promises of LineGraph.
     """
     check_graph(graph)
+    if options.fast:
+        from solver.robust import solve_robust
+
+        return solve_robust(graph, options, on_progress)
     match options.formulation:
         case "paper":
             from solver.paper import solve_paper

@@ -1,4 +1,4 @@
-"""A good feasible choice in a fraction of a second: depths by greedy union, then crossings by local search.
+"""A good feasible choice in a fraction of a second: depths by greedy union or robust fit, then local search.
 
 The exact solver starts from it and can only improve on it.
 """
@@ -8,12 +8,13 @@ import time
 import numpy as np
 
 from linecad.scene import Bool, Float, LineGraph
-from solver.choice import Choice, boundaries, planar_pairs
+from solver.choice import Choice, boundaries, objective_of, planar_pairs
 from solver.depths import near_log_ratio
 from solver.families import Families
 from solver.local_search import LEAST_GAIN, PASSES, LocalSearch
 from solver.potentials import fit_near_depths
 from solver.problem import SolveOptions
+from solver.robust import RobustFit
 
 SAFETY = 1e-9  # log depth, kept from every limit so that rounding cannot push the start over it
 HALF = 0.5  # of a crossing in a relaxation, from which a choice begins with it
@@ -36,14 +37,23 @@ class Starter:
         self.step = near_log_ratio(graph, ratios)
         self.to_middle = np.log(ratios.min(axis=1))
         self.log_range = float(np.log(options.depth_range)) if options.formulation == "paper" else np.inf
+        self.options = options
         self.search = LocalSearch(graph, families, options)
 
     def find(self) -> Choice:
-        """A choice made from the weights alone."""
+        """A choice made from the weights alone.
+
+        With formulation gain the better of two: depths from one crossing at a time, and from all at once.
+        """
         graph, real, fake = self.graph, self.real, self.fake
         evidence = np.where(real, CERTAIN, np.where(fake, 0.0, graph.weight))
         near = _greedy_near_depths(graph, self.step, self.log_range, evidence)
-        return self._best_for(self._majority(near, evidence), None)
+        best = self._best_for(self._majority(near, evidence), None)
+        if np.isfinite(self.log_range):
+            return best
+        fitted = self._best_for(self._majority(RobustFit(graph).depths(evidence) + self.to_middle, evidence), None)
+        value, other = (objective_of(graph, self.options, choice) for choice in (best, fitted))
+        return fitted if other > value else best
 
     def round(self, value: Float, until: float) -> Choice | None:
         """A choice near the values (E,) of a relaxation, or None if it is not ready at `until` (`time.monotonic()`).

@@ -40,9 +40,9 @@ LEAST = {
     ("street", "paper"): (25, 0.90),
     ("courtyard", "paper"): (12, 0.95),
     ("room", "paper"): (40, 0.78),
-    ("street", "default"): (45, 0.95),
-    ("courtyard", "default"): (15, 0.95),
-    ("room", "default"): (35, 0.90),
+    ("street", "default"): (25, 0.95),
+    ("courtyard", "default"): (80, 0.90),
+    ("room", "default"): (40, 0.88),
 }
 
 

@@ -34,7 +34,9 @@ FLOORS = [
         "linecad.calibration",
         "linecad.decoding",
         "linecad.disjoint",
+        "linecad.ties",
         "linecad.weighting",
+        "linecad.odds",
         "linecad.offsets",
         "linecad.outlines",
         "linecad.metric",
@@ -48,10 +50,12 @@ FLOORS = [
         "linecad.graph",
         "linecad.lifting",
         "linecad.hinges",
+        "linecad.grids",
         "linecad.planes",
         "linecad.faces",
         "linecad.agreement",
     ],
+    ["linecad.support"],  # of hinges
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
     [

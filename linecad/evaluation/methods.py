@@ -7,7 +7,7 @@ import numpy as np
 from linecad.evaluation.decisions import Decisions, compare
 from linecad.graph import Weights
 from linecad.lifting import lift
-from linecad.pipeline import ReconstructOptions
+from linecad.pipeline import SHORT_REACH, ReconstructOptions
 from linecad.scene import Bool, Float, Formulation, Int, LineGraph
 from solver.problem import FAMILIES, Family, SolveOptions, solve
 
@@ -26,7 +26,7 @@ class Settings:
     formulations: tuple[Formulation, ...] = ("paper", "gain")  # for table 1
     ablation: bool = True  # solve all rows of table 1, or only the default settings
     time_limit_s: float = 60.0  # s, for each solve
-    weights: Weights = "junctions"
+    weights: Weights | None = None  # None: the default of each graph, junctions on the paper's
     mu_planarity: float = 0.5
     mu_boundary: float | None = None  # None: the default of each formulation
     pictures: bool = False  # keep what the report shows of each photo
@@ -46,7 +46,9 @@ class Settings:
 
     def paper_graph(self) -> ReconstructOptions:
         """The line graph of table 1: the paper's extension, no collinear edges, the largest component."""
-        return ReconstructOptions(weights=self.weights, collinear=False, largest_component=True)
+        return ReconstructOptions(
+            reach=SHORT_REACH, weights=self.weights or "junctions", collinear=False, largest_component=True
+        )
 
     def whole_photo(self) -> ReconstructOptions:
         """What `linecad convert` does with a photo when nothing is said."""

@@ -18,7 +18,7 @@ from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
 from linecad.pipeline import ReconstructOptions, connect, find_lines, place
 from linecad.scene import Segments
-from linecad.segments import find_segments, label_segments
+from linecad.segments import find_segments, group_segments, label_segments
 from solver.problem import SolveOptions, solve
 
 STAGES = ("detected", "labelled", "grouped", "long enough", "solved", "tied", "in the scene")
@@ -34,7 +34,7 @@ def measure(case: Case, limit: float) -> np.ndarray:
     raw = find_segments(photo.grey)
     found = find_lines(photo)
     names = true_axes(found.frame.rotation, reference.rotation)
-    stages = [label_segments(raw, found.camera, found.frame), found.segments]
+    stages = [label_segments(raw, found.camera, found.frame), group_segments(found.segments, found.camera, found.frame)]
     length = float(np.linalg.norm(marked.ends[:, 1] - marked.ends[:, 0], axis=1).sum())
     anything = covered_length(marked.ends, np.zeros(len(marked.axis), int), raw.ends, np.zeros(len(raw), int))
     rows = [(len(raw), anything, length)]

@@ -14,7 +14,15 @@ from linecad.geometry import project
 from linecad.graph import build_line_graph
 from linecad.lifting import lift
 from linecad.photo import Photo, read_photo
-from linecad.pipeline import TYPICAL_DEPTH, ReconstructOptions, _scene, _within_groups, reconstruct
+from linecad.pipeline import (
+    SHORT_REACH,
+    TYPICAL_DEPTH,
+    ReconstructOptions,
+    _scene,
+    _within_groups,
+    find_lines,
+    reconstruct,
+)
 from linecad.scene import Camera, ManhattanFrame, Segments, Solution
 from linecad.scenefile import read_scene, write_scene
 from solver.problem import SolveOptions
@@ -22,6 +30,9 @@ from solver.problem import SolveOptions
 # The made scene is two boxes of two faces each. The whole program of the paper cuts them apart at their edges: its
 # 3-cycles forbid a true corner, and mu_2 = 10 outweighs the crossings at an edge that is kept off the boundary.
 WHOLE_BOXES = ReconstructOptions(solve=SolveOptions(without=frozenset({"cycles", "boundary"})))
+
+# At short reach the room is solved to the end; at the usual one a gap remains, and what it stops at hangs on the clock.
+SOLVED = ReconstructOptions(reach=SHORT_REACH, weights="junctions", solve=SolveOptions(time_limit_s=20))
 
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 
@@ -43,7 +54,7 @@ def room():
 
 @pytest.fixture(scope="module")
 def room_scene(room):
-    return reconstruct(room, ReconstructOptions(solve=SolveOptions(time_limit_s=20)))
+    return reconstruct(room, SOLVED)
 
 
 @pytest.fixture(params=["scene", "room_scene"])
@@ -151,17 +162,21 @@ def test_lines_lie_in_their_planes(any_scene):
             assert (face.outline[:, plane.axis] == plane.offset).all()
 
 
-def test_components_are_numbered_by_size_and_held_together_by_real_crossings(any_scene):
-    lines, crossings = any_scene.lines, any_scene.intersections
+def parts_of(scene):
+    """The sets of lines that real crossings connect."""
     net = nx.Graph()
-    net.add_nodes_from(lines.id.tolist())
-    net.add_edges_from(crossings.lines[crossings.real].tolist())
-    parts = {frozenset(part) for part in nx.connected_components(net)}
-    count = int(lines.component.max()) + 1
-    named = [frozenset(lines.id[lines.component == number].tolist()) for number in range(count)]
-    assert set(named) == parts
-    assert count > 1
-    sizes = [len(part) for part in named]
+    net.add_nodes_from(scene.lines.id.tolist())
+    net.add_edges_from(scene.intersections.lines[scene.intersections.real].tolist())
+    return [set(part) for part in nx.connected_components(net)]
+
+
+def test_components_are_numbered_by_size_and_hold_what_real_crossings_connect(any_scene):
+    lines = any_scene.lines
+    named = [lines.component == number for number in range(int(lines.component.max()) + 1)]
+    ids = [set(lines.id[own].tolist()) for own in named]
+    assert all(any(part <= component for component in ids) for part in parts_of(any_scene))
+    assert len(named) > 1
+    sizes = [len(component) for component in ids]
     assert sizes == sorted(sizes, reverse=True)
     assert sizes[-1] >= 4
 
@@ -172,7 +187,7 @@ def test_the_spanning_tree_spans_each_component(any_scene):
     tree = nx.Graph()
     tree.add_edges_from(crossings.lines[crossings.in_tree].tolist())
     assert nx.is_forest(tree)
-    assert nx.number_connected_components(tree) == lines.component.max() + 1
+    assert nx.number_connected_components(tree) == len(parts_of(any_scene))
     assert len(tree) == len(lines)
 
 
@@ -219,7 +234,7 @@ def test_scene_files_give_the_scene_back(any_scene, tmp_path):
 
 
 def test_two_runs_give_the_same_bytes(room, room_scene, tmp_path):
-    again = reconstruct(room, ReconstructOptions(solve=SolveOptions(time_limit_s=20)))
+    again = reconstruct(room, SOLVED)
     first = written(without_seconds(room_scene), tmp_path / "a.json")
     assert written(without_seconds(again), tmp_path / "b.json") == first
 
@@ -249,8 +264,15 @@ def test_focal_length_is_assumed_and_noted_when_it_cannot_be_told():
 
 def test_stages_are_reported_in_order(drawn):
     stages = []
-    reconstruct(drawn, ReconstructOptions(largest_component=True), on_stage=stages.append)
-    words = ["finding segments", "finding the Manhattan frame", "following lines", "solving", "lifting"]
+    reconstruct(drawn, ReconstructOptions(largest_component=True, faint=True), on_stage=stages.append)
+    words = [
+        "finding segments",
+        "finding the Manhattan frame",
+        "finding faint",
+        "following lines",
+        "solving",
+        "lifting",
+    ]
     assert [word for word, stage in zip(words, stages, strict=True) if stage.startswith(word)] == words
 
 
@@ -305,3 +327,24 @@ def test_notes_are_plain_text_on_one_line(any_scene):
     for note in any_scene.notes:
         assert json.loads(json.dumps(note)) == note
         assert len(note.splitlines()) == 1
+
+
+def test_a_fast_scene_says_what_it_is_and_is_the_same_every_time(room, tmp_path):
+    fast = ReconstructOptions(solve=SolveOptions(fast=True))
+    scene = reconstruct(room, fast)
+    assert scene.solve.status == "robust fit"
+    assert set(scene.lines.confidence.tolist()) <= {"supported", "weak"}
+    assert any("nothing is proven" in note for note in scene.notes)
+    first = written(without_seconds(scene), tmp_path / "a.json")
+    assert b'"gap": null' in first
+    assert written(without_seconds(reconstruct(room, fast)), tmp_path / "b.json") == first
+    assert written(read_scene(tmp_path / "a.json"), tmp_path / "c.json") == first
+
+
+def test_the_paper_keeps_its_reach_and_weights(room):
+    paper = ReconstructOptions(solve=SolveOptions(formulation="paper"))
+    found = find_lines(room)
+    assert paper.reach_for(found) == SHORT_REACH
+    assert paper.weights_used == "junctions"
+    assert ReconstructOptions().reach_for(found) != SHORT_REACH
+    assert ReconstructOptions(extension=40.0).reach_for(found).extension == 40

@@ -5,11 +5,12 @@ import numpy as np
 import pytest
 
 from linecad.geometry import REFERENCE_WIDTH, angles_to, vanishing_points
-from linecad.scene import Segments
+from linecad.scene import Camera, ManhattanFrame, Segments
 from linecad.segments import (
     GROUP_ACROSS,
     GROUP_ALONG,
     detector_scale,
+    find_faint_segments,
     find_segments,
     group_segments,
     label_angle,
@@ -45,6 +46,20 @@ def test_the_edges_of_a_drawn_rectangle_are_found(width):
     for place, column in expected:
         off = np.abs(long[:, :, column] - place).max(axis=1)
         assert (off < 1.5).sum() == 1
+
+
+@pytest.mark.parametrize(("width", "deviation"), [(1600, 8), (1600, 10), (2400, 9)])
+def test_the_second_look_finds_more_of_a_faint_edge_in_grain(width, deviation):
+    grain = np.random.default_rng(5).normal(0, deviation, (width * 3 // 4, width))
+    image = np.full(grain.shape, 120.0) + grain
+    image[:, width // 2 :] += 22
+    image = np.clip(image, 0, 255).astype(np.uint8)
+
+    def shown(found):
+        on_edge = np.abs(found.ends[:, :, 0] - width / 2).max(axis=1) < 3
+        return found.length[on_edge].sum() / len(image)
+
+    assert shown(find_faint_segments(image)) > shown(find_segments(image)) + 0.15
 
 
 def test_texture_is_no_segment():
@@ -140,3 +155,12 @@ def test_joined_segments_keep_their_labels(made):
     both = first.joined(second)
     assert both.axis.tolist() == first.axis.tolist() + second.axis.tolist()
     assert both.ends[len(first) :].tobytes() == second.ends.tobytes()
+
+
+def test_fragments_on_both_sides_of_their_vanishing_point_stay_apart():
+    # Seen from the front, the lines that lead away meet in the middle of the photo.
+    camera = Camera(3840, 2160, np.array([[2000.0, 0, 1920], [0, 2000, 1080], [0, 0, 1]]), "file")
+    frame = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), 0.0, 1.0)
+    ends = [[[1700.0, 1080], [1900, 1080]], [[1940.0, 1080], [2100, 1080]]]
+    grouped = group_segments(Segments(ends, [1, 1]), camera, frame, 125.0)
+    assert len(grouped) == 2

@@ -1,0 +1,93 @@
+"""How often each kind of tie between bodies is right: `PYTHONPATH=. python tests/benchmarks/ties.py DATASET ...`.
+
+Made scenes only. Each photo is solved with the default settings and parted into bodies; the true scale of a body is
+the median ratio of true to found depth of its lines. Prints, for ties by window grids (by evidence) and for crossings
+between bodies that are not taken for real, how many relative scales are within 5 % and the median error.
+"""
+
+import argparse
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from linecad.evaluation.datasets import find_dataset
+from linecad.evaluation.labels import find_true_lines
+from linecad.evaluation.references import open_case
+from linecad.graph import components
+from linecad.grids import find_grid_ties
+from linecad.hinges import WITNESSES, agreeing, find_held
+from linecad.lifting import lift
+from linecad.pipeline import MIN_COMPONENT, ReconstructOptions, connect, find_lines
+from solver.problem import SolveOptions, solve
+
+EVIDENCE = [0.0, 0.3, 0.6, 1.0, 1.3, 1.6, 2.0, 3.0, np.inf]  # decades
+RIGHT = 0.05  # log scale
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("dataset", type=Path, nargs="+")
+    parser.add_argument("--time-limit", type=float, default=6.0, help="s, for each solve")
+    arguments = parser.parse_args()
+    found: dict[str, list[float]] = {}
+    for folder in arguments.dataset:
+        for case in find_dataset(folder).cases:
+            for kind, error in errors_of(case, arguments.time_limit):
+                found.setdefault(kind, []).append(error)
+    print("| tie | number | within 5 % | median error % |")
+    print("| --- | --- | --- | --- |")
+    for kind in sorted(found):
+        error = np.abs(found[kind])
+        print(f"| {kind} | {len(error)} | {(error < RIGHT).mean():.2f} | {100 * np.median(error):.1f} |")
+
+
+def errors_of(case, limit):
+    """Kind of tie and error of its log scale, for each tie between two bodies whose true scales are known."""
+    photo, reference = open_case(case)
+    found = find_lines(photo)
+    _, graph = connect(found, ReconstructOptions())
+    solution = solve(graph, SolveOptions(time_limit_s=limit))
+    held = find_held(graph, agreeing(graph, solution.connected, solution.log_depth), WITNESSES)
+    solution = replace(solution, connected=solution.connected & held.joins(graph))
+    offset = lift(graph, solution).offset
+    rays = np.where(np.isnan(offset), 0, graph.rays)
+    log_depth = np.log(np.maximum((rays * np.nan_to_num(offset)).sum(axis=1) / (rays**2).sum(axis=1), 1e-9))
+    parts = [p for p in components(graph, solution.connected & graph.informative) if len(p) >= MIN_COMPONENT]
+    ratio = log_true_depths(reference.truth, graph, found.frame.rotation) - log_depth
+    parts = [part for part in parts if np.isfinite(ratio[part]).any()]
+    grow = np.array([np.nanmedian(ratio[part]) for part in parts])
+    ties = find_grid_ties(graph, found.camera, found.frame.rotation, parts, offset)
+    for (one, other), ratio, evidence in zip(ties.bodies, ties.log_ratio, ties.evidence, strict=True):
+        step = int(np.searchsorted(EVIDENCE, evidence, side="right"))
+        yield f"grids, {EVIDENCE[step - 1]} to {EVIDENCE[step]} decades", grow[other] - grow[one] - ratio
+    body = np.full(len(graph.segments), -1)
+    for number, part in enumerate(parts):
+        body[part] = number
+    joins: dict[tuple[int, int], list[float]] = {}
+    for edge in np.flatnonzero(graph.informative & ~solution.connected):
+        i, j = graph.edges[edge]
+        one, other = body[i], body[j]
+        if one >= 0 and other >= 0 and one != other:
+            ratio = log_depth[i] - log_depth[j] - graph.log_ratio[edge]
+            joins.setdefault((min(one, other), max(one, other)), []).append(ratio if one < other else -ratio)
+    for (one, other), ratios in joins.items():
+        near = max(([r for r in ratios if abs(r - at) < 0.02] for at in ratios), key=len)
+        count = min(len(near), 4)
+        kind = f"{count}{' or more' if count == 4 else ''} crossings that agree"
+        yield kind, grow[other] - grow[one] - float(np.median(near))
+
+
+def log_true_depths(truth, graph, rotation):
+    """Log of the true camera depth (N,) at the middle of each line; NaN where a line shows nothing true."""
+    lines = find_true_lines(truth, graph.segments, rotation)
+    rays = truth.rays(graph.segments.ends.mean(axis=1))
+    along = (rays * lines.direction).sum(axis=1)
+    onto = (rays * lines.point).sum(axis=1) - along * (lines.direction * lines.point).sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = onto / ((rays**2).sum(axis=1) - along**2)
+        return np.where(lines.right & (depth > 0), np.log(depth), np.nan)
+
+
+if __name__ == "__main__":
+    main()
