@@ -353,10 +353,11 @@ class TestExport:
     def test_the_bytes_are_those_of_linecad_export(self, page, tmp_path, made_photo):
         page.solve()
         (tmp_path / "made.json").write_bytes(page.get("export/json").content)
-        cv2.imwrite(str(tmp_path / "made.png"), made_photo.pixels)
-        cheap = [suffix for suffix in FORMATS if suffix not in (".png", ".step", ".usdz")]
+        cv2.imwrite(str(tmp_path / "made.png"), made_photo.pixels[..., ::-1])
+        photo = ["--photo", str(tmp_path / "made.png")]
+        cheap = [suffix for suffix in FORMATS if suffix not in (".png", ".step", ".usdz", ".fspy")]
         outputs = [argument for suffix in cheap for argument in ("-o", str(tmp_path / f"scene{suffix}"))]
-        assert main(["export", str(tmp_path / "made.json"), *outputs, "--quiet"]) == 0
+        assert main(["export", str(tmp_path / "made.json"), *photo, *outputs, "--quiet"]) == 0
         for suffix in cheap:
             answer = page.get(f"export/{suffix[1:]}")
             assert answer.headers["content-disposition"] == f'attachment; filename="made{suffix}"'
