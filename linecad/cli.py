@@ -5,12 +5,14 @@ stderr), 2 wrong usage. argparse, because it costs nothing to load: `--help` ans
 """
 
 import argparse
+import contextlib
 import importlib.util
 import math
 import re
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, Self
 
@@ -21,11 +23,13 @@ if TYPE_CHECKING:
     from exporters.options import Value
     from linecad.metric import Known
     from linecad.photo import Photo
+    from linecad.pipeline import ReconstructOptions
     from linecad.scene import Scene
     from solver.problem import Progress
 
 SCENE_SUFFIX = ".json"
 SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibration
+LARGEST_PORT = 65_535
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
@@ -66,6 +70,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
+    _add_edit(commands)
     _add_evaluate(commands)
     _add_export(commands)
     _add_dataset(commands)
@@ -89,7 +94,42 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.set_defaults(run=_convert)
     convert.add_argument("photo", type=Path, metavar="PHOTO")
     _add_outputs(convert)
-    camera = convert.add_mutually_exclusive_group()
+    convert.add_argument(
+        "--corrections", type=Path, metavar="FILE", help="what a person said about lines and crossings (linecad edit)"
+    )
+    _add_camera(convert)
+    _add_reconstruction(convert)
+    _add_scale(convert)
+    _add_loudness(convert)
+
+
+def _add_edit(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    edit = commands.add_parser(
+        "edit",
+        help="the page: look, correct, solve again, label, export",
+        description="Open a local page on a photo; its address is the first line on stdout. Ctrl-C ends it.",
+        epilog="example: linecad edit facade.jpg --camera facade.json",
+    )
+    edit.set_defaults(run=_edit)
+    edit.add_argument("input", type=Path, metavar="PHOTO|SCENE.json", help="a photo, or the scene file of one")
+    edit.add_argument(
+        "-o", "--output", type=Path, metavar="FILE",
+        help="corrections file, read if it is there (beside the photo: PHOTO.corrections.json)",
+    )  # fmt: skip
+    edit.add_argument(
+        "--labels", type=Path, metavar="FILE", help="also write the labels of crossings, for linecad evaluate"
+    )
+    edit.add_argument("--port", type=_port, default=0, metavar="N", help="port on 127.0.0.1 (any free one)")
+    edit.add_argument("--no-browser", action="store_true", help="only print the address")
+    edit.add_argument("--photo", type=Path, metavar="PHOTO", help="the photo of a scene file (else looked for)")
+    _add_camera(edit)
+    _add_reconstruction(edit)
+    _add_loudness(edit)
+
+
+def _add_camera(command: argparse.ArgumentParser) -> None:
+    """Where the camera comes from."""
+    camera = command.add_mutually_exclusive_group()
     camera.add_argument(
         "--camera", type=Path, metavar="FILE",
         help='calibration: JSON with width, height, K, "distortion", or an fSpy project',
@@ -97,6 +137,10 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     camera.add_argument(
         "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
     )
+
+
+def _add_reconstruction(convert: argparse.ArgumentParser) -> None:
+    """The graph, the program and its solver."""
     convert.add_argument(
         "--formulation", choices=["gain", "paper"], default="gain",
         help="how the program is stated: gain, fast, or as printed in the paper (gain)",
@@ -127,14 +171,12 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
         "--faint", action="store_true",
         help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
     )  # fmt: skip
-    _add_scale(convert)
     convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
     convert.add_argument(
         "--witnesses", type=_count, metavar="N",
         help="lines that must tie two bodies for one scale, 1 asks nothing (with paper 1; else lines must keep their "
         "depth when others are left out)",
     )  # fmt: skip
-    _add_loudness(convert)
 
 
 def _add_objective(command: argparse.ArgumentParser) -> None:
@@ -255,6 +297,12 @@ def _count(text: str) -> int:
     return int(text)
 
 
+def _port(text: str) -> int:
+    if not text.isdecimal() or not 0 <= int(text) <= LARGEST_PORT:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port; give a number from 1 to {LARGEST_PORT}")
+    return int(text)
+
+
 def _positive(text: str) -> float:
     value = _not_negative(text)
     if value == 0:
@@ -330,14 +378,12 @@ def _families(text: str) -> frozenset[str]:
     return names
 
 
-def _convert(parsed: argparse.Namespace) -> int:
-    values = _check_outputs(parsed.output, [parsed.photo, parsed.camera], parsed.option)
-    from linecad.photo import read_photo
-    from linecad.pipeline import ReconstructOptions, reconstruct
+def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
+    from linecad.pipeline import ReconstructOptions
     from solver.problem import SolveOptions
 
     is_gain = parsed.formulation == "gain"
-    options = ReconstructOptions(
+    return ReconstructOptions(
         extension=parsed.extension,
         weights=parsed.weights,
         collinear=is_gain if parsed.collinear is None else parsed.collinear,
@@ -356,10 +402,22 @@ def _convert(parsed: argparse.Namespace) -> int:
             fast=parsed.fast,
         ),
     )
+
+
+def _convert(parsed: argparse.Namespace) -> int:
+    values = _check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections], parsed.option)
+    from linecad.correctionsfile import check_belongs, read_corrections
+    from linecad.photo import read_photo
+    from linecad.pipeline import reconstruct
+
+    options = _reconstruct_options(parsed)
+    corrections = None if parsed.corrections is None else read_corrections(parsed.corrections)
     with _Shown(parsed) as show:
         show.stage("reading the photo")
         photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
-        scene = _measured(reconstruct(photo, options, show.progress, show.stage), parsed.known)
+        if corrections is not None:
+            check_belongs(corrections, str(parsed.corrections), photo.width, photo.height)
+        scene = _measured(reconstruct(photo, options, show.progress, show.stage, corrections), parsed.known)
         _write(scene, photo, parsed.output, values, show)
     real = int(scene.intersections.real.sum())
     print(
@@ -369,6 +427,56 @@ def _convert(parsed: argparse.Namespace) -> int:
     )
     _print_notes(scene)
     return 0
+
+
+def _edit(parsed: argparse.Namespace) -> int:
+    from linecad.correctionsfile import SUFFIX
+    from linecad.editing.labelling import check_labels
+    from linecad.editing.run import EditOptions, edit
+
+    with _Shown(parsed) as show:
+        show.stage("reading the photo")
+        photo, path = _photo_to_edit(parsed)
+        output = parsed.output or path.with_name(path.name + SUFFIX)
+        inputs = [parsed.input, path, *([parsed.camera] if parsed.camera else [])]
+        outputs = [output, *([parsed.labels] if parsed.labels else [])]
+        _check_kept(outputs, inputs)
+        _check_distinct(outputs)
+        if parsed.labels:
+            check_labels(parsed.labels, path, parsed.camera)
+
+        def ready(address: str) -> None:
+            show.finish()
+            print(address, flush=True)
+            if not parsed.no_browser:
+                import webbrowser  # takes as long to load as all the rest of the command line
+
+                webbrowser.open(address)
+
+        options = EditOptions(output, parsed.port, _reconstruct_options(parsed), parsed.labels, parsed.camera)
+        with contextlib.suppress(KeyboardInterrupt):  # the way to end it
+            edit(photo, options, ready, show.stage)
+    return 0
+
+
+def _photo_to_edit(parsed: argparse.Namespace) -> "tuple[Photo, Path]":
+    """The photo that is named, or that of the scene that is named, and where it lies."""
+    from linecad.photo import read_photo
+
+    if parsed.input.suffix.lower() != SCENE_SUFFIX:
+        if parsed.photo is not None:
+            raise LinecadError("--photo is for scene files; the photo is named already")
+        return read_photo(parsed.input, parsed.camera, parsed.focal), parsed.input
+    from linecad.scenefile import read_scene
+
+    scene = read_scene(parsed.input)
+    parsed.scene = parsed.input
+    photo = _photo_of(scene, parsed)
+    path = parsed.photo or parsed.input.parent / Path(scene.photo).name
+    if photo is None:
+        raise LinecadError(f"{path} is not there, the photo of {parsed.input}; name it with --photo")
+    # Without a calibration the pixels are those of the file, so the scene's own camera is theirs.
+    return (photo if parsed.camera else replace(photo, camera=scene.camera)), path
 
 
 def _evaluate(parsed: argparse.Namespace) -> int:
@@ -602,15 +710,19 @@ class _Shown:
                 f"gap {at.gap:.2%} (Ctrl-C keeps the best)"
             )
 
+    def finish(self) -> None:
+        """No stage any more; the next line on a terminal is a clean one."""
+        self._finish_stage()
+        self.current = ""
+        if self.live:
+            self._over("")
+
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_exception: object) -> None:
         """Nothing more to show; an error's line begins on a clean one."""
-        self._finish_stage()
-        self.current = ""
-        if self.live:
-            self._over("")
+        self.finish()
 
     def _finish_stage(self) -> None:
         if self.verbose and self.current:

@@ -7,7 +7,9 @@ from functools import cached_property
 import numpy as np
 
 from linecad.agreement import disagreements
-from linecad.errors import ReconstructionError
+from linecad.correcting import CorrectedLines, Said, correct, rows_of, said_of
+from linecad.corrections import Corrections, SetFrame
+from linecad.errors import ContradictionError, ReconstructionError
 from linecad.faces import find_faces
 from linecad.geometry import central_camera
 from linecad.graph import (
@@ -21,7 +23,7 @@ from linecad.graph import (
     spanning_tree,
 )
 from linecad.grids import find_grid_ties
-from linecad.hinges import Held, agreeing, find_held
+from linecad.hinges import Held, agreeing, find_held, tied
 from linecad.lifting import Lifted, lift
 from linecad.pencils import find_pencil_lines
 from linecad.photo import Photo
@@ -51,13 +53,16 @@ from linecad.segments import (
 )
 from linecad.support import FITS_FOR_DOUBT, MOST_DOUBT, SUPPORT, SUPPORT_IN_DOUBT, doubt, draw, find_supported
 from linecad.ties import join_bodies
-from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame
+from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame, fit_frame
 from solver.problem import Progress, SolveOptions, solve
 from solver.robust import RobustFit
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
 MIN_FRAME_SHARE = 0.3  # of the segment length; a frame that explains less is doubtful
+SURE_FACTOR = 2.0  # by which the tolerance of a crossing grows that a person called real
+WIDEST_TOLERANCE = float(np.log(100.0))  # of a crossing that a person called real, in log depth
+LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
 SHIFT_NOTED = 0.005  # rad; lines that had to move more to become exact are worth a note
 
 StageReport = Callable[[str], None]
@@ -107,6 +112,8 @@ class ReconstructOptions:
 
     def reach_for(self, found: "FoundLines") -> Reach:
         """`reach` and `extension` in use."""
+        if found.reach is not None:
+            return found.reach
         reach = self.reach
         if reach is None:
             reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if found.is_doubtful else LONG_REACH
@@ -126,10 +133,20 @@ class FoundLines:
     frame: ManhattanFrame
     segments: Segments  # labelled fragments, not grouped yet
     notes: tuple[str, ...]  # doubts so far
+    reach: Reach | None = None  # with which the segments were grouped to whole lines; None: they are fragments
+    known_doubt: float | None = None  # about the photo they come from, where that was asked before
+
+    def grouped(self, options: ReconstructOptions) -> "FoundLines":
+        """The whole lines, as the reach in use makes them of the fragments: what a person sees and corrects."""
+        reach = options.reach_for(self)
+        whole = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
+        return replace(self, segments=whole, reach=reach, known_doubt=None if options.is_paper else self.doubt)
 
     def graph(self, reach: Reach, weights: Weights, collinear: bool) -> LineGraph:
         """The line graph of these lines."""
-        grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
+        grouped = self.segments
+        if self.reach is None:
+            grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
         return build_line_graph(
             grouped, self.camera, self.frame, reach.extension, weights, collinear,
             reach.least_length, reach.least_tolerance,
@@ -143,6 +160,8 @@ class FoundLines:
     @cached_property
     def doubt(self) -> float:
         """How little agreement is worth in this photo (linecad.support), as a fit at long reach tells."""
+        if self.known_doubt is not None:
+            return self.known_doubt
         graph = self.widest_graph
         fit = RobustFit(graph)
         draws = draw(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_DOUBT)
@@ -159,9 +178,18 @@ def reconstruct(
     options: ReconstructOptions,
     on_progress: Callable[[Progress], None] | None = None,
     on_stage: StageReport = _silent,
+    corrections: Corrections | None = None,
 ) -> Scene:
-    """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little."""
-    found = find_lines(photo, on_stage, options.faint)
+    """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little.
+
+    With `corrections`, lines and crossings are what a person said about them; a ContradictionError where that cannot
+    all be true, a note where it names what is not there.
+    """
+    found = find_lines(photo, on_stage, options.faint, None if corrections is None else corrections.frame)
+    if corrections is not None:
+        found = found.grouped(options)
+        corrected = correct_lines(found, corrections)
+        return measured(reconstruct_corrected(photo, found, corrected, options, on_progress, on_stage), corrected)
     whole, graph = connect(found, options)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
     solution = solve(graph, options.solve, on_progress)
@@ -169,17 +197,119 @@ def reconstruct(
     return place(photo, found, graph, solution, options, len(whole.segments) - len(graph.segments))
 
 
-def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = False) -> FoundLines:
+def correct_lines(found: FoundLines, corrections: Corrections) -> CorrectedLines:
+    """The lines that were found, grouped, after all edits; `found` must have the frame of the corrections."""
+    return correct(found.segments, found.camera, found.frame, corrections)
+
+
+def reconstruct_corrected(
+    photo: Photo,
+    found: FoundLines,
+    corrected: CorrectedLines,
+    options: ReconstructOptions,
+    on_progress: Callable[[Progress], None] | None = None,
+    on_stage: StageReport = _silent,
+) -> Scene:
+    """The scene of corrected lines, without the scale that known lengths give (`measured`).
+
+    May raise ReconstructionError, ContradictionError or SolverError.
+    """
+    found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
+    whole, graph = connect(found, options)
+    said = said_of(graph, corrected)
+    found = replace(found, notes=found.notes + said.notes)
+    graph = _believed(graph, said)
+    known = replace(
+        options.solve,
+        real=tuple(np.flatnonzero(said.real).tolist()),
+        fake=tuple(np.flatnonzero(said.fake).tolist()),
+    )
+    on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
+    try:
+        solution = solve(graph, known, on_progress)
+    except ContradictionError as error:
+        raise _named(error, graph, corrected) from None
+    on_stage("lifting the lines into space")
+    left_out = len(whole.segments) - len(graph.segments)
+    return place(photo, found, graph, solution, options, left_out, said.real)
+
+
+def _named(error: ContradictionError, graph: LineGraph, corrected: CorrectedLines) -> ContradictionError:
+    """The same contradiction told by places in the photo, with the ids of the lines."""
+    ids = corrected.ids[rows_of(graph.segments, corrected)]
+    edge = {pair: number for number, pair in enumerate(map(tuple, graph.edges.tolist()))}
+    places = [graph.crossing[edge[pair]].round().astype(int).tolist() for pair in error.crossings]
+    where = ", ".join(f"({x}, {y})" for x, y in places)
+    return ContradictionError(
+        f"the crossings at {where} cannot all be real: no depths fit them; take one of them back",
+        tuple(int(ids[line]) for line in error.lines),
+        tuple((int(min(ids[i], ids[j])), int(max(ids[i], ids[j]))) for i, j in error.crossings),
+    )
+
+
+def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
+    """The scene with the scale that known lengths give it: the geometric mean of what each says.
+
+    Only lengths on component 0 count, since the scales of the others are guesses.
+    """
+    if not corrected.lengths:
+        return scene
+    seen = zip(scene.lines.axis.tolist(), scene.lines.segment, strict=True)
+    row = {(axis, ends.tobytes()): number for number, (axis, ends) in enumerate(seen)}
+    scales, notes = [], []
+    for number, metres in corrected.lengths.items():
+        own = int(np.flatnonzero(corrected.ids == number)[0])
+        key = (int(corrected.segments.axis[own]), corrected.segments.ends[own].tobytes())
+        if key not in row or scene.lines.component[row[key]] != 0:
+            notes.append(f"a line of known length ({metres:g} m) is not on component 0, so its length says nothing")
+            continue
+        ends = scene.lines.ends[row[key]]
+        scales.append(metres / float(np.linalg.norm(ends[1] - ends[0])))
+    if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
+        notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
+    metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
+    return replace(scene, metres_per_unit=metres_per_unit, notes=scene.notes + tuple(notes))
+
+
+def _believed(graph: LineGraph, said: Said) -> LineGraph:
+    """The graph in which every crossing that a person called real says something about depth, if little.
+
+    Its tolerance is wider: a person is not wrong because a segment is off by a little more than its noise.
+    """
+    taken = said.real & graph.possible
+    wider = np.minimum(SURE_FACTOR * graph.tolerance, WIDEST_TOLERANCE)
+    tolerance = np.where(taken, wider, graph.tolerance)
+    return replace(graph, tolerance=tolerance, informative=graph.informative | taken)
+
+
+def find_lines(
+    photo: Photo, on_stage: StageReport = _silent, faint: bool = False, drawn: SetFrame | None = None
+) -> FoundLines:
     """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame.
 
     With `faint`, a second look adds what the grain of a photo hides that is not small. The frame is always that of the
-    first look.
+    first look. Lines that a person has `drawn` along the axes give the frame instead of the segments.
     """
     on_stage("finding segments")
-    raw = find_segments(photo.grey)
+    return name_lines(photo, find_segments(photo.grey), on_stage, faint, drawn)
+
+
+def name_lines(
+    photo: Photo,
+    raw: Segments,
+    on_stage: StageReport = _silent,
+    faint: bool = False,
+    drawn: SetFrame | None = None,
+) -> FoundLines:
+    """The same from raw segments, as `linecad.segments.find_segments` gives them."""
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
     camera, notes = _camera(photo, raw)
-    frame = find_frame(raw, camera.matrix)
+    if drawn is None:
+        frame = find_frame(raw, camera.matrix)
+    else:
+        ends = np.array([line.ends for line in drawn.lines])
+        frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
+        notes.append("the Manhattan frame is that of lines drawn by hand")
     if frame.explained < MIN_FRAME_SHARE:
         notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
     if faint and photo.width >= SMALL_WIDTH:
@@ -192,10 +322,15 @@ def find_lines(photo: Photo, on_stage: StageReport = _silent, faint: bool = Fals
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
     """The line graph of all found lines, and the part of it that is solved; ReconstructionError when that is none."""
+    whole = connect_all(found, options)
+    return whole, _kept(whole, options)
+
+
+def connect_all(found: FoundLines, options: ReconstructOptions) -> LineGraph:
+    """The line graph of all found lines."""
     reach, weights = options.reach_for(found), options.weights_used
     is_widest = reach == LONG_REACH and weights == "odds" and options.collinear
-    whole = found.widest_graph if is_widest else found.graph(reach, weights, options.collinear)
-    return whole, _kept(whole, options)
+    return found.widest_graph if is_widest else found.graph(reach, weights, options.collinear)
 
 
 def place(
@@ -205,8 +340,12 @@ def place(
     solution: Solution,
     options: ReconstructOptions,
     left_out: int = 0,
+    sure: Bool | None = None,
 ) -> Scene:
-    """The scene of a solved graph; `left_out` lines of the photo are not in it. May raise ReconstructionError."""
+    """The scene of a solved graph; `left_out` lines of the photo are not in it. May raise ReconstructionError.
+
+    Crossings (E,) that a person is `sure` of tie bodies together, however little else does.
+    """
     notes = list(found.notes)
     if left_out:
         notes.append(_left_out(left_out, "touch too few others in the photo", options))
@@ -219,6 +358,8 @@ def place(
                 f"{MOST_DOUBT}), as where buildings hide each other: lines reach less far, and more is asked of what "
                 "hangs together"
             )
+        if sure is not None:
+            held = tied(held, graph.edges[sure & solution.connected & graph.informative])
         refused = solution.connected & ~held.joins(graph)
         if (refused & graph.informative).any():
             notes.append(

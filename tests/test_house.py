@@ -24,8 +24,21 @@ FLOORS = [
     ["linecad"],
     ["linecad.errors"],
     ["linecad.scene", "linecad.strictjson", "linecad.files"],
-    ["linecad.scenedocument", "linecad.fspy", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
-    ["linecad.scenefile", "linecad.dataset.modelling", "linecad.dataset.view", "linecad.dataset.light"],
+    [
+        "linecad.scenedocument",
+        "linecad.fspy",
+        "linecad.geometry",
+        "linecad.corrections",
+        "linecad.dataset",
+        "linecad.dataset.truth",
+    ],
+    [
+        "linecad.scenefile",
+        "linecad.correctionsfile",
+        "linecad.dataset.modelling",
+        "linecad.dataset.view",
+        "linecad.dataset.light",
+    ],
     ["linecad.dataset.facades", "linecad.dataset.furniture", "linecad.dataset.rasteriser", "linecad.dataset.textures"],
     ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.finishing"],
     ["linecad.dataset.scenes", "linecad.dataset.render"],
@@ -54,10 +67,17 @@ FLOORS = [
         "linecad.planes",
         "linecad.faces",
         "linecad.agreement",
+        "linecad.correcting",
     ],
     ["linecad.support"],  # of hinges
     ["linecad.pipeline", "linecad.dataset.choice"],
-    ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
+    ["linecad.evaluation", "linecad.batch", "linecad.editing", "linecad.dataset.make"],
+    ["linecad.editing.guard", "linecad.editing.saving", "linecad.editing.tabs", "linecad.editing.tiles"],
+    ["linecad.editing.labelling", "linecad.editing.solving"],
+    ["linecad.editing.session"],
+    ["linecad.editing.document", "linecad.editing.edits"],
+    ["linecad.editing.server"],
+    ["linecad.editing.run"],
     [
         "linecad.evaluation.frames",
         "linecad.evaluation.overlap",
@@ -91,12 +111,17 @@ HEAVY = {
     "pyscipopt",
     "scipy",
     "shapely",
+    "starlette",
     "trimesh",
+    "uvicorn",
 }
 LONGEST_HELP = 0.5  # s, what `linecad --help` may take
 
 # Hosts that a file may link to: standards, papers, the tools' own documentation.
 HOSTS = {
+    "127.0.0.1",  # the page of linecad edit; with the two next ones also in its tests
+    "example.org",
+    "localhost",
     "arxiv.org",
     "creativecommons.org",
     "docs.opencv.org",
