@@ -70,7 +70,7 @@ def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
     screen.settle()
     anew = np.array(screen.run(read))
     assert np.count_nonzero(clicked != before) > 50
-    # A stroke that is cut at the border of what is drawn is rounded otherwise by a shade; a missing mark is 100 and more.
+    # A stroke that is cut at the border differs by a shade; a missing mark would by 100 and more.
     assert np.abs(clicked - anew).max() <= 40
 
 
