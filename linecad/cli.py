@@ -21,9 +21,9 @@ from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
     from exporters.options import Value
+    from linecad.finding import ReconstructOptions
     from linecad.metric import Known
     from linecad.photo import Photo
-    from linecad.pipeline import ReconstructOptions
     from linecad.scene import Scene
     from solver.problem import Progress
 
@@ -379,7 +379,7 @@ def _families(text: str) -> frozenset[str]:
 
 
 def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
-    from linecad.pipeline import ReconstructOptions
+    from linecad.finding import ReconstructOptions
     from solver.problem import SolveOptions
 
     is_gain = parsed.formulation == "gain"

@@ -4,7 +4,7 @@ One photo has no scale, so somebody must say one length: of a line of the scene,
 lie on one line or in one plane, or the height of the camera above the ground. Only `metres_per_unit` is set; the
 coordinates of a scene stay as they are.
 
-Only component 0 can be measured: the scale of every other one is itself a guess (linecad.pipeline).
+Only component 0 can be measured: the scale of every other one is itself a guess (linecad.placing).
 """
 
 from dataclasses import dataclass, replace

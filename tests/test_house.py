@@ -70,6 +70,8 @@ FLOORS = [
         "linecad.correcting",
     ],
     ["linecad.support"],  # of hinges
+    ["linecad.finding"],
+    ["linecad.placing"],
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.evaluation", "linecad.batch", "linecad.editing", "linecad.dataset.make"],
     ["linecad.editing.guard", "linecad.editing.saving", "linecad.editing.tabs", "linecad.editing.tiles"],
@@ -95,7 +97,7 @@ FLOORS = [
     ["linecad.cli"],
     ["linecad.__main__"],
 ]
-FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.pipeline"  # solver and exporters are called from here upwards
+FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.finding"  # solver and exporters are called from here upwards
 KNOWN_TO_THE_PACKAGES = {"linecad.errors", "linecad.scene", "linecad.files"}
 
 HEAVY = {

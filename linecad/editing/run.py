@@ -15,8 +15,8 @@ from linecad.editing.session import Session, ToSave
 from linecad.editing.solving import SolvingProcess
 from linecad.errors import EditorError
 from linecad.files import check_output, write_text_atomically
+from linecad.finding import ReconstructOptions
 from linecad.photo import Photo
-from linecad.pipeline import ReconstructOptions
 from linecad.segments import find_segments
 
 try:

@@ -13,8 +13,9 @@ from linecad.correcting import CorrectedLines, Correcting, Said, correcting_of, 
 from linecad.corrections import Corrections, Edit, KnownLength, SetFrame
 from linecad.editing.solving import Answer, Step, Task
 from linecad.errors import CorrectionError, LinecadError
+from linecad.finding import FoundLines, ReconstructOptions, connect_all, name_lines
 from linecad.photo import Photo
-from linecad.pipeline import FoundLines, ReconstructOptions, connect_all, measured, name_lines
+from linecad.pipeline import measured
 from linecad.scene import LineGraph, Scene, Segments
 from solver.problem import Progress
 

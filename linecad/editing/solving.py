@@ -18,8 +18,9 @@ from typing import TYPE_CHECKING
 
 from linecad.correcting import CorrectedLines
 from linecad.errors import ContradictionError, LinecadError
+from linecad.finding import FoundLines, ReconstructOptions
 from linecad.photo import Photo
-from linecad.pipeline import FoundLines, ReconstructOptions, reconstruct_corrected
+from linecad.pipeline import reconstruct_corrected
 from linecad.scene import Scene
 from solver.problem import Progress
 

@@ -17,7 +17,8 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
 from linecad.evaluation.references import Points, open_case
-from linecad.pipeline import ReconstructOptions, reconstruct
+from linecad.finding import ReconstructOptions
+from linecad.pipeline import reconstruct
 from linecad.scene import Bool, Float, Scene
 from solver.problem import SolveOptions
 

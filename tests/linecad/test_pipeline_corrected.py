@@ -8,19 +8,10 @@ import pytest
 from linecad.correcting import correct, said_of
 from linecad.corrections import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
 from linecad.errors import ContradictionError, ReconstructionError
+from linecad.finding import SHORT_REACH, FoundLines, ReconstructOptions, connect, name_lines
 from linecad.hinges import find_held, tied
 from linecad.photo import Photo
-from linecad.pipeline import (
-    SHORT_REACH,
-    FoundLines,
-    ReconstructOptions,
-    connect,
-    correct_lines,
-    measured,
-    name_lines,
-    reconstruct,
-    reconstruct_corrected,
-)
+from linecad.pipeline import correct_lines, measured, reconstruct, reconstruct_corrected
 from linecad.vanishing import fit_frame
 from solver.problem import BACKENDS, FORMULATIONS, SolveOptions
 

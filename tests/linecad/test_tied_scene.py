@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from linecad.finding import SHORT_REACH, FoundLines, ReconstructOptions, connect
 from linecad.geometry import project
 from linecad.photo import Photo
-from linecad.pipeline import SHORT_REACH, FoundLines, ReconstructOptions, connect, place
+from linecad.placing import place
 from linecad.scene import Camera, ManhattanFrame, Segments
 from solver.problem import solve
 

@@ -10,8 +10,8 @@ from linecad.editing.guard import HOST
 from linecad.editing.saving import Saver
 from linecad.editing.server import Editor
 from linecad.editing.session import Session
+from linecad.finding import ReconstructOptions, name_lines
 from linecad.photo import Photo
-from linecad.pipeline import ReconstructOptions, name_lines
 from linecad.segments import find_segments
 
 PORT, TOKEN = 8765, "the-token"

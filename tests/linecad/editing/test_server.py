@@ -12,7 +12,8 @@ from linecad.correctionsfile import corrections_from_json, corrections_to_json
 from linecad.editing.tiles import TILE
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.references import open_case
-from linecad.pipeline import ReconstructOptions, reconstruct
+from linecad.finding import ReconstructOptions
+from linecad.pipeline import reconstruct
 
 
 def crossings(state, **wanted):
