@@ -4,9 +4,9 @@ An assembly `linecad` of two assemblies and a part: `lines`, with one part of st
 part a face, which has its holes; and `camera`, a point where it stood. Sewn, `faces` is one part, and faces that share
 an edge are one shell.
 
-OCCT is used directly. build123d, which wraps it, takes two seconds and 300 MB to load, and its own STEP export garbles
-names that are not ASCII, colours part and instance so that FreeCAD doubles the objects, and never writes the same file
-twice.
+OCCT is used directly. build123d, which wraps it, takes more than twice the time and 160 MB more to load, and its own
+STEP export garbles names that are not ASCII, colours part and instance so that FreeCAD doubles the objects, and never
+writes the same file twice.
 """
 
 import contextlib
