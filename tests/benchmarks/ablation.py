@@ -92,8 +92,7 @@ def cell(rows: list[tuple[float, float]], *, with_lowest: bool) -> str:
 def with_options(options: ReconstructOptions) -> Row:
     def row(photo: Photo, limit: float) -> Scene:
         timed = replace(options, solve=replace(options.solve, time_limit_s=limit))
-        found = find_lines(photo)
-        return finished(photo, found, timed)
+        return finished(photo, find_lines(photo, faint=options.faint), timed)
 
     return row
 
