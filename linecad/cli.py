@@ -32,6 +32,7 @@ SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibr
 LARGEST_PORT = 65_535
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
+GAIN_SECONDS, PAPER_SECONDS = 10.0, 60.0  # of the solver: gain starts near its end, the paper's program does not
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
 
 
@@ -154,7 +155,10 @@ def _add_reconstruction(convert: argparse.ArgumentParser) -> None:
     convert.add_argument(
         "--fast", action="store_true", help="depths by a robust fit in tenths of a second, without a search or a proof"
     )
-    convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
+    convert.add_argument(
+        "--time-limit", type=_positive, metavar="S",
+        help=f"seconds for the solver ({GAIN_SECONDS:g}; with --formulation paper {PAPER_SECONDS:g})",
+    )  # fmt: skip
     convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
     )
@@ -383,6 +387,7 @@ def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
     from solver.problem import SolveOptions
 
     is_gain = parsed.formulation == "gain"
+    usual_limit = GAIN_SECONDS if is_gain else PAPER_SECONDS
     return ReconstructOptions(
         extension=parsed.extension,
         weights=parsed.weights,
@@ -396,7 +401,7 @@ def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
             mu_planarity=parsed.mu_planarity,
             mu_boundary=parsed.mu_boundary,
             backend=parsed.backend,
-            time_limit_s=parsed.time_limit,
+            time_limit_s=usual_limit if parsed.time_limit is None else parsed.time_limit,
             gap=parsed.gap,
             seed=parsed.seed,
             fast=parsed.fast,

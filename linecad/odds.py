@@ -17,7 +17,9 @@ PER_ROOT_GAP = 2.1  # for each root of gap over GAP_UNIT
 PER_GAP_OVER_STEM = 0.6
 BOTH_HORIZONTAL = 0.5  # and as much again for each GAP_UNIT of the gap
 GAP_UNIT = 37.5  # px
-LEAST = 0.1  # of any edge; the paper's weights cannot be zero or less
+# To which all are rounded, and the least of any edge: objectives then have a common measure, by which bounds are
+# rounded, and the search ends sooner. The paper's weights cannot be zero or less.
+STEP = 0.5
 
 COLLINEAR = 4.0  # log-odds of two pieces of exactly one image line where nothing else is near
 PER_GAP_OVER_SHORTER = 0.5
@@ -28,11 +30,11 @@ CROWD_ALONG = 40.0  # px to both sides of the end of the gap
 
 
 def log_odds(graph: LineGraph, camera: Camera, frame: ManhattanFrame) -> Float:
-    """Log-odds (E,) of all edges of a graph that they are real, LEAST or more."""
+    """Log-odds (E,) of all edges of a graph that they are real, in whole STEPs and at least one."""
     odds = crossing_odds(graph, camera.width)
     collinear = np.flatnonzero(graph.kind == "collinear")
     odds[collinear] = collinear_odds(graph, collinear, camera, frame)
-    return odds
+    return np.asarray(np.maximum(np.round(odds / STEP), 1) * STEP)
 
 
 def crossing_odds(graph: LineGraph, width: int) -> Float:
@@ -41,9 +43,9 @@ def crossing_odds(graph: LineGraph, width: int) -> Float:
     widest = gap.max(axis=1)
     over_stem = (graph.gap / graph.segments.length[graph.edges]).max(axis=1)
     horizontal = (graph.axis[graph.edges] != 2).all(axis=1)
-    odds = AT_ONCE - PER_ROOT_GAP * np.sqrt(widest / GAP_UNIT) - PER_GAP_OVER_STEM * over_stem
+    odds: Float = AT_ONCE - PER_ROOT_GAP * np.sqrt(widest / GAP_UNIT) - PER_GAP_OVER_STEM * over_stem
     odds -= BOTH_HORIZONTAL * horizontal * (1 + widest / GAP_UNIT)
-    return np.asarray(np.maximum(odds, LEAST))
+    return odds
 
 
 def collinear_odds(graph: LineGraph, which: Int, camera: Camera, frame: ManhattanFrame) -> Float:
@@ -63,9 +65,9 @@ def collinear_odds(graph: LineGraph, which: Int, camera: Camera, frame: Manhatta
     crowd = np.maximum(
         _crowd(segments, middle, along, first, place, scale), _crowd(segments, middle, along, second, place, scale)
     )
-    odds = COLLINEAR - PER_GAP_OVER_SHORTER * graph.gap[which].sum(axis=1) / shorter
+    odds: Float = COLLINEAR - PER_GAP_OVER_SHORTER * graph.gap[which].sum(axis=1) / shorter
     odds -= 0.5 * (apart * scale / ACROSS) ** 2 + np.log1p(crowd / LONELY)
-    return np.asarray(np.clip(odds, LEAST, COLLINEAR))
+    return odds
 
 
 def _across(vector: Float, along: Float) -> Float:

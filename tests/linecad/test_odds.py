@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.graph import build_line_graph
-from linecad.odds import ACROSS, AT_ONCE, BOTH_HORIZONTAL, COLLINEAR, LEAST
+from linecad.odds import ACROSS, AT_ONCE, BOTH_HORIZONTAL, COLLINEAR, STEP
 from linecad.scene import Camera, ManhattanFrame, Segments
 
 # A frontal camera at the reference width: z lines are vertical in the photo, x lines level.
@@ -28,8 +28,12 @@ def odds_of(*lines, camera=CAMERA, scale=1.0):
     return graph.kind.tolist(), graph.weight.tolist()
 
 
+def rounded(odds):
+    return pytest.approx(round(odds / STEP) * STEP)
+
+
 def test_lines_that_cross_within_both_convince_most():
-    assert odds_of(level(400, 800, 500), upright(300, 700, 600)) == (["X"], [AT_ONCE])
+    assert odds_of(level(400, 800, 500), upright(300, 700, 600)) == (["X"], [rounded(AT_ONCE)])
 
 
 @given(st.floats(1, 70), st.floats(1, 70))
@@ -38,8 +42,7 @@ def test_a_wider_gap_convinces_less(one, other):
     (_, [first]), (_, [second]) = (
         odds_of(level(400, 800, 500), upright(500 + gap, 800 + gap, 600)) for gap in (near, far)
     )
-    assert first >= second
-    assert first < AT_ONCE
+    assert AT_ONCE >= first >= second >= STEP
 
 
 def test_a_longer_stem_convinces_more():
@@ -50,7 +53,7 @@ def test_a_longer_stem_convinces_more():
 def test_two_level_lines_convince_less():
     away = np.array([[1320.0, 880], [1620, 980]])  # to the vanishing point in the photo's middle
     _, [weight] = odds_of(level(1000, 1700, 930), (away.tolist(), 1))
-    assert weight == pytest.approx(AT_ONCE - BOTH_HORIZONTAL)
+    assert weight == rounded(AT_ONCE - BOTH_HORIZONTAL)
 
 
 def test_odds_do_not_change_with_the_size_of_the_photo():
@@ -62,8 +65,8 @@ def test_odds_do_not_change_with_the_size_of_the_photo():
 def test_pieces_of_one_line_convince_by_how_nearly_they_lie_on_it():
     _, [exact] = odds_of(level(400, 800, 500), level(860, 1200, 500))
     _, [off] = odds_of(level(400, 800, 500), level(860, 1200, 500 + ACROSS))
-    assert exact == pytest.approx(COLLINEAR - 0.5 * 60 / 340)
-    assert off == pytest.approx(exact - 0.5)
+    assert exact == rounded(COLLINEAR - 0.5 * 60 / 340)
+    assert off == rounded(exact - 0.5)
 
 
 def test_among_courses_of_brick_a_continuation_convinces_little():
@@ -71,4 +74,9 @@ def test_among_courses_of_brick_a_continuation_convinces_little():
     kinds, weights = odds_of(level(400, 800, 500), level(860, 1200, 500), *courses)
     assert kinds == ["collinear"]
     _, [alone] = odds_of(level(400, 800, 500), level(860, 1200, 500))
-    assert LEAST < weights[0] < alone - 1
+    assert STEP <= weights[0] <= alone - 1
+
+
+def test_odds_are_whole_steps():
+    _, weights = odds_of(level(400, 800, 500), upright(540, 800, 600), level(830, 1100, 500))
+    assert weights == [rounded(weight) for weight in weights]
