@@ -8,6 +8,7 @@ import argparse
 import importlib.util
 import math
 import re
+import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -18,9 +19,12 @@ from linecad import __version__
 from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
+    from linecad.batch.record import Row
+    from linecad.batch.run import Progress
+    from linecad.conversion import Conversion
     from linecad.photo import Photo
     from linecad.scene import Scene
-    from solver.problem import Progress
+    from solver.problem import Progress as SolverProgress
 
 SCENE_SUFFIX = ".json"
 SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibration
@@ -62,6 +66,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
+    _add_batch(commands)
     _add_evaluate(commands)
     _add_export(commands)
     _add_dataset(commands)
@@ -85,50 +90,85 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.set_defaults(run=_convert)
     convert.add_argument("photo", type=Path, metavar="PHOTO")
     _add_outputs(convert)
-    camera = convert.add_mutually_exclusive_group()
+    _add_conversion(convert)
+    _add_loudness(convert)
+
+
+def _add_conversion(command: argparse.ArgumentParser) -> None:
+    """How a photo is converted: what `_conversion` reads."""
+    camera = command.add_mutually_exclusive_group()
     camera.add_argument(
         "--camera", type=Path, metavar="FILE", help='calibration: JSON with width, height, K, "distortion"'
     )
     camera.add_argument(
         "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
     )
-    convert.add_argument(
+    command.add_argument(
         "--formulation", choices=["gain", "paper"], default="gain",
         help="how the program is stated: gain, fast, or as printed in the paper (gain)",
     )  # fmt: skip
-    convert.add_argument("--backend", choices=["scip", "highs"], default="scip", help="the solver (scip)")
-    convert.add_argument(
+    command.add_argument("--backend", choices=["scip", "highs"], default="scip", help="the solver (scip)")
+    command.add_argument(
         "--without", type=_families, default=frozenset(), metavar="FAMILY[,FAMILY]",
         help="leave out families of constraints: cycles, planarity, boundary",
     )  # fmt: skip
-    _add_objective(convert)
-    convert.add_argument(
+    _add_objective(command)
+    command.add_argument(
         "--fast", action="store_true", help="depths by a robust fit in tenths of a second, without a search or a proof"
     )
-    convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
-    convert.add_argument(
+    command.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
+    command.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
     )
-    convert.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
-    convert.add_argument(
+    command.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
+    command.add_argument(
         "--extension", type=_extension, metavar="PX",
         help="how far segments are extended to find crossings, px on a photo 3840 px wide (75; with paper 30)",
     )  # fmt: skip
-    convert.add_argument(
+    command.add_argument(
         "--collinear", action=argparse.BooleanOptionalAction, default=None,
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
-    convert.add_argument(
+    command.add_argument(
         "--faint", action="store_true",
         help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
     )  # fmt: skip
-    convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
-    convert.add_argument(
+    command.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
+    command.add_argument(
         "--witnesses", type=_count, metavar="N",
         help="lines that must tie two bodies for one scale, 1 asks nothing (with paper 1; else lines must keep their "
         "depth when others are left out)",
     )  # fmt: skip
-    _add_loudness(convert)
+
+
+def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    batch = commands.add_parser(
+        "batch",
+        help="many photos, on all cores or a cluster; goes on where it was stopped",
+        description="Convert many photos into a folder, with a record, a page and a summary (docs/batch.md).",
+        epilog="example: linecad batch survey/ -o models --format step,usdz,png --camera camera.json",
+    )
+    batch.set_defaults(run=_batch)
+    batch.add_argument("photos", nargs="+", metavar="PHOTO|FOLDER|GLOB")
+    batch.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="made when it is not there")
+    batch.add_argument(
+        "--format", type=_suffixes, default=(SCENE_SUFFIX, ".png"), metavar="FORMAT[,FORMAT]",
+        help="what is made of each photo (json,png); see linecad export --formats",
+    )  # fmt: skip
+    batch.add_argument("--workers", type=_count, metavar="N", help="photos at a time (as cores and memory allow)")
+    batch.add_argument(
+        "--photo-limit", type=_positive, metavar="S",
+        help="seconds after which a photo is given up (3 times --time-limit and 10 minutes)",
+    )  # fmt: skip
+    batch.add_argument(
+        "--memory-limit", type=_count, metavar="MB", help="memory of one photo (its share of what is free)"
+    )
+    batch.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, such as tcp://10.0.0.1:8786")
+    batch.add_argument(
+        "--shared-files", action="store_true", help="the cluster sees the same folders: no photo travels"
+    )
+    _add_conversion(batch)
+    _add_loudness(batch)
 
 
 def _add_objective(command: argparse.ArgumentParser) -> None:
@@ -274,10 +314,20 @@ def _families(text: str) -> frozenset[str]:
     return names
 
 
-def _convert(parsed: argparse.Namespace) -> int:
-    _check_outputs(parsed.output, [parsed.photo, parsed.camera])
-    from linecad.photo import read_photo
-    from linecad.pipeline import ReconstructOptions, reconstruct
+def _suffixes(text: str) -> tuple[str, ...]:
+    from exporters.formats import FORMATS
+
+    suffixes = tuple(dict.fromkeys(f".{name.strip().lower().removeprefix('.')}" for name in text.split(",")))
+    known = (SCENE_SUFFIX, *FORMATS)
+    for suffix in suffixes:
+        if suffix not in known:
+            raise argparse.ArgumentTypeError(f"{suffix[1:]!r} is no format; use {', '.join(s[1:] for s in known)}")
+    return suffixes
+
+
+def _conversion(parsed: argparse.Namespace) -> "Conversion":
+    from linecad.conversion import Conversion
+    from linecad.pipeline import ReconstructOptions
     from solver.problem import SolveOptions
 
     is_gain = parsed.formulation == "gain"
@@ -300,11 +350,19 @@ def _convert(parsed: argparse.Namespace) -> int:
             fast=parsed.fast,
         ),
     )
+    return Conversion(parsed.camera, parsed.focal, options)
+
+
+def _convert(parsed: argparse.Namespace) -> int:
+    _check_outputs(parsed.output, [parsed.photo, parsed.camera])
+    from linecad.conversion import write_outputs
+
+    conversion = _conversion(parsed)
     with _Shown(parsed) as show:
         show.stage("reading the photo")
-        photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
-        scene = reconstruct(photo, options, show.progress, show.stage)
-        _write(scene, photo, parsed.output, show)
+        photo = conversion.read(parsed.photo)
+        scene = conversion.reconstruct(photo, show.progress, show.stage)
+        write_outputs(scene, photo, parsed.output, show.stage)
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
@@ -313,6 +371,30 @@ def _convert(parsed: argparse.Namespace) -> int:
     )
     _print_notes(scene)
     return 0
+
+
+def _batch(parsed: argparse.Namespace) -> int:
+    from linecad.batch.start import Means, make_plan, run_plan
+    from linecad.batch.summary import bar, line, table
+
+    means = Means(
+        parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit
+    )  # fmt: skip
+    plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, _conversion(parsed), means)
+    with _Shown(parsed) as show:
+        where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"
+        show.stage(f"{len(plan.photos)} photos {where}, at most {plan.limits.memory_mb} MiB each")
+        began = time.monotonic()
+
+        def on_row(progress: "Progress", row: "Row | None") -> None:
+            if row is not None:
+                show.line(line(progress, row), row.outcome.status != "done")
+            show.bar(bar(progress, time.monotonic() - began))
+
+        result = run_plan(plan, workers, means, on_row)
+    print(table(result))
+    print(f"page: {plan.folder / 'index.html'}")
+    return 1 if result.progress.failed else 0
 
 
 def _evaluate(parsed: argparse.Namespace) -> int:
@@ -365,13 +447,14 @@ def _export(parsed: argparse.Namespace) -> int:
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
     _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    from linecad.conversion import write_outputs
     from linecad.scenefile import read_scene
 
     with _Shown(parsed) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
         photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
-        _write(scene, photo, parsed.output, show)
+        write_outputs(scene, photo, parsed.output, show.stage)
     return 0
 
 
@@ -439,18 +522,6 @@ def _check_distinct(outputs: list[Path]) -> None:
         raise OutputError("the same output was named twice; name each once")
 
 
-def _write(scene: "Scene", photo: "Photo | None", outputs: list[Path], show: "_Shown") -> None:
-    from exporters.formats import export
-    from linecad.scenefile import write_scene
-
-    for path in outputs:
-        show.stage(f"writing {path}")
-        if path.suffix.lower() == SCENE_SUFFIX:
-            write_scene(scene, path)
-        else:
-            export(scene, path, None if photo is None else photo.pixels)
-
-
 def _print_formats() -> int:
     from exporters.formats import FORMATS
 
@@ -485,13 +556,26 @@ class _Shown:
         elif not self.quiet and not self.verbose:
             print(text, file=sys.stderr, flush=True)
 
-    def progress(self, at: "Progress") -> None:
+    def progress(self, at: "SolverProgress") -> None:
         """The solver has come further."""
         if self.live:
             self._over(
                 f"{self.current} ... {at.seconds:.1f} s, best {at.objective:.1f}, bound {at.bound:.1f}, "
                 f"gap {at.gap:.2%} (Ctrl-C keeps the best)"
             )
+
+    def line(self, text: str, is_important: bool) -> None:
+        """One of many photos is over; on a terminal only what is important stays above the bar."""
+        if self.live:
+            if is_important or self.verbose:
+                print(f"\r\033[K{text}", file=sys.stderr, flush=True)
+        elif not self.quiet:
+            print(text, file=sys.stderr, flush=True)
+
+    def bar(self, text: str) -> None:
+        """How far many photos are, on a terminal alone, cut to its width."""
+        if self.live:
+            self._over(text[: shutil.get_terminal_size().columns - 1])
 
     def __enter__(self) -> Self:
         return self

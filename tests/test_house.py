@@ -56,6 +56,7 @@ FLOORS = [
     ],
     ["linecad.support"],  # of hinges
     ["linecad.pipeline", "linecad.dataset.choice"],
+    ["linecad.conversion"],
     ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
     [
         "linecad.evaluation.frames",
@@ -71,6 +72,12 @@ FLOORS = [
     ["linecad.evaluation.tables", "linecad.evaluation.run"],
     ["linecad.evaluation.document"],
     ["linecad.evaluation.report"],
+    ["linecad.batch.job"],
+    ["linecad.batch.thumbnail", "linecad.batch.lock", "linecad.batch.inputs", "linecad.batch.resources"],
+    ["linecad.batch.work", "linecad.batch.local", "linecad.batch.record"],
+    ["linecad.batch.nursery", "linecad.batch.remote", "linecad.batch.sheet"],
+    ["linecad.batch.run", "linecad.batch.cluster"],
+    ["linecad.batch.summary", "linecad.batch.start"],
     ["linecad.cli"],
     ["linecad.__main__"],
 ]
@@ -80,6 +87,8 @@ KNOWN_TO_THE_PACKAGES = {"linecad.errors", "linecad.scene", "linecad.files"}
 HEAVY = {
     "build123d",
     "cv2",
+    "dask",
+    "distributed",
     "ezdxf",
     "highspy",
     "mitsuba",
