@@ -12,6 +12,7 @@ import json
 import random
 import sys
 import time
+import warnings
 from pathlib import Path
 
 import atheris
@@ -84,6 +85,7 @@ def main() -> None:
     parser.add_argument("--corpus", type=Path, required=True, metavar="FOLDER")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     given = parser.parse_args()
+    warnings.simplefilter("error", RuntimeWarning)  # NumPy's overflows are findings too
     target = TARGETS[given.target]
     given.corpus.mkdir(parents=True, exist_ok=True)
     found = given.corpus.with_name(given.corpus.name + "-found")

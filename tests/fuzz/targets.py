@@ -14,6 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import Image
 
+from linecad.batch.job import Figures, Outcome
+from linecad.batch.record import Row, parse_row, row_line
 from linecad.calibration import read_calibration
 from linecad.errors import InputError
 from linecad.photo import read_photo
@@ -71,6 +73,15 @@ def read_image_bytes(data: bytes, folder: Path) -> None:
         return
     assert min(photo.width, photo.height) >= SIDE
     assert photo.camera is None or np.isfinite(photo.camera.matrix).all()
+
+
+def read_record_bytes(data: bytes, _folder: Path) -> None:
+    """A line of the record of a batch; whatever is accepted can be written, and names files of the folder alone."""
+    row = parse_row(data)
+    if row is None:
+        return
+    assert not any(Path(file).is_absolute() or ".." in Path(file).parts for file in (row.name, *row.outcome.files))
+    assert parse_row(row_line(row)) is not None
 
 
 def image_bytes(kind: str, mode: str = "RGB", **options: Any) -> bytes:
@@ -134,6 +145,15 @@ def camera_seeds() -> Iterator[bytes]:
     ).encode()
 
 
+def record_seeds() -> Iterator[bytes]:
+    """A photo that is done and one that failed."""
+    figures = Figures(20, 30, 25, 4, 5, 0.01, "optimal", ("a note",))
+    done = Outcome("done", "", 2.5, 1.25, 260.0, figures, {"facade.json": 1000, "thumbnails/facade.jpg": 200})
+    yield row_line(Row("folder/facade.jpg", "0" * 64, "f" * 64, "facade", done, "2026-11-21T12:00:00+00:00"))
+    failed = Outcome("failed", "too few lines")
+    yield row_line(Row("other.jpg", "1" * 64, "f" * 64, "other", failed, "2026-11-21T12:00:00+00:00"))
+
+
 def scene_seeds() -> Iterator[bytes]:
     """A scene of three lines, one crossing and one plane with a face and a hole."""
     square = [[0.0, 5.0, 0.0], [4.0, 5.0, 0.0], [4.0, 5.0, 3.0], [0.0, 5.0, 3.0]]
@@ -183,6 +203,7 @@ def scene_seeds() -> Iterator[bytes]:
 TARGETS = {
     "scene": Target(read_scene_bytes, True, scene_seeds, 8192),
     "camera": Target(read_camera_bytes, True, camera_seeds, 2048),
+    "record": Target(read_record_bytes, True, record_seeds, 4096),
     "image": Target(read_image_bytes, False, image_seeds, 32768),
 }
 
