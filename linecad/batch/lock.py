@@ -14,7 +14,7 @@ STEP = 0.05  # s
 
 
 @contextlib.contextmanager
-def locked(folder: Path, patience: float = PATIENCE) -> Iterator[int]:
+def locked(folder: Path, patience: float | None = None) -> Iterator[int]:
     """Hold the lock; gives the descriptor that processes must inherit, so that they hold it too.
 
     The system frees the lock when the last of them ends, in whatever way. Raises LinecadError when another batch works
@@ -28,7 +28,7 @@ def locked(folder: Path, patience: float = PATIENCE) -> Iterator[int]:
     except OSError as error:
         raise OutputError(f"{path} cannot be opened: {error.strerror}; choose another folder") from error
     try:
-        end = time.monotonic() + patience
+        end = time.monotonic() + (PATIENCE if patience is None else patience)
         while True:
             try:
                 fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -47,7 +47,8 @@ def options_hash(conversion: Conversion, suffixes: tuple[str, ...]) -> str:
 def _plain(value: object) -> object:
     """A value of a conversion as JSON."""
     if dataclasses.is_dataclass(value):
-        return {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+        members = {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+        return {"": type(value).__name__, **members}  # two kinds of value may have the same members
     if isinstance(value, Path):
         try:
             return hashlib.sha256(value.read_bytes()).hexdigest()
