@@ -25,7 +25,8 @@ import cv2
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH = 320  # px of the photos
 OPTIONS = ["--format", "json,obj", "--focal", "300", "--time-limit", "30", "--workers", "2", "--quiet"]
-LONGEST_WAIT = 4.0  # s until a kill, when nothing is known yet of how long a photo takes
+LONGEST_WAIT = 4.0  # s between two kills; loading takes about two, a photo about half a second
+KINDS = ["parent", "nursery", "worker", "worker"]
 
 
 def make_photos(folder: Path, count: int) -> list[Path]:
@@ -75,7 +76,7 @@ def rows(output: Path) -> list[dict]:
 
 
 def contents(output: Path) -> dict[str, object]:
-    """Every made file with a name of its own; scenes without the seconds of the solver's clock. Raises where one is not whole."""
+    """Every made file with a name of its own, scenes without what a clock told; AssertionError for half a file."""
     found: dict[str, object] = {}
     for path in sorted(output.rglob("*")):
         name = path.relative_to(output).as_posix()
@@ -116,15 +117,14 @@ def run_round(
 ) -> collections.Counter:
     """One batch, disturbed until it is done; how many of each kind were killed."""
     killed: collections.Counter = collections.Counter()
-    longest = LONGEST_WAIT
     while True:
         batch = start(photos[0].parent, output)
         try:
             while batch.poll() is None and killed.total() < most:
-                began = time.monotonic()
-                while batch.poll() is None and time.monotonic() - began < dice.uniform(0, longest):
+                moment = time.monotonic() + dice.uniform(0, LONGEST_WAIT)
+                while batch.poll() is None and time.monotonic() < moment:
                     time.sleep(0.005)
-                kind = dice.choice(["parent", "nursery", "worker", "worker"])
+                kind = dice.choice(KINDS)
                 victims = family(batch.pid)[kind]
                 if batch.poll() is None and victims:
                     try:
@@ -134,8 +134,6 @@ def run_round(
                     killed[kind] += 1
                     if kind == "parent":
                         break
-            if killed[kind] and kind == "parent":
-                batch.wait()
             code = batch.wait()
         finally:
             batch.kill()
