@@ -9,7 +9,7 @@ from pathlib import Path
 from linecad.errors import LinecadError, OutputError
 
 NAME = "batch.lock"
-PATIENCE = 10.0  # s, in which the processes of a batch that was killed have time to die
+PATIENCE = 5.0  # s, in which the processes of a batch that was killed have time to die
 STEP = 0.05  # s
 
 
