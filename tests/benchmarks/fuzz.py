@@ -8,18 +8,20 @@ run. JSON is mutated by its values as well as by its bytes, with numbers, length
 
 import argparse
 import copy
+import hashlib
 import json
 import random
 import sys
 import time
 import warnings
 from pathlib import Path
+from types import FrameType
 
 import atheris
 
 sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).resolve().parents[1] / "fuzz")]
 with atheris.instrument_imports(include=["linecad", "PIL"]):
-    from targets import TARGETS, folder_in_memory
+    from targets import TARGETS, Target, folder_in_memory
 
 HOSTILE = [
     0, -0.0, -1, 1, 2, 3.0, 1e308, -1e308, 5e-324, 1e12, 1.0000001e12, 2**31, 2**53, 2**64, -(2**63), 10**30, 0.5,
@@ -77,12 +79,44 @@ def change(place: "list | dict", key: "int | str", dice: random.Random) -> None:
         place[key] = copy.deepcopy(dice.choice(HOSTILE))
 
 
+def keep_few(target: Target, corpus: Path, kept: Path, folder: Path) -> None:
+    """Copy the inputs, smallest first, that reach a step from line to line that no smaller one reaches."""
+    known: set[tuple[str, int, int]] = set()
+    reached: set[tuple[str, int, int]] = set()
+    last: dict[object, int] = {}
+
+    def trace(frame: FrameType, event: str, _argument: object) -> object:
+        name = frame.f_code.co_filename
+        if "linecad" not in name and "PIL" not in name:
+            return None
+        if event == "line":
+            reached.add((name, last.get(frame, 0), frame.f_lineno))
+            last[frame] = frame.f_lineno
+        elif event == "return":
+            last.pop(frame, None)
+        return trace
+
+    kept.mkdir(parents=True, exist_ok=True)
+    for path in sorted(corpus.iterdir(), key=lambda path: (path.stat().st_size, path.name)):
+        data = path.read_bytes()
+        reached.clear()
+        sys.settrace(trace)
+        try:
+            target.read(data, folder)
+        finally:
+            sys.settrace(None)
+        if not reached <= known:
+            known |= reached
+            (kept / hashlib.sha256(data).hexdigest()[:12]).write_bytes(data)
+
+
 def main() -> None:
     """Run one target for a time."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("target", choices=sorted(TARGETS))
     parser.add_argument("--seconds", type=int, default=300)
     parser.add_argument("--corpus", type=Path, required=True, metavar="FOLDER")
+    parser.add_argument("--keep-in", type=Path, metavar="FOLDER", help="instead: copy there the few that reach all")
     parser.add_argument("--seed", type=int, default=int(time.time()))
     given = parser.parse_args()
     warnings.simplefilter("error", RuntimeWarning)  # NumPy's overflows are findings too
@@ -99,6 +133,9 @@ def main() -> None:
             "-timeout=20", "-rss_limit_mb=3000", f"-artifact_prefix={found}/", f"-seed={given.seed % 2**31 or 1}",
             "-print_final_stats=1", "-verbosity=1", "-reload=0",
         ]  # fmt: skip
+        if given.keep_in is not None:
+            keep_few(target, given.corpus, given.keep_in, folder)
+            return
         mutator = {"custom_mutator": mutate_values} if target.is_json else {}
         atheris.Setup(options, lambda data: target.read(bytes(data), folder), **mutator)
         atheris.Fuzz()
