@@ -25,7 +25,8 @@ import cv2
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH = 320  # px of the photos
 OPTIONS = ["--format", "json,obj", "--focal", "300", "--time-limit", "30", "--workers", "2", "--quiet"]
-LONGEST_WAIT = 4.0  # s between two kills; loading takes about two, a photo about half a second
+LONGEST_WAIT = 2.0  # s until a kill; a photo takes about one
+AT_WORK = 0.8  # share of the kills for which a photo must have been begun
 KINDS = ["parent", "nursery", "worker", "worker"]
 
 
@@ -121,10 +122,14 @@ def run_round(
         batch = start(photos[0].parent, output)
         try:
             while batch.poll() is None and killed.total() < most:
+                kind = dice.choice(KINDS)
+                # Mostly while photos are in work, sometimes at any moment.
+                awaited = "worker" if dice.random() < AT_WORK else "parent"
+                while batch.poll() is None and not family(batch.pid)[awaited]:
+                    time.sleep(0.005)
                 moment = time.monotonic() + dice.uniform(0, LONGEST_WAIT)
                 while batch.poll() is None and time.monotonic() < moment:
                     time.sleep(0.005)
-                kind = dice.choice(KINDS)
                 victims = family(batch.pid)[kind]
                 if batch.poll() is None and victims:
                     try:
