@@ -123,7 +123,6 @@ def image_seeds() -> Iterator[bytes]:
         "SGI",
         "DDS",
         "ICNS",
-        "IM",
         "MSP",
         "XBM",
     ):
