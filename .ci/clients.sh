@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Export every sample and open the files in FreeCAD, Blender, ezdxf, usd-core and Khronos's glTF validator, by the
-# checkers in ../shared/clients. Needs .venv, as `make test` leaves it. The last line counts what passed and failed.
+# Export every sample and open the files in FreeCAD, Blender, its newer module bpy, ezdxf, usd-core and Khronos's glTF
+# validator, by the checkers in ../shared/clients. Needs .venv, as `make test` leaves it. Arguments: other photos to
+# check in place of the samples, each with its camera beside it as .json. The last line counts what passed and failed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -9,6 +10,8 @@ out=build/clients
 python=.venv/bin/python
 linecad=${LINECAD:-.venv/bin/linecad}
 validator_version=2.0.0-dev.3.10
+bpy_version=4.5.15
+bpy_python=python3.11 # the only one that this bpy is made for
 seconds_per_check=300
 
 if [ ! -d "$checkers" ]; then
@@ -38,6 +41,21 @@ if [ ! -f "$GLTF_VALIDATOR" ]; then
     npm install --prefix "$out" --silent --no-audit --no-fund "gltf-validator@$validator_version"
 fi
 
+# bpy reads USD, which Debian's Blender was built without. It brings a NumPy of its own, so it has its own environment.
+bpy=${BPY_PYTHON:-$out/bpy/bin/python}
+if [ ! -x "$bpy" ] || ! "$bpy" -c 'import bpy' >/dev/null 2>&1; then
+    echo "installing bpy"
+    if ! { "$bpy_python" -m venv "$out/bpy" && "$out/bpy/bin/python" -m pip install -qq --disable-pip-version-check \
+        "bpy==$bpy_version"; } >"$out/bpy.log" 2>&1; then
+        tail -n 5 "$out/bpy.log"
+        echo "clients: bpy could not be installed, so Blender cannot open USD"
+        if [ "${CI:-}" = true ]; then
+            exit 1
+        fi
+        bpy=
+    fi
+fi
+
 # --- the checks ------------------------------------------------------------------------------------------------------
 
 passed=0
@@ -59,7 +77,7 @@ check() {
 }
 
 check_sample() {
-    local photo=$1 name folder camera=() suffix outputs=() again="" expected
+    local photo=$1 name folder camera=() suffix outputs=() again="" expected picture textures render
     name=$(basename "${photo%.*}")
     folder=$out/$name
     expected=$folder/expect.json
@@ -68,7 +86,7 @@ check_sample() {
     if [ -f "${photo%.*}.json" ]; then
         camera=(--camera "${photo%.*}.json")
     fi
-    for suffix in json dxf step glb usda usdc usdz obj ply stl png; do
+    for suffix in json dxf step glb usda usdc usdz obj ply stl fspy png; do
         outputs+=(-o "$folder/$name.$suffix")
         again+=" -o '{OUT}/$name.$suffix'"
     done
@@ -79,6 +97,20 @@ check_sample() {
         return
     fi
     "$python" "$checkers/expect.py" "$folder/$name.json" "$expected"
+    # The photo as linecad measured it, straightened, is what a render through the camera must look like.
+    picture=$folder/photo.jpg
+    "$python" - "$folder/$name.fspy" "$picture" <<'PYTHON'
+import struct, sys
+data = open(sys.argv[1], "rb").read()
+open(sys.argv[2], "wb").write(data[16 + struct.unpack_from("<I", data, 8)[0] :])
+PYTHON
+    # Textures are looked for where there are any; without them nothing can be rendered that looks like the photo.
+    textures=(--textures no)
+    render=()
+    if grep -aq '"images"' "$folder/$name.glb"; then
+        textures=(--textures yes)
+        render=(--photo "$picture" --render)
+    fi
 
     check "$name.dxf, ezdxf" "$python" "$checkers/check_dxf.py" "$folder/$name.dxf" "$expected"
     for suffix in usda usdc usdz; do
@@ -88,13 +120,29 @@ check_sample() {
     check "$name.step, FreeCAD" bash "$checkers/check_freecad.sh" "$folder/$name.step" "$expected" --gui
     check "$name.dxf, FreeCAD" bash "$checkers/check_freecad.sh" "$folder/$name.dxf" "$expected"
     check "$name.glb, Blender" blender -b --factory-startup --python-exit-code 3 \
-        --python "$checkers/check_blender.py" -- "$folder/$name.glb" "$expected" --textures no
+        --python "$checkers/check_blender.py" -- "$folder/$name.glb" "$expected" "${textures[@]}" \
+        "${render[@]}" ${render:+"$folder/render-glb.png"}
+    if [ -n "$bpy" ]; then
+        check "$name.glb, bpy" "$bpy" "$checkers/check_blender.py" "$folder/$name.glb" "$expected" "${textures[@]}"
+        for suffix in usda usdc usdz; do
+            local shown=()
+            if [ $suffix = usdz ]; then
+                shown=("${render[@]}" ${render:+"$folder/render-usd.png"})
+            fi
+            check "$name.$suffix, bpy" "$bpy" "$checkers/check_blender.py" "$folder/$name.$suffix" "$expected" \
+                "${textures[@]}" "${shown[@]}"
+        done
+    fi
     check "$name, every format three times" bash "$checkers/check_determinism.sh" \
-        "'$linecad' export '$folder/$name.json'$again"
+        "'$linecad' export '$folder/$name.json' --photo '$photo' ${camera[*]} $again"
 }
 
 shopt -s nullglob
-for photo in samples/*.jpg samples/*.jpeg samples/*.png samples/*.tif; do
+photos=("$@")
+if [ $# = 0 ]; then
+    photos=(samples/*.jpg samples/*.jpeg samples/*.png samples/*.tif)
+fi
+for photo in "${photos[@]}"; do
     check_sample "$photo"
 done
 

@@ -9,6 +9,7 @@ from exporters.model import Model
 from linecad.scene import Camera, Float, Scene
 
 _MARGIN = 2.0  # the clipping planes lie this factor nearer and farther than anything in the model
+_WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of drawn lines over the middle depth of the model, by boundary
 _NEAREST_SHARE = 1e-6  # of the far plane, for a model that reaches to the camera or behind it
 
 
@@ -54,3 +55,8 @@ def clipping_range(model: Model, rotation: Float) -> tuple[float, float]:
     seen = depth[depth > 0]
     near = float(seen.min()) / _MARGIN if len(seen) else far
     return max(min(near, far / _MARGIN), far * _NEAREST_SHARE), far
+
+
+def line_width(model: Model, rotation: Float, is_boundary: bool) -> float:
+    """How thick lines are drawn that have a body, in m: thin as seen from the camera, whatever the scene's scale."""
+    return _WIDTH_SHARE[is_boundary] * float(np.median(np.abs(model.points @ rotation[2])))

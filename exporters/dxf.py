@@ -1,4 +1,4 @@
-"""DXF R2010, in metres: https://help.autodesk.com/view/OARX/2018/ENU/?guid=GUID-235B22E0-A567-4CF6-92D3-38A2306D73F3
+"""DXF R2010 or R2018, in metres: https://help.autodesk.com/view/OARX/2018/ENU/?guid=GUID-235B22E0-A567-4CF6-92D3-38A2306D73F3
 
 Lines are LINE entities on one layer a group. A face is there twice: as 3DFACE triangles with their inner edges
 hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because many programs ignore 3DFACE. What a
@@ -34,10 +34,10 @@ _HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the 
 _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 
-def write(scene: Scene, path: Path) -> None:
-    """Write the scene as DXF to `path`; OSError where that fails."""
+def write(scene: Scene, path: Path, version: str = "R2010") -> None:
+    """Write the scene as DXF of that AutoCAD release to `path`; OSError where that fails."""
     with _fixed_metadata():
-        document = _build_document(scene)
+        document = _build_document(scene, version)
         text = io.StringIO()
         document.write(text)
     path.write_bytes(document.encode(text.getvalue()))
@@ -54,9 +54,9 @@ def _fixed_metadata() -> Iterator[None]:
         options.write_fixed_meta_data_for_testing = before
 
 
-def _build_document(scene: Scene) -> Drawing:
+def _build_document(scene: Scene, version: str) -> Drawing:
     model = build_model(scene)
-    document = new("R2010", units=units.M)
+    document = new(version, units=units.M)
     document.header["$MEASUREMENT"] = 1  # metric
     document.appids.add(_APPLICATION)
     _add_layers(document)

@@ -1,19 +1,27 @@
 """The formats that a scene can be written in, and the one function that writes them all.
 
-To add a format, write one module with `write(scene, path)` and give it a row in FORMATS.
+To add a format, write one module with `write(scene, path)` and give it a row in FORMATS. What a user can choose about
+a format stands in its row; `write` takes it by keyword. A format with textures has TEXTURES among its options, and its
+`write` takes what is made of them as `textures`, and the names of what lies beside the file.
 """
 
 import importlib
 import threading
+from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from exporters.beside import folder_name, library_name, write_with_pictures
+from exporters.options import Option, Value, read_options
 from linecad.errors import OutputError
 from linecad.files import check_output, write_atomically
 from linecad.scene import Camera, Scene
+
+if TYPE_CHECKING:
+    from exporters.textures import Textures
 
 SCENE_FILE = ".json"  # written by linecad.scenefile; named here only to tell the user
 
@@ -29,19 +37,49 @@ class Format(NamedTuple):
     phrase: str  # what the file holds, for people
     unit: str  # of the lengths in the file
     shows_photo: bool = False  # its `write` also takes the photo
+    needs_photo: bool = False  # and raises OutputError where it is None
+    options: tuple[Option, ...] = ()  # its `write` takes each by keyword, but for TEXTURES
+    pictures_beside: bool = False  # its textures lie in a folder, whose name `write` takes
+    has_library: bool = False  # and a material library names them, which `write` takes the name of
 
+
+_VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
+_SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
+_TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
+
+_ON = Option("textures", True, "the photo on the faces, where it is at hand")
+_SIZE = Option("texture-size", 4096, "the most texels a side of a picture of textures", least=256, most=16384)
+TEXTURES = (_ON, _SIZE)
 
 FORMATS: dict[str, Format] = {
-    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres"),
-    ".step": Format("exporters.step", "lines and faces as named and coloured parts", "millimetres"),
-    ".glb": Format("exporters.gltf", "lines, faces and the camera for viewers and Blender", "metres"),
-    ".usda": Format("exporters.usd", "a USD stage as text: lines, faces, camera", "metres"),
-    ".usdc": Format("exporters.usd", "a USD stage as a compact file: lines, faces, camera", "metres"),
-    ".usdz": Format("exporters.usd", "a USD stage as a package: lines, faces, camera", "metres"),
-    ".obj": Format("exporters.mesh", "faces as triangles, and lines", "metres"),
+    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION,)),
+    ".step": Format("exporters.step", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN,)),
+    ".glb": Format(
+        "exporters.gltf", "lines, faces, camera for viewers and Blender", "metres", options=(_TUBES, *TEXTURES)
+    ),
+    ".usda": Format(
+        "exporters.usd", "a USD stage as text: lines, faces, camera", "metres", options=TEXTURES, pictures_beside=True
+    ),
+    ".usdc": Format(
+        "exporters.usd", "a USD stage, compact: lines, faces, camera", "metres", options=TEXTURES, pictures_beside=True
+    ),
+    ".usdz": Format("exporters.usd", "a USD stage as a package: lines, faces, camera", "metres", options=TEXTURES),
+    ".obj": Format(
+        "exporters.obj",
+        "faces as triangles, and lines",
+        "metres",
+        options=TEXTURES,
+        pictures_beside=True,
+        has_library=True,
+    ),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres"),
     ".stl": Format("exporters.mesh", "faces as triangles", "metres"),
-    ".png": Format("exporters.picture", "the photo with its lines, and three views of them in space", "pixels", True),
+    ".fspy": Format(
+        "exporters.fspy", "the photo with its camera, to correct in fSpy", "metres", shows_photo=True, needs_photo=True
+    ),
+    ".png": Format(
+        "exporters.picture", "the photo with its lines, and three views of them in space", "pixels", shows_photo=True
+    ),
 }
 
 
@@ -60,28 +98,85 @@ def find_format(path: Path) -> Format:
     return FORMATS[suffix]
 
 
-def export(scene: Scene, path: Path, photo: NDArray[np.uint8] | None = None) -> None:
+def options_for(paths: Iterable[Path], texts: Iterable[str]) -> dict[str, Value]:
+    """The values of the options KEY=VALUE, by key, for `export` to all of `paths`.
+
+    Raises OutputError for an unknown suffix, a value that is not accepted, and a key that none of the formats has.
+    """
+    formats = {path.suffix.lower(): find_format(path).options for path in paths}
+    return read_options(texts, formats)
+
+
+def export(
+    scene: Scene,
+    path: Path,
+    photo: NDArray[np.uint8] | None = None,
+    options: Mapping[str, Value] | None = None,
+) -> None:
     """Write a scene in the format that the suffix of `path` chooses, whole or not at all.
 
-    `photo` is RGB, (H, W, 3), of exactly the size of the scene's camera; formats that show the photo do without it
-    where it is None. Raises ValueError for a photo of another kind, and OutputError for an unknown suffix, a place
-    that cannot be written, a full disk, or a scene that holds nothing for this format.
+    `photo` is RGB, (H, W, 3), of exactly the size of the scene's camera; formats that show the photo, or lay it on the
+    faces, do without it where it is None. `options` has values by key, as `options_for` returns them; the format takes
+    those of its own. Textures of a format that cannot hold them lie in a folder named after `path`. Raises ValueError
+    for a photo of another kind, and OutputError for an unknown suffix, a place that cannot be written, a full disk, or
+    a scene that holds nothing for this format.
     """
     chosen = find_format(path)
+    given = {} if options is None else options
+    arguments: dict[str, Any] = {option.name: given.get(option.key, option.default) for option in chosen.options}
+    if chosen.shows_photo:
+        arguments["photo"] = photo
     _check_photo(photo, scene.camera)
     if not len(scene.lines) and not scene.faces:
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
     check_output(path)
     module = importlib.import_module(chosen.module)
+    textures = None
+    if TEXTURES[0] in chosen.options:
+        on, size = (arguments.pop(option.name) for option in TEXTURES)
+        arguments["textures"] = textures = _textures(scene, photo, size) if on else None
 
     def write(temporary: Path) -> None:
         with _ONE_AT_A_TIME:
-            if chosen.shows_photo:
-                module.write(scene, temporary, photo)
-            else:
-                module.write(scene, temporary)
+            module.write(scene, temporary, **arguments)
 
-    write_atomically(path, write)
+    if not chosen.pictures_beside:
+        write_atomically(path, write)
+        return
+    pictures, library = {}, None
+    if textures is not None:
+        folder = folder_name(path)
+        pictures = {page.name: page.data for page in textures.pages}
+        if chosen.has_library:
+            library = module.material_library(textures, folder)
+            arguments["library"] = library_name(path)
+        else:
+            arguments["folder"] = folder
+    write_with_pictures(path, write, pictures, library)
+
+
+class _Made(NamedTuple):
+    scene: Scene
+    photo: NDArray[np.uint8]
+    size: int
+    textures: "Textures"
+
+
+_last_made: list[_Made] = []  # at most one: a scene goes to several formats, one after the other
+
+
+def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> "Textures | None":
+    """What of the photo lies on the faces; None where there is no photo or no face."""
+    if photo is None or not scene.faces:
+        return None
+    for made in _last_made[:]:
+        if made.scene is scene and made.photo is photo and made.size == size:
+            return made.textures
+    from exporters.pages import build_textures  # OpenCV, which the formats do without where there is no photo
+
+    textures = build_textures(scene, photo, size)
+    _last_made[:] = [] if photo.flags.writeable else [_Made(scene, photo, size, textures)]  # that one may change
+    return textures
 
 
 def _check_photo(photo: NDArray[np.uint8] | None, camera: Camera) -> None:

@@ -9,6 +9,8 @@ holds the photo, and its extras `linecad_...` tell that frame and the camera mat
 
 Line ids stand in the extras of each group of lines, and as vertex attribute _LINEID where all ids of the group are
 small enough for a float32, the only kind of number that holds them there.
+
+Renderers leave out what has no surface. So the lines can be written as thin tubes instead.
 """
 
 import math
@@ -23,39 +25,46 @@ from trimesh.path.entities import Line
 from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
-from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point
-from exporters.colours import FACE, RGB, line_colour, linear
+from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
 from exporters.faces import triangulate
+from exporters.gltf_materials import add_pictures, set_materials
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
-from linecad.scene import AXES, Scene
+from exporters.textures import Textures
+from exporters.tubes import build_tubes
+from linecad.scene import AXES, Float, Scene
 
 _ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
-_FACE_MATERIAL = "face"
 _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)
 _LARGEST_EXACT_FLOAT32 = 2**24  # all integers up to here have their own float32
 _VERTEX_TARGET, _INDEX_TARGET = 34962, 34963  # bufferView.target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
-_LINE_MODE = 1  # primitive.mode of pairs of points
-_UNLIT = "KHR_materials_unlit"
+_PLACEHOLDER = PBRMaterial()  # trimesh wants one; `set_materials` puts ours in its place
 
 _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
-def write(scene: Scene, path: Path) -> None:
-    """Write the scene as GLB to `path`; OSError where that fails."""
+def write(scene: Scene, path: Path, tubes: bool = False, textures: Textures | None = None) -> None:
+    """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails."""
     model = build_model(scene)
+
+    def add_to_buffer(buffer: Any, _: _Tree) -> None:
+        if textures is not None:
+            add_pictures(buffer, textures)
 
     def complete(tree: _Tree) -> None:
         tree["asset"]["generator"] = "linecad"
         tree["asset"]["extras"] = {"linecad_unit": model.unit_note, "linecad_photo": model.photo}
-        _set_materials(tree, model)
+        set_materials(tree, model, textures)
         _set_targets(tree)
         _add_camera(tree, scene, model)
         _add_planes(tree, scene)
 
-    path.write_bytes(export_glb(_build_scene(model), include_normals=True, tree_postprocessor=complete))
+    graph = _build_scene(scene, model, tubes, textures)
+    path.write_bytes(
+        export_glb(graph, include_normals=True, tree_postprocessor=complete, buffer_postprocessor=add_to_buffer)
+    )
 
 
-def _build_scene(model: Model) -> trimesh.Scene:
+def _build_scene(scene: Scene, model: Model, tubes: bool, textures: Textures | None) -> trimesh.Scene:
     graph = trimesh.Scene(base_frame="world")
     graph.graph.update(frame_from="world", frame_to=_ROOT)
     if model.groups:
@@ -63,10 +72,11 @@ def _build_scene(model: Model) -> trimesh.Scene:
     if model.faces:
         graph.graph.update(frame_from=_ROOT, frame_to=_FACES)
     for group in model.groups:
-        graph.add_geometry(_path(group), node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
-    material = PBRMaterial(name=_FACE_MATERIAL, metallicFactor=0.0, roughnessFactor=1.0, doubleSided=True)
+        width = line_width(model, scene.rotation, group.is_boundary)
+        lines = _tubes(group, width) if tubes else _path(group)
+        graph.add_geometry(lines, node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
     for face in model.faces:
-        mesh = _mesh(face, material)
+        mesh = _mesh(face, None if textures is None else textures.coordinates(face))
         graph.add_geometry(mesh, node_name=face.name, geom_name=face.name, parent_node_name=_FACES)
     return graph
 
@@ -76,51 +86,40 @@ def _path(group: LineGroup) -> Path3D:
         entities=[Line([2 * number, 2 * number + 1]) for number in range(len(group.ids))],
         vertices=group.ends.reshape(-1, 3) @ _Y_UP.T,
         process=False,  # merged points would be shared by lines, which have their own ids
-        metadata={"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()},
+        metadata=_told(group),
     )
-    if group.ids.max() <= _LARGEST_EXACT_FLOAT32:
-        path.vertex_attributes["_LINEID"] = np.repeat(group.ids, 2).astype(np.float32)
+    _set_ids(path, group, 2)
     return path
 
 
-def _mesh(face: FlatFace, material: PBRMaterial) -> trimesh.Trimesh:
+def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
+    """The lines of a group as one mesh of closed tubes."""
+    vertices, triangles, normals = build_tubes(group.ends, width / 2)
+    mesh = trimesh.Trimesh(
+        vertices @ _Y_UP.T, triangles, process=False, vertex_normals=normals @ _Y_UP.T, metadata=_told(group)
+    )
+    _set_ids(mesh, group, len(vertices) // len(group.ids))
+    return mesh
+
+
+def _told(group: LineGroup) -> _Tree:
+    return {"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()}
+
+
+def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_line: int) -> None:
+    if group.ids.max() <= _LARGEST_EXACT_FLOAT32:
+        shape.vertex_attributes["_LINEID"] = np.repeat(group.ids, vertices_per_line).astype(np.float32)
+
+
+def _mesh(face: FlatFace, coordinates: Float | None) -> trimesh.Trimesh:
     return trimesh.Trimesh(
         face.vertices @ _Y_UP.T,
         triangulate(face),
         process=False,
-        visual=TextureVisuals(material=material),
+        visual=TextureVisuals(uv=coordinates, material=_PLACEHOLDER),
         vertex_normals=np.tile(_Y_UP @ face.normal, (len(face.vertices), 1)),
         metadata={"face_id": face.id, "plane_id": face.plane, "axis": AXES[face.axis], "offset": face.offset},
     )
-
-
-def _set_materials(tree: _Tree, model: Model) -> None:
-    """One material for the faces; one a group of lines, unlit, because a line has no normal for light to fall on."""
-    faces = [material for material in tree["materials"] if material.get("name") == _FACE_MATERIAL]
-    for material in faces:
-        material["pbrMetallicRoughness"]["baseColorFactor"] = [*linear(FACE), 1.0]  # trimesh would round it to bytes
-    materials = {group.name: _unlit(group.name, line_colour(group.axis, group.is_boundary)) for group in model.groups}
-    tree["materials"] = [*faces, *materials.values()]
-    for mesh in tree["meshes"]:
-        for primitive in mesh["primitives"]:
-            if primitive["mode"] == _LINE_MODE:
-                primitive["material"] = tree["materials"].index(materials[mesh["name"]])
-            else:
-                primitive["material"] = 0
-    if materials:
-        tree["extensionsUsed"] = [_UNLIT]
-
-
-def _unlit(name: str, colour: RGB) -> _Tree:
-    return {
-        "name": name,
-        "extensions": {_UNLIT: {}},
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [*linear(colour), 1.0],
-            "metallicFactor": 0.0,
-            "roughnessFactor": 1.0,
-        },
-    }
 
 
 def _set_targets(tree: _Tree) -> None:

@@ -1,20 +1,29 @@
 """STEP AP214 (ISO 10303-21 and -214), in millimetres: https://www.steptools.com/stds/stp_aim/html/
 
 An assembly `linecad` of two assemblies and a part: `lines`, with one part of straight edges a group; `faces`, with one
-part a face, which has its holes; and `camera`, a point where it stood. build123d makes the shapes. OCCT's XCAF is used
-directly for the document, because build123d's own STEP export garbles names that are not ASCII, colours part and
-instance so that FreeCAD doubles the objects, and never writes the same file twice.
+part a face, which has its holes; and `camera`, a point where it stood. Sewn, `faces` is one part, and faces that share
+an edge are one shell.
+
+OCCT is used directly. build123d, which wraps it, takes more than twice the time and 160 MB more to load, and its own
+STEP export garbles names that are not ASCII, colours part and instance so that FreeCAD doubles the objects, and never
+writes the same file twice.
 """
 
 import contextlib
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any
 
-from build123d import Compound, Edge, Shape, Vertex, Wire
-from build123d import Face as ShapeFace
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
+from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakePolygon,
+    BRepBuilderAPI_MakeVertex,
+    BRepBuilderAPI_Sewing,
+)
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message, Message_Gravity
@@ -28,6 +37,7 @@ from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Face, TopoDS_Shape, TopoDS_Wire
 from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
@@ -40,17 +50,18 @@ from linecad.scene import Float, Scene
 
 _MILLIMETRES = 1000.0  # per metre
 _METRES_PER_DOCUMENT_UNIT = 0.001
+_SEWING_TOLERANCE = 1e-3  # mm; edges that are nearer to each other than this are one edge of a shell
 _TIMESTAMP = "1970-01-01T00:00:00"  # the real one would make each file another
 _CURVE, _SURFACE = XCAFDoc_ColorType.XCAFDoc_ColorCurv, XCAFDoc_ColorType.XCAFDoc_ColorSurf
 _OPTIONS = {"write.step.schema": "AP214IS", "write.step.unit": "MM", "write.step.product.name": "linecad"}
 
 
-def write(scene: Scene, path: Path) -> None:
-    """Write the scene as STEP to `path`; OSError where that fails."""
+def write(scene: Scene, path: Path, sewn: bool = False) -> None:
+    """Write the scene as STEP to `path`, its faces sewn where that is asked for; OSError where that fails."""
     model = build_model(scene)
     with _silence():
         try:
-            data = _written(_build_document(model), model)
+            data = _written(_build_document(model, sewn), model)
         except (Standard_Failure, StdFail_NotDone) as error:
             # The binding does not derive the second from the first; it ends edges of no length in its own tolerance.
             raise OSError(
@@ -77,8 +88,8 @@ class _Assembly:
             self._place(parent, label, name)
         return label
 
-    def add_part(self, parent: TDF_Label, name: str, shape: Shape[Any]) -> TDF_Label:
-        label = self._shapes.AddShape(shape.wrapped, False)
+    def add_part(self, parent: TDF_Label, name: str, shape: TopoDS_Shape) -> TDF_Label:
+        label = self._shapes.AddShape(shape, False)
         _set_name(label, name)
         self._place(parent, label, name)
         return label
@@ -95,37 +106,66 @@ class _Assembly:
         _set_name(self._shapes.AddComponent(parent, label, TopLoc_Location()), name)
 
 
-def _build_document(model: Model) -> TDocStd_Document:
+def _build_document(model: Model, sewn: bool) -> TDocStd_Document:
     assembly = _Assembly()
     root = assembly.add_assembly(None, "linecad")
     if model.groups:
         lines = assembly.add_assembly(root, "lines")
         for group in model.groups:
             _add_lines(assembly, lines, group)
-    if model.faces:
+    if model.faces and sewn:
+        assembly.paint(assembly.add_part(root, "faces", _sewn(map(_face_shape, model.faces))), FACE, _SURFACE)
+    elif model.faces:
         faces = assembly.add_assembly(root, "faces")
         for face in model.faces:
             assembly.paint(assembly.add_part(faces, face.name, _face_shape(face)), FACE, _SURFACE)
     # In a compound, because OCCT loses the name of a bare vertex.
-    assembly.add_part(root, "camera", Compound([Vertex(0.0, 0.0, 0.0)]))
+    assembly.add_part(root, "camera", _compound([BRepBuilderAPI_MakeVertex(gp_Pnt(0.0, 0.0, 0.0)).Vertex()]))
     return assembly.finish()
 
 
 def _add_lines(assembly: _Assembly, parent: TDF_Label, group: LineGroup) -> None:
     """One part for the whole group: a part a line takes FreeCAD 17 s to open for 2,000 lines."""
-    edges = [Edge.make_line(start, end) for start, end in (group.ends * _MILLIMETRES).tolist()]
-    part = assembly.add_part(parent, group.name, Compound(edges))
+    ends = (group.ends * _MILLIMETRES).tolist()
+    edges = [BRepBuilderAPI_MakeEdge(gp_Pnt(*start), gp_Pnt(*end)).Edge() for start, end in ends]
+    part = assembly.add_part(parent, group.name, _compound(edges))
     assembly.paint(part, line_colour(group.axis, group.is_boundary), _CURVE)
 
 
-def _face_shape(face: FlatFace) -> ShapeFace:
+def _compound(shapes: Iterable[TopoDS_Shape]) -> TopoDS_Compound:
+    compound, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(compound)
+    for shape in shapes:
+        builder.Add(compound, shape)
+    return compound
+
+
+def _face_shape(face: FlatFace) -> TopoDS_Face:
+    """The face in mm, looking to where its outline turns counter-clockwise, so to the camera."""
     checked_polygon(face)
     outline, *holes = (_wire(ring) for ring in face.rings)
-    return ShapeFace(outline, holes)  # it looks to where its outline turns counter-clockwise, so to the camera
+    plane = gp_Pln(gp_Pnt(*(face.rings[0][0] * _MILLIMETRES).tolist()), gp_Dir(*face.normal.tolist()))
+    maker = BRepBuilderAPI_MakeFace(plane, outline, True)
+    for hole in holes:
+        maker.Add(hole)
+    return maker.Face()
 
 
-def _wire(ring: Float) -> Wire:
-    return Wire.make_polygon((ring * _MILLIMETRES).tolist(), close=True)
+def _wire(ring: Float) -> TopoDS_Wire:
+    polygon = BRepBuilderAPI_MakePolygon()
+    for point in (ring * _MILLIMETRES).tolist():
+        polygon.Add(gp_Pnt(*point))
+    polygon.Close()
+    return polygon.Wire()
+
+
+def _sewn(faces: Iterable[TopoDS_Face]) -> TopoDS_Shape:
+    """Shells of the faces that share edges, and the faces that share none."""
+    sewing = BRepBuilderAPI_Sewing(_SEWING_TOLERANCE)
+    for face in faces:
+        sewing.Add(face)
+    sewing.Perform()
+    return sewing.SewedShape()
 
 
 def _written(document: TDocStd_Document, model: Model) -> bytes:

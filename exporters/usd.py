@@ -10,21 +10,23 @@ import zipfile
 from pathlib import Path
 
 import numpy as np
-from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, UsdShade, Vt
+from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
-from exporters.camera import camera_to_world, clipping_range, principal_point
+from exporters.camera import camera_to_world, clipping_range, line_width, principal_point
 from exporters.colours import FACE, RGB, line_colour, linear
 from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from exporters.textures import Textures
+from exporters.usd_materials import add_material, add_photo_material, bind, set_coordinates
 from linecad.scene import AXES, Scene
 
 _ROOT = Sdf.Path("/Reconstruction")
 _LINES, _FACES, _MATERIALS = (_ROOT.AppendChild(name) for name in ("Lines", "Faces", "Materials"))
 _FACE_MATERIAL = _MATERIALS.AppendChild("face")
+_PACKAGED = "textures"  # the folder of the pictures in a package
 _CONTENT = {"full": (True, True), "wireframe": (True, False), "faces": (False, True)}  # variant: lines, faces shown
 
 _APERTURE = 0.36  # width of the film in tenths of a unit, as USD counts them: 36 mm where the unit is a metre
-_WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of the curves over the middle depth of the model, by boundary
 _LARGEST_INT32 = 2**31 - 1
 _ALIGNMENT = 64  # bytes; a package's layers start at multiples of it, so that they can be mapped into memory
 _PADDING_ID = 0x1986  # of the zip extra field that makes up the alignment, as USD's own writer calls it
@@ -32,14 +34,20 @@ _ZIP_LOCAL_HEADER = 30  # bytes before name and extra field
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time of a zip entry; the real one would make each file another
 
 
-def write(scene: Scene, path: Path) -> None:
-    """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails."""
-    stage = _build_stage(scene)
+def write(scene: Scene, path: Path, textures: Textures | None = None, folder: str = _PACKAGED) -> None:
+    """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails.
+
+    The pages of the textures are expected in `folder` beside the stage; a package holds them.
+    """
+    stage = _build_stage(scene, textures, folder)
     if path.suffix == ".usdz":
-        with tempfile.TemporaryDirectory(prefix=".linecad-", dir=path.parent) as folder:
-            layer = Path(folder) / "scene.usdc"
+        with tempfile.TemporaryDirectory(prefix=".linecad-", dir=path.parent) as temporary:
+            layer = Path(temporary) / "scene.usdc"
             _save(stage, layer)
-            path.write_bytes(_package(layer.name, layer.read_bytes()))
+            files = {layer.name: layer.read_bytes()}
+            if textures is not None:
+                files |= {f"{folder}/{page.name}": page.data for page in textures.pages}
+            path.write_bytes(_package(files))
     else:
         _save(stage, path)
 
@@ -53,18 +61,20 @@ def _save(stage: Usd.Stage, path: Path) -> None:
         raise OSError("the USD library could not write it")
 
 
-def _package(name: str, layer: bytes) -> bytes:
-    """A .usdz: a zip that holds the layer, not compressed and aligned."""
-    entry = zipfile.ZipInfo(name, _EPOCH)
-    missing = -(_ZIP_LOCAL_HEADER + len(name) + 4) % _ALIGNMENT  # 4: the extra field's own header
-    entry.extra = _PADDING_ID.to_bytes(2, "little") + missing.to_bytes(2, "little") + bytes(missing)
+def _package(files: dict[str, bytes]) -> bytes:
+    """A .usdz: a zip that holds files, the layer first, not compressed and aligned."""
     packed = io.BytesIO()
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_STORED) as archive:
-        archive.writestr(entry, layer)
+        for name, data in files.items():
+            entry = zipfile.ZipInfo(name, _EPOCH)
+            start = packed.tell() + _ZIP_LOCAL_HEADER + len(name) + 4  # 4: the extra field's own header
+            missing = -start % _ALIGNMENT
+            entry.extra = _PADDING_ID.to_bytes(2, "little") + missing.to_bytes(2, "little") + bytes(missing)
+            archive.writestr(entry, data)
     return packed.getvalue()
 
 
-def _build_stage(scene: Scene) -> Usd.Stage:
+def _build_stage(scene: Scene, textures: Textures | None, folder: str) -> Usd.Stage:
     model = build_model(scene)
     # In memory first: a stage that is made as a file leaves half of it where the disk is full.
     stage = Usd.Stage.CreateInMemory()
@@ -77,11 +87,22 @@ def _build_stage(scene: Scene) -> Usd.Stage:
     for path in (_LINES, _FACES, _MATERIALS):
         UsdGeom.Scope.Define(stage, path)
     for group in model.groups:
-        _add_lines(stage, group, _width(model, scene, group.is_boundary))
-    if model.faces:
-        _add_material(stage, _FACE_MATERIAL, FACE, emits=False)
+        _add_lines(stage, group, line_width(model, scene.rotation, group.is_boundary))
+    if textures is None:
+        materials = [_FACE_MATERIAL]
+        if model.faces:
+            add_material(stage, _FACE_MATERIAL, FACE, emits=False)
+    else:
+        materials = [_MATERIALS.AppendChild(f"photo_{number}") for number in range(len(textures.pages))]
+        for material, page in zip(materials, textures.pages, strict=True):
+            add_photo_material(stage, material, f"{folder}/{page.name}")
     for face in model.faces:
-        _add_face(stage, face)
+        mesh = _add_face(stage, face)
+        if textures is None:
+            bind(stage, mesh.GetPrim(), materials[0])
+        else:
+            set_coordinates(mesh, textures.coordinates(face))
+            bind(stage, mesh.GetPrim(), materials[textures.page(face)])
     _add_planes(root.GetPrim(), scene)
     _add_camera(stage, scene, model)
     _add_variants(stage, root.GetPrim())
@@ -89,11 +110,6 @@ def _build_stage(scene: Scene) -> Usd.Stage:
     hint = UsdGeom.ModelAPI.Apply(root.GetPrim())
     hint.SetExtentsHint(hint.ComputeExtentsHint(boxes))
     return stage
-
-
-def _width(model: Model, scene: Scene, is_boundary: bool) -> float:
-    """How thick curves are drawn, in m: thin as seen from the camera, whatever the scale of the scene."""
-    return _WIDTH_SHARE[is_boundary] * float(np.median(np.abs(model.points @ scene.rotation[2])))
 
 
 def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
@@ -119,11 +135,11 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
     _set(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
 
     material = _MATERIALS.AppendChild(group.name)
-    _add_material(stage, material, colour, emits=True)
-    _bind(stage, curves.GetPrim(), material)
+    add_material(stage, material, colour, emits=True)
+    bind(stage, curves.GetPrim(), material)
 
 
-def _add_face(stage: Usd.Stage, face: FlatFace) -> None:
+def _add_face(stage: Usd.Stage, face: FlatFace) -> UsdGeom.Mesh:
     triangles = triangulate(face)
     mesh = UsdGeom.Mesh.Define(stage, _FACES.AppendChild(face.name))
     mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(face.vertices.astype(np.float32)))
@@ -143,24 +159,7 @@ def _add_face(stage: Usd.Stage, face: FlatFace) -> None:
     _set(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, AXES[face.axis])
     _set(prim, "linecad:planeOffset", Sdf.ValueTypeNames.Double, face.offset)
     _set(prim, "linecad:ringCounts", Sdf.ValueTypeNames.IntArray, Vt.IntArray([len(ring) for ring in face.rings]))
-    _bind(stage, prim, _FACE_MATERIAL)
-
-
-def _add_material(stage: Usd.Stage, path: Sdf.Path, colour: RGB, emits: bool) -> None:
-    """A preview surface; one that emits has its colour in any light, as lines should."""
-    material = UsdShade.Material.Define(stage, path)
-    shader = UsdShade.Shader.Define(stage, path.AppendChild("Surface"))
-    shader.CreateIdAttr("UsdPreviewSurface")
-    black, light = Gf.Vec3f(0.0), Gf.Vec3f(*linear(colour))
-    shader.CreateInput("diffuseColor", Sdf.ValueTypeNames.Color3f).Set(black if emits else light)
-    shader.CreateInput("emissiveColor", Sdf.ValueTypeNames.Color3f).Set(light if emits else black)
-    shader.CreateInput("roughness", Sdf.ValueTypeNames.Float).Set(1.0)
-    shader.CreateInput("metallic", Sdf.ValueTypeNames.Float).Set(0.0)
-    material.CreateSurfaceOutput().ConnectToSource(shader.ConnectableAPI(), "surface")
-
-
-def _bind(stage: Usd.Stage, prim: Usd.Prim, material: Sdf.Path) -> None:
-    UsdShade.MaterialBindingAPI.Apply(prim).Bind(UsdShade.Material.Get(stage, material))
+    return mesh
 
 
 def _add_planes(root: Usd.Prim, scene: Scene) -> None:

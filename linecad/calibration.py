@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from linecad import strictjson
 from linecad.errors import CameraError
+from linecad.fspy import SUFFIX, read_fspy
 from linecad.scene import Float
 from linecad.strictjson import JsonError, Node
 
@@ -70,10 +71,14 @@ def check_focal(focal: float, width: int, height: int, found: str) -> None:
 
 
 def read_calibration(path: Path) -> Calibration:
-    """The calibration in a JSON file; keys that it does not know are left alone.
+    """The calibration in a JSON file, of which keys that it does not know are left alone, or in an fSpy project.
 
     Raises CameraError when the file cannot be read, is malformed, or describes no camera that a photo can come from.
     """
+    if path.suffix.lower() == SUFFIX:
+        width, height, matrix = read_fspy(path)
+        _check_matrix(matrix, width, height, path)
+        return Calibration(width, height, matrix)
     try:
         record = strictjson.parse(_read_text(path))
         width, height = record["width"].integer(1), record["height"].integer(1)

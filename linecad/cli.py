@@ -5,6 +5,7 @@ stderr), 2 wrong usage. argparse, because it costs nothing to load: `--help` ans
 """
 
 import argparse
+import contextlib
 import importlib.util
 import math
 import re
@@ -12,6 +13,7 @@ import shutil
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn, Self
 
@@ -19,15 +21,20 @@ from linecad import __version__
 from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
+    from exporters.options import Value
     from linecad.batch.record import Row
-    from linecad.batch.run import Progress
-    from linecad.conversion import Conversion
+    from linecad.batch.run import Progress as BatchProgress
+    from linecad.finding import ReconstructOptions
+    from linecad.metric import Known
     from linecad.photo import Photo
     from linecad.scene import Scene
-    from solver.problem import Progress as SolverProgress
+    from solver.problem import Progress
 
 SCENE_SUFFIX = ".json"
 SAME_CAMERA = 1e-9  # of the focal length, by which rounding may change a calibration
+LARGEST_PORT = 65_535
+LONGEST_ID = 17  # digits; ids are below 2^53
+LARGEST_PIXEL = 1e6
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
 
 
@@ -67,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
     _add_batch(commands)
+    _add_edit(commands)
     _add_evaluate(commands)
     _add_export(commands)
     _add_dataset(commands)
@@ -90,51 +98,85 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     convert.set_defaults(run=_convert)
     convert.add_argument("photo", type=Path, metavar="PHOTO")
     _add_outputs(convert)
-    _add_conversion(convert)
+    convert.add_argument(
+        "--corrections", type=Path, metavar="FILE", help="what a person said about lines and crossings (linecad edit)"
+    )
+    _add_camera(convert)
+    _add_reconstruction(convert)
+    _add_scale(convert)
     _add_loudness(convert)
 
 
-def _add_conversion(command: argparse.ArgumentParser) -> None:
-    """How a photo is converted: what `_conversion` reads."""
+def _add_edit(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    edit = commands.add_parser(
+        "edit",
+        help="the page: look, correct, solve again, label, export",
+        description="Open a local page on a photo; its address is the first line on stdout. Ctrl-C ends it.",
+        epilog="example: linecad edit facade.jpg --camera facade.json",
+    )
+    edit.set_defaults(run=_edit)
+    edit.add_argument("input", type=Path, metavar="PHOTO|SCENE.json", help="a photo, or the scene file of one")
+    edit.add_argument(
+        "-o", "--output", type=Path, metavar="FILE",
+        help="corrections file, read if it is there (beside the photo: PHOTO.corrections.json)",
+    )  # fmt: skip
+    edit.add_argument(
+        "--labels", type=Path, metavar="FILE", help="also write the labels of crossings, for linecad evaluate"
+    )
+    edit.add_argument("--port", type=_port, default=0, metavar="N", help="port on 127.0.0.1 (any free one)")
+    edit.add_argument("--no-browser", action="store_true", help="only print the address")
+    edit.add_argument("--photo", type=Path, metavar="PHOTO", help="the photo of a scene file (else looked for)")
+    _add_camera(edit)
+    _add_reconstruction(edit)
+    _add_loudness(edit)
+
+
+def _add_camera(command: argparse.ArgumentParser) -> None:
+    """Where the camera comes from."""
     camera = command.add_mutually_exclusive_group()
     camera.add_argument(
-        "--camera", type=Path, metavar="FILE", help='calibration: JSON with width, height, K, "distortion"'
-    )
+        "--camera", type=Path, metavar="FILE",
+        help='calibration: JSON with width, height, K, "distortion", or an fSpy project',
+    )  # fmt: skip
     camera.add_argument(
         "--focal", type=_positive, metavar="PX", help="focal length in px; else EXIF, else vanishing points"
     )
-    command.add_argument(
+
+
+def _add_reconstruction(convert: argparse.ArgumentParser) -> None:
+    """The graph, the program and its solver."""
+    convert.add_argument(
         "--formulation", choices=["gain", "paper"], default="gain",
         help="how the program is stated: gain, fast, or as printed in the paper (gain)",
     )  # fmt: skip
-    command.add_argument("--backend", choices=["scip", "highs"], default="scip", help="the solver (scip)")
-    command.add_argument(
+    convert.add_argument("--backend", choices=["scip", "highs"], default="scip", help="the solver (scip)")
+    convert.add_argument(
         "--without", type=_families, default=frozenset(), metavar="FAMILY[,FAMILY]",
         help="leave out families of constraints: cycles, planarity, boundary",
     )  # fmt: skip
-    _add_objective(command)
-    command.add_argument(
+    _add_objective(convert)
+    convert.add_argument(
         "--fast", action="store_true", help="depths by a robust fit in tenths of a second, without a search or a proof"
     )
-    command.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
-    command.add_argument(
+    convert.add_argument("--time-limit", type=_positive, default=60.0, metavar="S", help="seconds for the solver (60)")
+    convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
     )
-    command.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
-    command.add_argument(
+    convert.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
+    convert.add_argument(
         "--extension", type=_extension, metavar="PX",
         help="how far segments are extended to find crossings, px on a photo 3840 px wide (75; with paper 30)",
     )  # fmt: skip
-    command.add_argument(
+    convert.add_argument(
         "--collinear", action=argparse.BooleanOptionalAction, default=None,
         help="segments on one image line may be one line in space (on, but off with --formulation paper)",
     )  # fmt: skip
-    command.add_argument(
+    convert.add_argument(
         "--faint", action="store_true",
         help="look a second time, for segments that the photo's grain hides: more depths, and more wrong ones",
     )  # fmt: skip
-    command.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
-    command.add_argument(
+    convert.add_argument("--largest-component", action="store_true", help="only the largest connected group of lines")
+    convert.add_argument(
         "--witnesses", type=_count, metavar="N",
         help="lines that must tie two bodies for one scale, 1 asks nothing (with paper 1; else lines must keep their "
         "depth when others are left out)",
@@ -167,7 +209,16 @@ def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:
     batch.add_argument(
         "--shared-files", action="store_true", help="the cluster sees the same folders: no photo travels"
     )
-    _add_conversion(batch)
+    _add_camera(batch)
+    _add_reconstruction(batch)
+    batch.add_argument(
+        "--camera-height", type=_camera_height, dest="known", metavar="METRES",
+        help="of the camera above the ground, the lowest horizontal plane",
+    )  # fmt: skip
+    batch.add_argument(
+        "--option", action="append", default=[], metavar="KEY=VALUE",
+        help="what one format alone needs (see linecad export --formats); may be given again",
+    )  # fmt: skip
     _add_loudness(batch)
 
 
@@ -227,11 +278,12 @@ def _add_export(commands: "argparse._SubParsersAction[_Parser]") -> None:
     export.add_argument("scene", type=Path, metavar="SCENE.json", nargs="?")
     _add_outputs(export)
     export.add_argument(
-        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for the picture (else looked for)"
+        "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for formats that show it (else looked for)"
     )
     export.add_argument(
         "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
     )
+    _add_scale(export)
     export.add_argument("--formats", action="store_true", help="list the formats and end")
     _add_loudness(export)
 
@@ -252,10 +304,27 @@ def _add_dataset(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_loudness(dataset)
 
 
+def _add_scale(parser: argparse.ArgumentParser) -> None:
+    scale = parser.add_mutually_exclusive_group()
+    scale.add_argument(
+        "--scale", type=_scale, dest="known", metavar="LINE=METRES",
+        help="a known length: a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo on one "
+        "line or in one plane",
+    )  # fmt: skip
+    scale.add_argument(
+        "--camera-height", type=_camera_height, dest="known", metavar="METRES",
+        help="of the camera above the ground, the lowest horizontal plane",
+    )  # fmt: skip
+
+
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
         help="file to write, its suffix chooses the format (see linecad export --formats); may be given again",
+    )  # fmt: skip
+    parser.add_argument(
+        "--option", action="append", default=[], metavar="KEY=VALUE",
+        help="what one format alone needs (see linecad export --formats); may be given again",
     )  # fmt: skip
 
 
@@ -268,6 +337,12 @@ def _add_loudness(parser: argparse.ArgumentParser) -> None:
 def _count(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 1 or more")
+    return int(text)
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or not 0 <= int(text) <= LARGEST_PORT:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port; give a number from 1 to {LARGEST_PORT}")
     return int(text)
 
 
@@ -286,6 +361,38 @@ def _not_negative(text: str) -> float:
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
     return value
+
+
+def _scale(text: str) -> "Known":
+    from linecad.metric import LineLength, PointDistance
+
+    what, equals, length = text.rpartition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 12=3.5 or 840,310:840,655=2.1")
+    metres = _positive(length)
+    if what.isascii() and what.isdecimal() and len(what) < LONGEST_ID:
+        return LineLength(int(what), metres)
+    numbers = re.split("[,:]", what)
+    if len(numbers) != 4 or not re.fullmatch("[^:]*:[^:]*", what):
+        raise argparse.ArgumentTypeError(f"{what!r} is neither the id of a line nor two px like 840,310:840,655")
+    a, b, c, d = map(_pixel, numbers)
+    return PointDistance(((a, b), (c, d)), metres)
+
+
+def _pixel(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of px") from None
+    if not abs(value) <= LARGEST_PIXEL:
+        raise argparse.ArgumentTypeError(f"{text} px lies outside every photo")
+    return value
+
+
+def _camera_height(text: str) -> "Known":
+    from linecad.metric import CameraHeight
+
+    return CameraHeight(_positive(text))
 
 
 def _extension(text: str) -> float:
@@ -325,13 +432,12 @@ def _suffixes(text: str) -> tuple[str, ...]:
     return suffixes
 
 
-def _conversion(parsed: argparse.Namespace) -> "Conversion":
-    from linecad.conversion import Conversion
-    from linecad.pipeline import ReconstructOptions
+def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
+    from linecad.finding import ReconstructOptions
     from solver.problem import SolveOptions
 
     is_gain = parsed.formulation == "gain"
-    options = ReconstructOptions(
+    return ReconstructOptions(
         extension=parsed.extension,
         weights=parsed.weights,
         collinear=is_gain if parsed.collinear is None else parsed.collinear,
@@ -350,19 +456,23 @@ def _conversion(parsed: argparse.Namespace) -> "Conversion":
             fast=parsed.fast,
         ),
     )
-    return Conversion(parsed.camera, parsed.focal, options)
 
 
 def _convert(parsed: argparse.Namespace) -> int:
-    _check_outputs(parsed.output, [parsed.photo, parsed.camera])
-    from linecad.conversion import write_outputs
+    values = _check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections], parsed.option)
+    from linecad.correctionsfile import check_belongs, read_corrections
+    from linecad.photo import read_photo
+    from linecad.pipeline import reconstruct
 
-    conversion = _conversion(parsed)
+    options = _reconstruct_options(parsed)
+    corrections = None if parsed.corrections is None else read_corrections(parsed.corrections)
     with _Shown(parsed) as show:
         show.stage("reading the photo")
-        photo = conversion.read(parsed.photo)
-        scene = conversion.reconstruct(photo, show.progress, show.stage)
-        write_outputs(scene, photo, parsed.output, show.stage)
+        photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
+        if corrections is not None:
+            check_belongs(corrections, str(parsed.corrections), photo.width, photo.height)
+        scene = _measured(reconstruct(photo, options, show.progress, show.stage, corrections), parsed.known)
+        _write(scene, photo, parsed.output, values, show)
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
@@ -374,19 +484,24 @@ def _convert(parsed: argparse.Namespace) -> int:
 
 
 def _batch(parsed: argparse.Namespace) -> int:
+    from exporters.formats import options_for
     from linecad.batch.start import Means, make_plan, run_plan
     from linecad.batch.summary import bar, line, table
+    from linecad.conversion import Conversion
 
     means = Means(
         parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit
     )  # fmt: skip
-    plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, _conversion(parsed), means)
+    formats = [Path(f"photo{suffix}") for suffix in parsed.format if suffix != SCENE_SUFFIX]
+    values = options_for(formats, parsed.option)
+    conversion = Conversion(parsed.camera, parsed.focal, _reconstruct_options(parsed), parsed.known, values)
+    plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means)
     with _Shown(parsed) as show:
         where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"
         show.stage(f"{len(plan.photos)} photos {where}, at most {plan.limits.memory_mb} MiB each")
         began = time.monotonic()
 
-        def on_row(progress: "Progress", row: "Row | None") -> None:
+        def on_row(progress: "BatchProgress", row: "Row | None") -> None:
             if row is not None:
                 show.line(line(progress, row), row.outcome.status != "done")
             show.bar(bar(progress, time.monotonic() - began))
@@ -395,6 +510,56 @@ def _batch(parsed: argparse.Namespace) -> int:
     print(table(result))
     print(f"page: {plan.folder / 'index.html'}")
     return 1 if result.progress.failed else 0
+
+
+def _edit(parsed: argparse.Namespace) -> int:
+    from linecad.correctionsfile import SUFFIX
+    from linecad.editing.labelling import check_labels
+    from linecad.editing.run import EditOptions, edit
+
+    with _Shown(parsed) as show:
+        show.stage("reading the photo")
+        photo, path = _photo_to_edit(parsed)
+        output = parsed.output or path.with_name(path.name + SUFFIX)
+        inputs = [parsed.input, path, *([parsed.camera] if parsed.camera else [])]
+        outputs = [output, *([parsed.labels] if parsed.labels else [])]
+        _check_kept(outputs, inputs)
+        _check_distinct(outputs)
+        if parsed.labels:
+            check_labels(parsed.labels, path, parsed.camera)
+
+        def ready(address: str) -> None:
+            show.finish()
+            print(address, flush=True)
+            if not parsed.no_browser:
+                import webbrowser  # takes as long to load as all the rest of the command line
+
+                webbrowser.open(address)
+
+        options = EditOptions(output, parsed.port, _reconstruct_options(parsed), parsed.labels, parsed.camera)
+        with contextlib.suppress(KeyboardInterrupt):  # the way to end it
+            edit(photo, options, ready, show.stage)
+    return 0
+
+
+def _photo_to_edit(parsed: argparse.Namespace) -> "tuple[Photo, Path]":
+    """The photo that is named, or that of the scene that is named, and where it lies."""
+    from linecad.photo import read_photo
+
+    if parsed.input.suffix.lower() != SCENE_SUFFIX:
+        if parsed.photo is not None:
+            raise LinecadError("--photo is for scene files; the photo is named already")
+        return read_photo(parsed.input, parsed.camera, parsed.focal), parsed.input
+    from linecad.scenefile import read_scene
+
+    scene = read_scene(parsed.input)
+    parsed.scene = parsed.input
+    photo = _photo_of(scene, parsed)
+    path = parsed.photo or parsed.input.parent / Path(scene.photo).name
+    if photo is None:
+        raise LinecadError(f"{path} is not there, the photo of {parsed.input}; name it with --photo")
+    # Without a calibration the pixels are those of the file, so the scene's own camera is theirs.
+    return (photo if parsed.camera else replace(photo, camera=scene.camera)), path
 
 
 def _evaluate(parsed: argparse.Namespace) -> int:
@@ -446,16 +611,28 @@ def _export(parsed: argparse.Namespace) -> int:
         return _print_formats()
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
-    _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
-    from linecad.conversion import write_outputs
+    values = _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera], parsed.option)
     from linecad.scenefile import read_scene
 
     with _Shown(parsed) as show:
         show.stage("reading the scene")
-        scene = read_scene(parsed.scene)
-        photo = _photo_of(scene, parsed) if any(path.suffix.lower() == ".png" for path in parsed.output) else None
-        write_outputs(scene, photo, parsed.output, show.stage)
+        scene = _measured(read_scene(parsed.scene), parsed.known)
+        photo = _photo_for_outputs(scene, parsed, values, show)
+        _write(scene, photo, parsed.output, values, show)
     return 0
+
+
+def _measured(scene: "Scene", known: "Known | None") -> "Scene":
+    from linecad.metric import set_scale
+
+    return scene if known is None else set_scale(scene, known)
+
+
+def _show_photo(outputs: list[Path]) -> bool:
+    """Whether a format of any of them shows the photo."""
+    from exporters.formats import find_format
+
+    return any(path.suffix.lower() != SCENE_SUFFIX and find_format(path).shows_photo for path in outputs)
 
 
 def _dataset(parsed: argparse.Namespace) -> int:
@@ -467,6 +644,36 @@ def _dataset(parsed: argparse.Namespace) -> int:
         made = make_dataset(parsed.folder, options, show.stage)
     print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")
     return 0
+
+
+def _photo_for_outputs(
+    scene: "Scene", parsed: argparse.Namespace, values: "dict[str, Value]", show: "_Shown"
+) -> "Photo | None":
+    """The scene's photo if an output shows it. Textures do without it, and say so, unless they were asked for."""
+    from exporters.formats import TEXTURES, find_format
+    from exporters.model import photo_name
+
+    drawn = _show_photo(parsed.output)
+    switch = TEXTURES[0]
+    formats = [find_format(path) for path in parsed.output if path.suffix.lower() != SCENE_SUFFIX]
+    able = bool(scene.faces) and any(switch in row.options for row in formats)
+    textured = able and values.get(switch.key, switch.default) is True
+    if not drawn and not textured:
+        return None
+    asked = able and values.get(switch.key) is True
+    try:
+        photo = _photo_of(scene, parsed)
+    except LinecadError as error:
+        if drawn or asked or parsed.photo is not None:
+            raise
+        show.note(f"{error}; the faces have no textures")
+        return None
+    if photo is None and textured:
+        missing = f"the photo {photo_name(scene)!r} is not beside {parsed.scene}; name it with --photo"
+        if asked:
+            raise OutputError(f"textures were asked for, but {missing}")
+        show.note(f"{missing}; the faces have no textures")
+    return photo
 
 
 def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
@@ -494,19 +701,19 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     return photo
 
 
-def _check_outputs(outputs: list[Path], inputs: list[Path | None]) -> None:
-    """Everything that can be known to fail is refused before the long work starts."""
-    from exporters.formats import find_format
+def _check_outputs(outputs: list[Path], inputs: list[Path | None], options: list[str]) -> "dict[str, Value]":
+    """Refuse, before the long work starts, everything that can be known to fail; the values of the formats' options."""
+    from exporters.formats import options_for
     from linecad.files import check_output
 
     if not outputs:
         raise OutputError("no output was named; give one or more, such as -o scene.json -o scene.step")
+    values = options_for([path for path in outputs if path.suffix.lower() != SCENE_SUFFIX], options)
     for path in outputs:
-        if path.suffix.lower() != SCENE_SUFFIX:
-            find_format(path)
         check_output(path)
     _check_kept(outputs, [path for path in inputs if path is not None])
     _check_distinct(outputs)
+    return values
 
 
 def _check_kept(outputs: list[Path], inputs: list[Path]) -> None:
@@ -522,12 +729,28 @@ def _check_distinct(outputs: list[Path]) -> None:
         raise OutputError("the same output was named twice; name each once")
 
 
+def _write(
+    scene: "Scene", photo: "Photo | None", outputs: list[Path], values: "dict[str, Value]", show: "_Shown"
+) -> None:
+    from exporters.formats import export
+    from linecad.scenefile import write_scene
+
+    for path in outputs:
+        show.stage(f"writing {path}")
+        if path.suffix.lower() == SCENE_SUFFIX:
+            write_scene(scene, path)
+        else:
+            export(scene, path, None if photo is None else photo.pixels, values)
+
+
 def _print_formats() -> int:
     from exporters.formats import FORMATS
 
     print(f"{SCENE_SUFFIX:6} the scene file, which `linecad export` reads (docs/scene-file.md)")
     for suffix, row in FORMATS.items():
         print(f"{suffix:6} {row.phrase} (in {row.unit})")
+        for option in row.options:
+            print(f"         --option {option.key}={option.usual}: {option.phrase}; {option.accepted}")
     return 0
 
 
@@ -556,7 +779,13 @@ class _Shown:
         elif not self.quiet and not self.verbose:
             print(text, file=sys.stderr, flush=True)
 
-    def progress(self, at: "SolverProgress") -> None:
+    def note(self, text: str) -> None:
+        """What the user should know of the result, in any loudness."""
+        if self.live:
+            self._over("")
+        print(f"linecad: {text}", file=sys.stderr, flush=True)
+
+    def progress(self, at: "Progress") -> None:
         """The solver has come further."""
         if self.live:
             self._over(
@@ -577,15 +806,19 @@ class _Shown:
         if self.live:
             self._over(text[: shutil.get_terminal_size().columns - 1])
 
+    def finish(self) -> None:
+        """No stage any more; the next line on a terminal is a clean one."""
+        self._finish_stage()
+        self.current = ""
+        if self.live:
+            self._over("")
+
     def __enter__(self) -> Self:
         return self
 
     def __exit__(self, *_exception: object) -> None:
         """Nothing more to show; an error's line begins on a clean one."""
-        self._finish_stage()
-        self.current = ""
-        if self.live:
-            self._over("")
+        self.finish()
 
     def _finish_stage(self) -> None:
         if self.verbose and self.current:

@@ -5,10 +5,15 @@ LinecadError
 │   ├── PhotoError     not an image, truncated, too large, too small
 │   ├── CameraError    a calibration that is malformed or of another size
 │   ├── SceneFileError a scene file that does not say what its format promises
-│   └── DatasetError   a made dataset that is damaged or was begun with other options
+│   ├── DatasetError   a made dataset that is damaged or was begun with other options
+│   └── CorrectionsFileError a corrections file that is malformed or belongs to another photo
+├── ScaleError         a known length that the scene does not hold
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
+├── CorrectionError    an edit that names no line, or that cannot be done
+├── EditorError        the page cannot be served
 └── SolverError        the solver ended without any usable answer
+    └── ContradictionError what a person said about crossings cannot all be true
 
 The text of each is one line: what was found, and what to do about it.
 """
@@ -38,6 +43,14 @@ class DatasetError(InputError):
     """A dataset breaks the promises of docs/dataset.md, or was begun with other options."""
 
 
+class CorrectionsFileError(InputError):
+    """The corrections file breaks the promises of docs/corrections.md, or was made for another photo."""
+
+
+class ScaleError(LinecadError):
+    """A known length was given that cannot be measured in the scene."""
+
+
 class OutputError(LinecadError):
     """A result cannot be written."""
 
@@ -48,3 +61,21 @@ class ReconstructionError(LinecadError):
 
 class SolverError(LinecadError):
     """The solver ended without a usable answer."""
+
+
+class ContradictionError(SolverError):
+    """Crossings that a person called real and that no depths satisfy together: a smallest such set."""
+
+    def __init__(self, text: str, lines: tuple[int, ...], crossings: tuple[tuple[int, int], ...]) -> None:
+        """The lines in it and the pairs of them that cross: nodes of the graph, or ids where the lines have some."""
+        super().__init__(text)
+        self.lines = lines
+        self.crossings = crossings
+
+
+class CorrectionError(LinecadError):
+    """An edit names a line that is not there, or cannot be done."""
+
+
+class EditorError(LinecadError):
+    """The page cannot be served: a missing library, a port in use."""

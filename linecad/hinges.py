@@ -90,6 +90,22 @@ def find_held(graph: LineGraph, chosen: Bool, witnesses: int = WITNESSES) -> Hel
     return Held(body, len(cores), within)
 
 
+def tied(held: Held, pairs: Int) -> Held:
+    """The same with bodies made one where a pair of lines (P, 2) is known to meet; the largest first again."""
+    if len(pairs) == 0:
+        return held
+    net = _adjacency(range(int(held.body.max()) + 1), held.body[pairs])
+    groups = _components(net, list(net))
+    size = [int(np.isin(held.body, list(group)).sum()) for group in groups]
+    # Groups that hold a body come before those that only hang together.
+    order = sorted(range(len(groups)), key=lambda k: (min(groups[k]) >= held.bodies, -size[k], min(groups[k])))
+    new = np.empty(len(net), np.int64)
+    for number, k in enumerate(order):
+        new[list(groups[k])] = number
+    bodies = sum(min(group) < held.bodies for group in groups)
+    return Held(new[held.body], bodies, held.within)
+
+
 def find_bodies(net: Graph, witnesses: int) -> list[set[int]]:
     """The bodies of a graph, the largest first; two may share fewer than `witnesses` lines."""
     found: list[set[int]] = []

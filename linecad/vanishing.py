@@ -18,6 +18,7 @@ MAX_SCORED = 1500  # the longest segments decide; more cost time and change noth
 REFINEMENTS = 30
 STEP_END = 1e-9  # rad; smaller steps end the refinement
 ERROR_FLOOR = 1e-4  # rad; no axis is known better than that
+LEAST_SPREAD = 1e-3  # rad between the planes of lines that are to give a vanishing point
 SECOND_DIRECTION_SHARE = 0.02  # of the explained length that the second and third axis must add
 
 FOCAL_RANGE = (0.4, 4.0)  # of the larger side of the photo
@@ -48,6 +49,44 @@ def find_frame(segments: Segments, K: Float, seed: int = 0) -> ManhattanFrame:
     ends, weight = _longest(segments)
     axes, _ = _search(ends, weight, K, DRAWS, np.random.default_rng(seed))
     axes = _refine(ends, weight, K, axes)
+    return _named_frame(segments, K, axes)
+
+
+def fit_frame(ends: Float, label: Int, K: Float, segments: Segments) -> ManhattanFrame:
+    """The rotation whose axes fit lines (M, 2, 2) px of known directions (M,) best, in least squares of the angles.
+
+    Lines of one label are parallel in space; two of one label and one of another determine the frame. The axes are
+    named by their directions, whatever the labels were. Raises ReconstructionError when the lines are too few or point
+    to one place. `segments` only tell how much of the photo the frame explains.
+    """
+    normals = plane_normals(ends, K)
+    most = int(np.bincount(label, minlength=3).argmax())
+    if (label == most).sum() < 2 or (label != most).sum() < 1:
+        raise ReconstructionError(
+            f"{len(label)} lines were drawn for the frame; draw two along one direction and one along another at least"
+        )
+    spread, directions = np.linalg.eigh(normals[label == most].T @ normals[label == most])
+    if spread[1] < LEAST_SPREAD**2:
+        raise ReconstructionError(
+            "the lines drawn along one direction lie on one line of the photo; draw them further apart"
+        )
+    main = directions[:, 0]
+    second_label = int(np.bincount(label[label != most], minlength=3).argmax())
+    chosen = normals[label == second_label]
+    # Of all directions across the first, the one that lies best in the planes of the second.
+    across = np.linalg.svd(main[None])[2][1:]
+    second = np.linalg.eigh((chosen @ across.T).T @ (chosen @ across.T))[1][:, 0] @ across
+    axes = np.empty((3, 3))
+    axes[most], axes[second_label] = main, second
+    axes[3 - most - second_label] = np.cross(main, second)
+    for _ in range(REFINEMENTS):
+        own = axes[label]
+        error = (normals * own).sum(axis=1)
+        jacobian = np.cross(own, normals)
+        step = -np.linalg.pinv(jacobian, rcond=1e-9) @ error
+        axes = axes @ rotation_about(step).T
+        if np.linalg.norm(step) < STEP_END:
+            break
     return _named_frame(segments, K, axes)
 
 

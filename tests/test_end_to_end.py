@@ -14,8 +14,9 @@ import trimesh
 from linecad.calibration import undistort_points
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
+from linecad.finding import ReconstructOptions
 from linecad.photo import read_photo
-from linecad.pipeline import ReconstructOptions, reconstruct
+from linecad.pipeline import reconstruct
 from linecad.scenefile import read_scene
 from linecad.segments import find_segments
 from linecad.vanishing import find_frame
@@ -78,6 +79,12 @@ def test_the_depths_of_component_0_are_true(sample):
     assert score.precision_5 >= precision
 
 
+def test_a_photo_that_contradicts_itself_is_said_to(sample):
+    name, options, scene = sample
+    is_said = any("contradict each other often" in note for note in scene.notes)
+    assert is_said == (options == "default" and name != "courtyard")
+
+
 def test_lines_run_along_true_edges(sample):
     # Nearly half of the long true edges, and more, are found under the label of their axis.
     name, _, scene = sample
@@ -112,7 +119,8 @@ def test_the_command_turns_a_photo_into_every_kind_of_file(tmp_path):
         timeout=100, check=False,
     )  # fmt: skip
     assert (ended.returncode, ended.stderr) == (0, "")
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(outputs)
+    beside = ["model.obj.mtl", "model.obj.textures"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(outputs + beside)
     scene = read_scene(tmp_path / "scene.json")
     assert ended.stdout.startswith(f"{len(scene.lines)} lines, {int(scene.intersections.real.sum())} of ")
     assert ended.stdout.splitlines()[1:] == [f"note: {note}" for note in scene.notes]

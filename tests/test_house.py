@@ -24,8 +24,21 @@ FLOORS = [
     ["linecad"],
     ["linecad.errors"],
     ["linecad.scene", "linecad.strictjson", "linecad.files"],
-    ["linecad.scenedocument", "linecad.geometry", "linecad.dataset", "linecad.dataset.truth"],
-    ["linecad.scenefile", "linecad.dataset.modelling", "linecad.dataset.view", "linecad.dataset.light"],
+    [
+        "linecad.scenedocument",
+        "linecad.fspy",
+        "linecad.geometry",
+        "linecad.corrections",
+        "linecad.dataset",
+        "linecad.dataset.truth",
+    ],
+    [
+        "linecad.scenefile",
+        "linecad.correctionsfile",
+        "linecad.dataset.modelling",
+        "linecad.dataset.view",
+        "linecad.dataset.light",
+    ],
     ["linecad.dataset.facades", "linecad.dataset.furniture", "linecad.dataset.rasteriser", "linecad.dataset.textures"],
     ["linecad.dataset.interior", "linecad.dataset.store", "linecad.dataset.finishing"],
     ["linecad.dataset.scenes", "linecad.dataset.render"],
@@ -39,6 +52,7 @@ FLOORS = [
         "linecad.odds",
         "linecad.offsets",
         "linecad.outlines",
+        "linecad.metric",
     ],
     ["linecad.sheets"],  # a part of faces
     [
@@ -53,11 +67,20 @@ FLOORS = [
         "linecad.planes",
         "linecad.faces",
         "linecad.agreement",
+        "linecad.correcting",
     ],
     ["linecad.support"],  # of hinges
+    ["linecad.finding"],
+    ["linecad.placing"],
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.conversion"],
-    ["linecad.evaluation", "linecad.batch", "linecad.editor", "linecad.dataset.make"],
+    ["linecad.evaluation", "linecad.batch", "linecad.editing", "linecad.dataset.make"],
+    ["linecad.editing.guard", "linecad.editing.saving", "linecad.editing.tabs", "linecad.editing.tiles"],
+    ["linecad.editing.labelling", "linecad.editing.solving"],
+    ["linecad.editing.session"],
+    ["linecad.editing.document", "linecad.editing.edits"],
+    ["linecad.editing.server"],
+    ["linecad.editing.run"],
     [
         "linecad.evaluation.frames",
         "linecad.evaluation.overlap",
@@ -81,7 +104,7 @@ FLOORS = [
     ["linecad.cli"],
     ["linecad.__main__"],
 ]
-FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.pipeline"  # solver and exporters are called from here upwards
+FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.finding"  # solver and exporters are called from here upwards
 KNOWN_TO_THE_PACKAGES = {"linecad.errors", "linecad.scene", "linecad.files"}
 
 HEAVY = {
@@ -99,12 +122,17 @@ HEAVY = {
     "pyscipopt",
     "scipy",
     "shapely",
+    "starlette",
     "trimesh",
+    "uvicorn",
 }
 LONGEST_HELP = 0.5  # s, what `linecad --help` may take
 
 # Hosts that a file may link to: standards, papers, the tools' own documentation.
 HOSTS = {
+    "127.0.0.1",  # the page of linecad edit; with the two next ones also in its tests
+    "example.org",
+    "localhost",
     "arxiv.org",
     "creativecommons.org",
     "docs.opencv.org",

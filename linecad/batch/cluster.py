@@ -1,5 +1,6 @@
 """The executor of a Dask cluster: jobs go to the scheduler, files by a folder that all see or as bytes with the job."""
 
+import contextlib
 import queue
 import time
 import uuid
@@ -133,11 +134,16 @@ def _packed(job: Job) -> remote.Parcel:
 
 
 def _unpack(job: Job, files: dict[str, bytes]) -> None:
-    """Write what came back. Only files that the job was to make are written, whatever names the worker gives."""
-    for path in (*job.outputs, job.thumbnail):
-        data = files.get(path.relative_to(job.folder).as_posix())
-        if data is not None:
-            write_bytes_atomically(path, data)
+    """Write what came back. Only files that the job may make are written, whatever names the worker gives."""
+    for file, data in files.items():
+        path = job.folder / file
+        if not job.may_make(file):
+            raise OutputError(
+                f"a worker of the cluster sent {path.name!r}, which this photo does not have; look into it"
+            )
+        if path.parent not in (job.folder, job.thumbnail.parent):
+            path.parent.mkdir(exist_ok=True)
+        write_bytes_atomically(path, data)
 
 
 def _reason(error: BaseException | None) -> str:

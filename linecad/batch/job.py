@@ -1,15 +1,17 @@
 """A job, its outcome, and what an executor of jobs can do: what passes between the parts of a batch."""
 
 from dataclasses import dataclass, field
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Literal, Protocol, get_args
 
+from exporters.beside import folder_name, library_name
 from linecad.conversion import Conversion
 
 # done; failed: linecad said why, or broke; time limit, memory limit: of the photo; killed: its process died.
 Status = Literal["done", "failed", "time limit", "memory limit", "killed"]
 STATUSES: tuple[Status, ...] = get_args(Status)
 
+PICTURES = "photo-*.jpg"  # what exporters.beside calls them
 THUMBNAILS = "thumbnails"  # folder in the output folder
 
 
@@ -37,6 +39,25 @@ class Job:
     def outputs(self) -> list[Path]:
         """The files of the photo's scene."""
         return [self.folder / f"{self.name}{suffix}" for suffix in self.suffixes]
+
+    @property
+    def beside(self) -> list[Path]:
+        """Material libraries and folders of pictures that formats make beside their files."""
+        return [path.with_name(name) for path in self.outputs for name in (library_name(path), folder_name(path))]
+
+    def made(self) -> list[Path]:
+        """All files of the photo that are there: what others refer to comes first."""
+        found = []
+        for path in self.beside:
+            found += sorted(path.glob(PICTURES)) if path.is_dir() else [path] if path.is_file() else []
+        return [*found, *self.outputs, self.thumbnail]
+
+    def may_make(self, file: str) -> bool:
+        """Whether a file, relative to the folder, is one that this job may make."""
+        path = self.folder / file
+        if path in (*self.outputs, self.thumbnail):
+            return True
+        return path in self.beside or (path.parent in self.beside and PurePath(path.name).match(PICTURES))
 
     @property
     def thumbnail(self) -> Path:

@@ -18,6 +18,7 @@ from linecad.conversion import Conversion
 from linecad.errors import LinecadError, OutputError
 
 LEFTOVERS = ".linecad-*"  # what linecad.files leaves when it is killed while it writes
+PICTURES_BESIDE = "*.textures"  # folders of exporters.beside
 TICK = 0.5  # s between two looks at what else there is to do
 LARGEST_LOSSES = 3  # times that a photo is begun again after its executor broke under it
 
@@ -90,7 +91,9 @@ def _prepare(folder: Path) -> None:
         if thumbnails.is_symlink():
             raise OutputError(f"{thumbnails} is a link, and files would go elsewhere; remove it")
         thumbnails.mkdir(exist_ok=True)
-        for place in (folder, thumbnails):
+        for place in (folder, thumbnails, *folder.glob(PICTURES_BESIDE)):
+            if place.is_symlink() or not place.is_dir():
+                continue
             for leftover in place.glob(LEFTOVERS):
                 leftover.unlink()
     except OSError as error:
@@ -151,7 +154,7 @@ class _Run:
     def _job(self, photo: Path) -> Job:
         plan = self.plan
         job = Job(photo, photo_hash(photo), self.names[photo], plan.folder, plan.suffixes, plan.conversion, plan.limits)
-        for path in (*job.outputs, job.thumbnail):
+        for path in (*job.outputs, *job.beside, job.thumbnail):
             if path.is_symlink():
                 raise OutputError(f"{path} is a link, and the file would go elsewhere; remove it")
             if path.exists() and path.samefile(photo):

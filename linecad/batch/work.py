@@ -7,7 +7,6 @@ from pathlib import Path
 
 from linecad.batch.job import Figures, Job, Outcome
 from linecad.batch.thumbnail import write_thumbnail
-from linecad.conversion import write_outputs
 from linecad.errors import LinecadError, PhotoError
 from linecad.photo import Photo
 from linecad.scene import Scene
@@ -45,9 +44,9 @@ def _do(job: Job) -> Outcome:
     except LinecadError as error:
         _write_thumbnail(job, photo, None)
         return Outcome("failed", str(error), files=_sizes(job, [job.thumbnail]))
-    write_outputs(scene, photo, job.outputs, lambda _stage: None)
+    job.conversion.write(scene, photo, job.outputs)
     _write_thumbnail(job, photo, scene)
-    return Outcome("done", figures=_figures(scene), files=_sizes(job, [*job.outputs, job.thumbnail]))
+    return Outcome("done", figures=_figures(scene), files=_sizes(job, job.made()))
 
 
 def _write_thumbnail(job: Job, photo: Photo, scene: Scene | None) -> None:

@@ -17,9 +17,10 @@ from linecad.evaluation.methods import ROWS, Run, Settings, run_method
 from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
+from linecad.finding import FoundLines, connect, find_lines
 from linecad.lifting import lift
 from linecad.photo import Photo
-from linecad.pipeline import FoundLines, connect, find_lines, place
+from linecad.placing import place
 from linecad.scene import Bool, Float, Formulation, Int, LineGraph, Scene
 from solver.problem import solve
 

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.evaluation.decisions import Decisions, compare
+from linecad.finding import SHORT_REACH, ReconstructOptions
 from linecad.graph import Weights
 from linecad.lifting import lift
-from linecad.pipeline import SHORT_REACH, ReconstructOptions
 from linecad.scene import Bool, Float, Formulation, Int, LineGraph
 from solver.problem import FAMILIES, Family, SolveOptions, solve
 

@@ -26,8 +26,10 @@ from linecad.evaluation.depth import face_depths, line_depths, score  # noqa: E4
 from linecad.evaluation.labels import REAL  # noqa: E402
 from linecad.evaluation.references import Points, Reference, open_case  # noqa: E402
 from linecad.faces import find_faces  # noqa: E402
+from linecad.finding import ReconstructOptions, connect, find_lines  # noqa: E402
 from linecad.photo import Photo  # noqa: E402
-from linecad.pipeline import ReconstructOptions, connect, find_lines, place, reconstruct  # noqa: E402
+from linecad.pipeline import reconstruct  # noqa: E402
+from linecad.placing import place  # noqa: E402
 from linecad.scene import Face, Plane, Scene, Solution  # noqa: E402
 from solver.problem import SolveOptions  # noqa: E402
 

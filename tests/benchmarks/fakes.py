@@ -13,8 +13,8 @@ import numpy as np
 
 from linecad.dataset.store import read_list, read_truth
 from linecad.evaluation.labels import REAL, UNDECIDED, depths_at_crossings, find_true_lines, judge_crossings
+from linecad.finding import ReconstructOptions, connect, find_lines
 from linecad.photo import read_photo
-from linecad.pipeline import ReconstructOptions, connect, find_lines
 from solver.problem import SolveOptions, solve
 
 RELIEF = 0.03  # of the depth

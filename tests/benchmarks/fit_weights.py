@@ -19,7 +19,7 @@ from linecad.evaluation.features import COLOUR_FEATURES, colour_features
 from linecad.evaluation.labels import FAKE, REAL
 from linecad.evaluation.methods import Settings
 from linecad.evaluation.references import open_case
-from linecad.pipeline import connect, find_lines
+from linecad.finding import connect, find_lines
 from linecad.scene import Bool, Float, Int
 from linecad.weighting import (
     COLLINEAR_FEATURES,

@@ -17,7 +17,8 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
 from linecad.evaluation.references import Points, open_case
-from linecad.pipeline import ReconstructOptions, reconstruct
+from linecad.finding import ReconstructOptions
+from linecad.pipeline import reconstruct
 from linecad.scene import Bool, Float, Scene
 from solver.problem import SolveOptions
 
@@ -35,10 +36,11 @@ def main() -> None:
     parser.add_argument("dataset", type=Path, nargs="+")
     parser.add_argument("--out", type=Path, required=True, help="folder of the pictures")
     parser.add_argument("--only", default="", help="photos with this in their name")
+    parser.add_argument("--fast", action="store_true", help="the robust fit alone")
     parser.add_argument("--time-limit", type=float, default=20.0)
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
-    options = ReconstructOptions(solve=SolveOptions(time_limit_s=chosen.time_limit))
+    options = ReconstructOptions(solve=SolveOptions(time_limit_s=chosen.time_limit, fast=chosen.fast))
     for folder in chosen.dataset:
         for case in find_dataset(folder).cases:
             if chosen.only in case.name:

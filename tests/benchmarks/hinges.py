@@ -16,7 +16,8 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
-from linecad.pipeline import ReconstructOptions, connect, find_lines, place
+from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.placing import place
 from solver.problem import SolveOptions, solve
 
 Variant = tuple[int, int]  # witnesses, lines that may hang on a body

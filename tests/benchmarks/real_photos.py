@@ -13,8 +13,9 @@ import numpy as np
 from linecad.calibration import undistort_points
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
+from linecad.finding import ReconstructOptions
 from linecad.photo import read_photo
-from linecad.pipeline import ReconstructOptions, reconstruct
+from linecad.pipeline import reconstruct
 from linecad.segments import find_segments
 from linecad.vanishing import find_frame
 from solver.problem import SolveOptions

@@ -16,7 +16,8 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
-from linecad.pipeline import ReconstructOptions, connect, find_lines, place
+from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.placing import place
 from linecad.scene import Segments
 from linecad.segments import find_segments, group_segments, label_segments
 from solver.problem import SolveOptions, solve

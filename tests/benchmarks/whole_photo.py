@@ -14,7 +14,8 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
-from linecad.pipeline import SHORT_REACH, ReconstructOptions, connect, find_lines, place
+from linecad.finding import SHORT_REACH, ReconstructOptions, connect, find_lines
+from linecad.placing import place
 from solver.problem import SolveOptions, solve
 
 

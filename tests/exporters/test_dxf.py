@@ -134,3 +134,15 @@ def test_classes_stand_in_an_order_that_no_hash_decides(document):
     used = [name for name in names if name in document.entitydb.dxf_types_in_use()]
     assert len(used) > 1
     assert used == sorted(used)
+
+
+def test_a_later_release_holds_the_same_and_passes_the_auditor(document, scene, tmp_path):
+    export(scene, tmp_path / "a.dxf", options={"version": "R2018"})
+    later = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
+    assert later.dxfversion == "AC1032"
+    auditor = later.audit()
+    assert not auditor.errors
+    assert not auditor.fixes
+    assert later.header["$INSUNITS"] == 6
+    kinds = [[entity.dxftype() for entity in each.modelspace()] for each in (document, later)]
+    assert kinds[0] == kinds[1]

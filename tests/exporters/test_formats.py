@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from pxr import Usd
 
 from exporters import formats
 from exporters.formats import FORMATS, export, find_format, suffixes
@@ -16,8 +17,17 @@ from linecad.errors import OutputError
 from linecad.scenefile import write_scene
 
 FACES_ONLY = {".ply", ".stl"}
+NO_FACES = {".fspy", ".png"}  # the picture draws faces as they are, the project has none
 REPOSITORY = Path(__file__).parents[2]
 HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "pxr", "shapely", "trimesh"}
+
+
+def save(scene, path):
+    """Export without a photo, or with a black one where the format cannot do without."""
+    camera = scene.camera
+    black = np.zeros((camera.height, camera.width, 3), np.uint8) if find_format(path).needs_photo else None
+    export(scene, path, black)
+
 
 every_format = pytest.mark.parametrize("suffix", FORMATS)
 with_lines = pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in FACES_ONLY])
@@ -44,14 +54,14 @@ def reference(scene, tmp_path_factory):
     """The bytes of the scene in every format, by suffix."""
     folder = tmp_path_factory.mktemp("reference")
     for suffix in FORMATS:
-        export(scene, folder / f"a{suffix}")
+        save(scene, folder / f"a{suffix}")
     assert names(folder) == sorted(f"a{suffix}" for suffix in FORMATS)
     return {suffix: (folder / f"a{suffix}").read_bytes() for suffix in FORMATS}
 
 
 @every_format
 def test_a_file_is_written_and_nothing_else(scene, tmp_path, suffix):
-    export(scene, tmp_path / f"a{suffix}")
+    save(scene, tmp_path / f"a{suffix}")
     assert names(tmp_path) == [f"a{suffix}"]
     assert (tmp_path / f"a{suffix}").stat().st_size > 1000
 
@@ -59,11 +69,13 @@ def test_a_file_is_written_and_nothing_else(scene, tmp_path, suffix):
 EXPORT_ALL = """
 import sys
 from pathlib import Path
+import numpy as np
 from exporters.formats import FORMATS, export
 from linecad.scenefile import read_scene
 scene = read_scene(Path(sys.argv[1]))
-for suffix in FORMATS:
-    export(scene, Path(sys.argv[2]) / ("a" + suffix))
+black = np.zeros((scene.camera.height, scene.camera.width, 3), np.uint8)
+for suffix, row in FORMATS.items():
+    export(scene, Path(sys.argv[2]) / ("a" + suffix), black if row.needs_photo else None)
 """
 
 
@@ -84,19 +96,19 @@ def test_the_same_scene_gives_the_same_bytes_in_fresh_processes(scene, reference
 @every_format
 def test_neither_the_name_nor_the_time_changes_the_bytes(scene, reference, tmp_path, suffix):
     path = tmp_path / f"""Häuschen "家" it's {suffix.upper()}"""
-    export(scene, path)
+    save(scene, path)
     assert path.read_bytes() == reference[suffix]
 
 
 @with_lines
 def test_a_single_line_without_any_face(one_line, tmp_path, suffix):
-    export(one_line, tmp_path / f"a{suffix}")
+    save(one_line, tmp_path / f"a{suffix}")
     assert names(tmp_path) == [f"a{suffix}"]
 
 
 @every_format
 def test_faces_without_any_line(no_lines, tmp_path, suffix):
-    export(no_lines, tmp_path / f"a{suffix}")
+    save(no_lines, tmp_path / f"a{suffix}")
     assert names(tmp_path) == [f"a{suffix}"]
 
 
@@ -109,20 +121,20 @@ def test_lines_alone_do_not_fit_into_formats_for_faces(no_faces, tmp_path, suffi
 
 @every_format
 def test_large_ids(large_ids, tmp_path, suffix):
-    export(large_ids, tmp_path / f"a{suffix}")
+    save(large_ids, tmp_path / f"a{suffix}")
     assert names(tmp_path) == [f"a{suffix}"]
 
 
 @every_format
 def test_a_scene_of_unknown_scale(free_unit, tmp_path, suffix):
-    export(free_unit, tmp_path / f"a{suffix}")
+    save(free_unit, tmp_path / f"a{suffix}")
     assert names(tmp_path) == [f"a{suffix}"]
 
 
 @every_format
 def test_an_empty_scene_is_refused(no_lines, tmp_path, suffix):
     with pytest.raises(OutputError, match="nothing to write"):
-        export(replace(no_lines, planes=()), tmp_path / f"a{suffix}")
+        save(replace(no_lines, planes=()), tmp_path / f"a{suffix}")
     assert names(tmp_path) == []
 
 
@@ -131,11 +143,11 @@ def test_a_face_that_is_no_polygon_is_named_or_drawn(scene, tmp_path, suffix):
     """The picture shows what there is; the others would hold a face that no program can use."""
     broken = replace(scene.planes[0].faces[0], id=77, holes=(), outline=scene.planes[0].faces[0].outline[[0, 2, 1, 5]])
     with_broken = replace(scene, planes=(replace(scene.planes[0], faces=(broken,)),))
-    if suffix == ".png":
-        export(with_broken, tmp_path / f"a{suffix}")
+    if suffix in NO_FACES:
+        save(with_broken, tmp_path / f"a{suffix}")
     else:
         with pytest.raises(OutputError, match="face_0077 is not a polygon"):
-            export(with_broken, tmp_path / f"a{suffix}")
+            save(with_broken, tmp_path / f"a{suffix}")
         assert names(tmp_path) == []
 
 
@@ -143,15 +155,17 @@ def test_a_face_that_is_no_polygon_is_named_or_drawn(scene, tmp_path, suffix):
 FULL_DISK = """
 import resource, sys
 from pathlib import Path
+import numpy as np
 from exporters.formats import FORMATS, export
 from linecad.errors import OutputError
 from linecad.scenefile import read_scene
 scene = read_scene(Path(sys.argv[1]))
 folder = Path(sys.argv[2])
+black = np.zeros((scene.camera.height, scene.camera.width, 3), np.uint8)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
-for suffix in FORMATS:
+for suffix, row in FORMATS.items():
     try:
-        export(scene, folder / ("a" + suffix))
+        export(scene, folder / ("a" + suffix), black if row.needs_photo else None)
     except OutputError as error:
         print(suffix, error)
 """
@@ -248,7 +262,7 @@ def test_only_the_module_of_the_format_is_loaded(scene, tmp_path):
 def test_a_writer_that_fails_midway_leaves_the_old_file(scene, tmp_path, monkeypatch):
     class Failing:
         @staticmethod
-        def write(_, path):
+        def write(_, path, **_options):
             path.write_text("half")
             raise OSError(28, "No space left on device")
 
@@ -258,3 +272,25 @@ def test_a_writer_that_fails_midway_leaves_the_old_file(scene, tmp_path, monkeyp
         export(scene, tmp_path / "a.dxf")
     assert (tmp_path / "a.dxf").read_text() == "old"
     assert names(tmp_path) == ["a.dxf"]
+
+
+UNITS = {
+    ".dxf": b"$INSUNITS\n 70\n6\n",
+    ".step": b"SI_UNIT(.MILLI.,.METRE.)",
+    ".usda": b"metersPerUnit = 1\n",
+    ".usdc": b"metersPerUnit = 1\n",
+    ".usdz": b"metersPerUnit = 1\n",
+}
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in {".png", ".fspy"}])
+def test_the_unit_is_told_and_the_scale_is_told_or_said_to_be_unknown(scene, free_unit, tmp_path, suffix):
+    """Package and compact stage hold what the stage as text says; the binary forms are read in their own tests."""
+    for each, note in ((scene, b"lengths are in metres"), (free_unit, b"scale of the photo is not known")):
+        path = tmp_path / f"a{suffix}"
+        save(each, path)
+        data = path.read_bytes().replace(b"\r\n", b"\n")
+        if suffix in {".usdc", ".usdz"}:
+            data = Usd.Stage.Open(str(path)).ExportToString().encode()
+        assert note in data
+        assert UNITS.get(suffix, b"") in data

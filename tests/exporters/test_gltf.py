@@ -188,3 +188,32 @@ def test_faces_alone_use_no_extension(no_lines, tmp_path):
     glb = Glb(tmp_path / "a.glb")
     assert "extensionsUsed" not in glb.tree
     assert [material["name"] for material in glb.tree["materials"]] == ["face"]
+
+
+def test_lines_can_be_tubes_with_the_same_names_colours_and_ids(scene, model, glb, tmp_path):
+    export(scene, tmp_path / "a.glb", options={"tubes": True})
+    thick = Glb(tmp_path / "a.glb")
+    assert sorted(node["name"] for node in thick.tree["nodes"]) == sorted(node["name"] for node in glb.tree["nodes"])
+    for group in model.groups:
+        primitive = thick.primitive(group.name)
+        assert primitive["mode"] == TRIANGLES
+        assert thick.material(group.name) == glb.material(group.name)
+        middles = thick.positions(group.name).reshape(len(group.ids), 2, -1, 3).mean(axis=2)
+        np.testing.assert_allclose(middles, group.ends, atol=1e-5)
+        numbers = thick.array(primitive["attributes"]["_LINEID"]).reshape(len(group.ids), -1)
+        np.testing.assert_array_equal(numbers, np.tile(group.ids[:, None], numbers.shape[1]))
+        extras = [each.tree["meshes"][each.node(group.name)["mesh"]]["extras"] for each in (thick, glb)]
+        assert extras[0] == extras[1]
+    for face in model.faces:
+        assert thick.material(face.name) == glb.material(face.name)
+
+
+def test_tubes_are_seen_one_to_four_pixels_wide(scene, model, tmp_path):
+    export(scene, tmp_path / "a.glb", options={"tubes": True})
+    thick = Glb(tmp_path / "a.glb")
+    for group in model.groups:
+        rings = thick.positions(group.name).reshape(-1, 6, 3)
+        middle = rings.mean(axis=1)
+        width = 2 * np.linalg.norm(rings - middle[:, None], axis=2).mean(axis=1)
+        pixels = width * scene.camera.focal / (middle @ scene.rotation[2])
+        assert 1 < np.median(pixels) < 4, group.name

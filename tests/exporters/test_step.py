@@ -141,6 +141,20 @@ def test_the_camera_is_a_point_where_it_stood(read):
     assert not read.parts["camera"].edges()
 
 
+def test_sewn_faces_that_share_edges_are_one_shell(scene, model, tmp_path):
+    export(scene, tmp_path / "a.step", options={"sewn": True})
+    sewn = Reader(tmp_path / "a.step")
+    groups = {group.name: "lines" for group in model.groups}
+    assert sewn.parents == {"linecad": None, "lines": "linecad", "faces": "linecad", "camera": "linecad"} | groups
+    part = sewn.parts["faces"]
+    assert part.is_valid
+    assert len(part.faces()) == len(model.faces)
+    area = sum(signed_area(ring[:, face.in_plane]) for face in model.faces for ring in face.rings)
+    assert sum(face.area for face in part.faces()) == pytest.approx(area * MILLIMETRES**2, rel=1e-9)
+    # The two walls of the house and the ground hang together, and so do the two faces of the canopy.
+    assert sorted(len(shell.faces()) for shell in part.shells() if len(shell.faces()) > 1) == [2, 3]
+
+
 def test_it_says_millimetres_and_nothing_of_this_run(path):
     text = path.read_text()
     assert "SI_UNIT(.MILLI.,.METRE.)" in text

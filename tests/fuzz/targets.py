@@ -6,6 +6,7 @@ the small corpus that is kept.
 
 import io
 import json
+import struct
 import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -17,6 +18,7 @@ from PIL import Image
 from linecad.batch.job import Figures, Outcome
 from linecad.batch.record import Row, parse_row, row_line
 from linecad.calibration import read_calibration
+from linecad.correctionsfile import corrections_from_json, corrections_to_json
 from linecad.errors import InputError
 from linecad.photo import read_photo
 from linecad.scenefile import scene_from_json, scene_to_json
@@ -82,6 +84,32 @@ def read_record_bytes(data: bytes, _folder: Path) -> None:
         return
     assert not any(Path(file).is_absolute() or ".." in Path(file).parts for file in (row.name, *row.outcome.files))
     assert parse_row(row_line(row)) is not None
+
+
+def read_corrections_bytes(data: bytes, _folder: Path) -> None:
+    """A corrections file; whatever is accepted can be written, and reads back as the same text."""
+    try:
+        corrections = corrections_from_json(data.decode("utf-8-sig", "surrogatepass"))
+    except (InputError, UnicodeDecodeError):  # read_corrections reports text that is not UTF-8
+        return
+    text = corrections_to_json(corrections)
+    assert corrections_to_json(corrections_from_json(text)) == text
+
+
+def read_fspy_bytes(data: bytes, folder: Path) -> None:
+    """An fSpy project as a camera file."""
+    path = folder / "camera.fspy"
+    path.write_bytes(data)
+    try:
+        calibration = read_calibration(path)
+    except InputError:
+        return
+    assert np.isfinite(calibration.square_matrix).all()
+
+
+def read_fspy_state(data: bytes, folder: Path) -> None:
+    """The JSON inside an fSpy project, without the header that random bytes never get right."""
+    read_fspy_bytes(struct.pack("<4sIII", b"fspy", 1, len(data), 0) + data, folder)
 
 
 def image_bytes(kind: str, mode: str = "RGB", **options: Any) -> bytes:
@@ -153,6 +181,43 @@ def record_seeds() -> Iterator[bytes]:
     yield row_line(Row("other.jpg", "1" * 64, "f" * 64, "other", failed, "2026-11-21T12:00:00+00:00"))
 
 
+def corrections_seeds() -> Iterator[bytes]:
+    """One edit of every kind."""
+    first = {"segment": [[10.0, 20.0], [300.5, 40.0]], "axis": "x"}
+    second = {"segment": [[10.0, 20.0], [12.5, 240.0]], "axis": "z"}
+    edits = [
+        {"op": "label", "lines": [first, second], "pixel": [10.0, 20.0], "value": "real"},
+        {"op": "label", "lines": [first, second], "pixel": [10.0, 20.0], "value": None},
+        {"op": "axis", "line": first, "axis": "y"},
+        {"op": "delete", "line": second},
+        {"op": "split", "line": first, "at": [100.0, 26.0]},
+        {"op": "join", "lines": [first, first]},
+        {"op": "draw", "line": second},
+        {"op": "length", "line": second, "metres": 2.5},
+        {"op": "frame", "lines": [first, second]},
+    ]
+    head = {"format": "linecad-corrections", "version": 1, "photo": "facade.jpg", "width": 640, "height": 480}
+    yield json.dumps({**head, "edits": edits, "undone": edits[:1]}).encode()
+
+
+def fspy_states() -> Iterator[bytes]:
+    """States with a focal length, with an angle alone, and without a camera."""
+    camera = {
+        "principalPoint": {"x": 0.01, "y": -0.02}, "relativeFocalLength": 1.5, "horizontalFieldOfView": 1.0,
+        "imageWidth": SIDE, "imageHeight": 48,
+    }  # fmt: skip
+    yield json.dumps({"cameraParameters": camera}).encode()
+    del camera["relativeFocalLength"]
+    yield json.dumps({"cameraParameters": camera}).encode()
+    yield json.dumps({"cameraParameters": None}).encode()
+
+
+def fspy_seeds() -> Iterator[bytes]:
+    """Whole projects, with a photo that is none."""
+    for state in fspy_states():
+        yield struct.pack("<4sIII", b"fspy", 1, len(state), 10) + state + b"0123456789"
+
+
 def scene_seeds() -> Iterator[bytes]:
     """A scene of three lines, one crossing and one plane with a face and a hole."""
     square = [[0.0, 5.0, 0.0], [4.0, 5.0, 0.0], [4.0, 5.0, 3.0], [0.0, 5.0, 3.0]]
@@ -202,6 +267,9 @@ def scene_seeds() -> Iterator[bytes]:
 TARGETS = {
     "scene": Target(read_scene_bytes, True, scene_seeds, 8192),
     "camera": Target(read_camera_bytes, True, camera_seeds, 2048),
+    "corrections": Target(read_corrections_bytes, True, corrections_seeds, 8192),
+    "fspy": Target(read_fspy_bytes, False, fspy_seeds, 2048),
+    "fspystate": Target(read_fspy_state, True, fspy_states, 2048),
     "record": Target(read_record_bytes, True, record_seeds, 4096),
     "image": Target(read_image_bytes, False, image_seeds, 32768),
 }

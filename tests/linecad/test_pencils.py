@@ -12,9 +12,9 @@ from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
+from linecad.finding import find_lines
 from linecad.geometry import angles_to, central_camera, rotation_about, vanishing_points
 from linecad.pencils import START, _runs, find_pencil_lines, least_evidence
-from linecad.pipeline import find_lines
 from linecad.scene import Camera, ManhattanFrame
 from linecad.segments import find_segments
 

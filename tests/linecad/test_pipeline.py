@@ -10,19 +10,13 @@ import pytest
 
 from linecad.errors import ReconstructionError
 from linecad.evaluation.frames import rotation_error
+from linecad.finding import SHORT_REACH, ReconstructOptions, find_lines
 from linecad.geometry import project
 from linecad.graph import build_line_graph
 from linecad.lifting import lift
 from linecad.photo import Photo, read_photo
-from linecad.pipeline import (
-    SHORT_REACH,
-    TYPICAL_DEPTH,
-    ReconstructOptions,
-    _scene,
-    _within_groups,
-    find_lines,
-    reconstruct,
-)
+from linecad.pipeline import reconstruct
+from linecad.placing import TYPICAL_DEPTH, _scene, _within_groups
 from linecad.scene import Camera, ManhattanFrame, Segments, Solution
 from linecad.scenefile import read_scene, write_scene
 from solver.problem import SolveOptions

@@ -5,9 +5,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from linecad.finding import SHORT_REACH, FoundLines, ReconstructOptions, connect
 from linecad.geometry import project
 from linecad.photo import Photo
-from linecad.pipeline import FoundLines, ReconstructOptions, connect, place
+from linecad.placing import place
 from linecad.scene import Camera, ManhattanFrame, Segments
 from solver.problem import solve
 
@@ -37,12 +38,15 @@ def street():
     segments = Segments(project(ends, camera.matrix, frame.rotation), [line[0] for line in lines])
     photo = Photo("two houses.png", np.zeros((2160, 3840, 3), np.uint8), camera)
     found = FoundLines(camera, frame, segments, ())
-    options = ReconstructOptions(collinear=False)
+    options = ReconstructOptions(collinear=False, reach=SHORT_REACH)
     _, graph = connect(found, options)
     assert len(graph.segments) == len(lines)
     scene = place(photo, found, graph, solve(graph, options.solve), options)
     part = np.repeat(np.arange(4), [len(part) for part in parts])
-    return SimpleNamespace(scene=scene, ends=ends, part=part)
+    made = segments.ends.mean(axis=1)  # grouping brings the lines into another order
+    order = np.linalg.norm(scene.lines.segment.mean(axis=1)[:, None] - made, axis=2).argmin(axis=1)
+    assert sorted(order.tolist()) == list(range(len(lines)))
+    return SimpleNamespace(scene=scene, ends=ends[order], part=part[order])
 
 
 def test_each_house_is_one_component(street):

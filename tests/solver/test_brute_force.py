@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 import solver.gain
 import solver.separation
-from solver.problem import FAMILIES, FORMULATIONS, SolveOptions, solve
+from linecad.errors import ContradictionError
+from solver.problem import BACKENDS, FAMILIES, FORMULATIONS, SolveOptions, solve
 from solver.start import Starter
 
 ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
@@ -225,3 +226,49 @@ def test_the_drawn_problems_put_every_family_to_the_test(build_graph, family):
 
     search = settings(max_examples=500, deadline=None, phases=[Phase.generate], database=None)
     find(problems(), is_decided_by_family, settings=search, random=Random(0))
+
+
+@st.composite
+def problems_with_facts(draw):
+    """The same with some crossings called real or fake."""
+    graph, options = draw(problems(most_edges=8))
+    few = draw(st.booleans())  # with nearly all called real, many contradict each other
+    words = draw(
+        st.lists(st.sampled_from(["", "real", "fake"] if few else ["real"] * 7 + [""]), min_size=8, max_size=8)
+    )
+    return graph, options, words
+
+
+def said(words, graph, word):
+    return tuple(edge for edge in range(len(graph.edges)) if words[edge] == word)
+
+
+@pytest.mark.parametrize("backend", BACKENDS)
+@pytest.mark.parametrize("formulation", FORMULATIONS)
+@given(problem=problems_with_facts())
+@settings(max_examples=60, deadline=None)
+def test_with_facts_too_and_a_contradiction_names_a_smallest_set(build_graph, formulation, backend, problem):
+    graph = build_graph(**problem[0])
+    real = tuple(edge for edge in said(problem[2], graph, "real") if graph.possible[edge])
+    fake = said(problem[2], graph, "fake")
+    options = SolveOptions(formulation=formulation, backend=backend, real=real, fake=fake, **problem[1])
+    value = values(graph, options)
+    subsets = all_subsets(len(graph.edges))
+    obeys = subsets[:, list(real)].all(axis=1) & ~subsets[:, list(fake)].any(axis=1)
+    allowed = np.isfinite(value)
+    if (allowed & obeys).any():
+        solution = solve(graph, options)
+        assert solution.objective == pytest.approx(value[obeys].max(), abs=1e-6)
+        assert solution.connected[list(real)].all()
+        assert not solution.connected[list(fake)].any()
+        return
+    with pytest.raises(ContradictionError) as raised:
+        solve(graph, options)
+    edge = edge_table(graph, np.ones(len(graph.edges), bool))
+    named = [edge[pair] for pair in raised.value.crossings]
+    assert set(named) <= set(real)
+    assert set(raised.value.lines) == {line for pair in raised.value.crossings for line in pair}
+    assert not (allowed & subsets[:, named].all(axis=1)).any()
+    for left_out in named:
+        rest = [e for e in named if e != left_out]
+        assert (allowed & subsets[:, rest].all(axis=1)).any()

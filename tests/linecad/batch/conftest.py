@@ -9,7 +9,7 @@ import pytest
 from linecad.batch.job import THUMBNAILS, Figures, Job, Limits, Outcome
 from linecad.batch.run import Plan
 from linecad.conversion import Conversion
-from linecad.pipeline import ReconstructOptions
+from linecad.finding import ReconstructOptions
 from solver.problem import SolveOptions
 
 SAMPLES = Path(__file__).resolve().parents[3] / "samples"

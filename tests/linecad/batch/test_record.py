@@ -11,7 +11,7 @@ from linecad.batch.job import STATUSES, Figures, Outcome
 from linecad.batch.record import NAME, Record, Row, options_hash, parse_row, row_line, settled
 from linecad.conversion import Conversion
 from linecad.errors import InputError, OutputError
-from linecad.pipeline import ReconstructOptions
+from linecad.finding import ReconstructOptions
 from solver.problem import SolveOptions
 
 FIGURES = Figures(20, 30, 25, 4, 5, None, "optimal", ("a note",))

@@ -14,8 +14,9 @@ from linecad.evaluation.planes import score_planes
 from linecad.evaluation.references import Reference, reference_of
 from linecad.evaluation.report import badness, page, worst
 from linecad.evaluation.tables import all_tables
+from linecad.finding import find_lines
 from linecad.geometry import world_rays
-from linecad.pipeline import find_lines, reconstruct
+from linecad.pipeline import reconstruct
 from linecad.scene import Face, Plane
 
 SETTINGS = Settings(time_limit_s=20.0, pictures=True)

@@ -1,0 +1,74 @@
+"""Wavefront OBJ with its material library, in metres, z up: https://paulbourke.net/dataformats/obj/
+
+OBJ has no field for the unit, so a comment says it; programs that count in millimetres, such as FreeCAD, read a metre
+as a millimetre. A material has the name of its picture, which says what is in it: a library that holds the materials
+of two versions of a file serves both.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from exporters.faces import triangulate
+from exporters.model import FlatFace, LineGroup, build_model
+from exporters.textures import Textures
+from linecad.scene import Float, Scene
+
+
+def write(scene: Scene, path: Path, textures: Textures | None = None, library: str = "") -> None:
+    """Write the scene as OBJ to `path`; OSError where that fails.
+
+    With textures, `library` is the name of the file beside it that `material_library` makes the text of.
+    """
+    model = build_model(scene)
+    rows = [f"# linecad: reconstruction of {model.photo}, z up; {model.unit_note}"]
+    if textures is not None and model.faces:
+        rows.append(f"mtllib {library}")
+    first = 1  # OBJ counts vertices from 1, through all objects
+    for face in model.faces:
+        rows += _face(face, first, textures)
+        first += len(face.vertices)
+    for group in model.groups:
+        rows += _lines(group, first)
+        first += 2 * len(group.ids)
+    path.write_text("\n".join(rows) + "\n", encoding="utf-8", newline="\n")
+
+
+def material_library(textures: Textures, folder: str) -> str:
+    """The text of an MTL file for pages in `folder` beside it."""
+    rows = ["# linecad: the photo on the faces, as it is"]
+    for page in textures.pages:
+        rows += [f"newmtl {_material(page.name)}", "Ka 1 1 1", "Kd 1 1 1", "Ks 0 0 0", "illum 0"]
+        rows += [f"map_Kd {folder}/{page.name}"]
+    return "\n".join(rows) + "\n"
+
+
+def _material(page_name: str) -> str:
+    return Path(page_name).stem
+
+
+def _face(face: FlatFace, first: int, textures: Textures | None) -> list[str]:
+    rows = [f"o {face.name}", *_points(face.vertices)]
+    if textures is None:
+        corner = "{0}"
+    else:
+        corner = "{0}/{0}"
+        rows += [f"vt {s:.8f} {t:.8f}" for s, t in textures.coordinates(face).tolist()]
+        rows.append(f"usemtl {_material(textures.pages[textures.page(face)].name)}")
+    rows += [
+        "f " + " ".join(corner.format(number) for number in three) for three in (triangulate(face) + first).tolist()
+    ]
+    return rows
+
+
+def _lines(group: LineGroup, first: int) -> list[str]:
+    """A group as an object of two-point lines; the comment above each line gives its id."""
+    rows = [f"o {group.name}", *_points(group.ends.reshape(-1, 3))]
+    starts = np.arange(first, first + 2 * len(group.ids), 2).tolist()
+    for number, start in zip(group.ids.tolist(), starts, strict=True):
+        rows += [f"# line {number}", f"l {start} {start + 1}"]
+    return rows
+
+
+def _points(points: Float) -> list[str]:
+    return [f"v {x:.8f} {y:.8f} {z:.8f}" for x, y, z in points.tolist()]

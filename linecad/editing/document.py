@@ -1,0 +1,199 @@
+"""The state of a session as the JSON that the page draws."""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+
+from exporters.faces import triangulate
+from exporters.formats import FORMATS, SCENE_FILE
+from exporters.model import FlatFace, build_model
+from linecad.editing.session import Model, Now
+from linecad.editing.tiles import TILE
+from linecad.errors import OutputError
+from linecad.scene import AXES, Face, Scene
+
+NOT_IN_SPACE: dict[str, object] = {"ends": None, "boundary": False, "component": -1, "confidence": None}
+
+
+def document_of(now: Now, levels: int, is_saved: bool) -> dict[str, object]:
+    """The answer to GET /api/state; `levels` of the photo's tiles."""
+    camera = now.found.camera
+    scene = None if now.model is None else now.model.scene
+    labelled = sum(label is not None for label in now.lines.said.label)
+    return {
+        "version": now.version,
+        "photo": {
+            "name": now.photo.name, "width": camera.width, "height": camera.height, "tile": TILE, "levels": levels,
+        },
+        "K": camera.matrix.tolist(),
+        "R_cam_from_world": now.found.frame.rotation.tolist(),
+        "metres_per_unit": None if scene is None else scene.metres_per_unit,
+        "lines": _lines(now),
+        "crossings": _crossings(now),
+        "planes": [] if now.model is None else _planes(now, now.model),
+        "notes": list(now.found.notes if scene is None else scene.notes),
+        "solve": solve_of(now),
+        "undo": len(now.corrections.edits),
+        "redo": len(now.corrections.undone),
+        "contradiction": (
+            None
+            if now.contradiction is None
+            else {
+                "lines": list(now.contradiction.lines),
+                "crossings": list(now.contradiction.crossings),
+                "text": now.contradiction.text,
+            }
+        ),
+        "labelling": {"done": labelled, "total": len(now.lines.crossings)},
+        "saved": is_saved,
+        "formats": formats(),
+    }  # fmt: skip
+
+
+def solve_of(now: Now) -> dict[str, object]:
+    """How the solve stands: the one that runs, else the last one."""
+    known: dict[str, object] = {"objective": None, "bound": None, "gap": None, "seconds": None, "status": None}
+    if now.progress is not None and now.is_running:
+        at = now.progress
+        known |= {"objective": at.objective, "bound": _finite(at.bound), "gap": _finite(at.gap), "seconds": at.seconds}
+    elif now.model is not None and not now.is_running:
+        told = now.model.scene.solve
+        known |= {
+            "objective": told.objective,
+            "bound": _finite(told.bound),
+            "gap": _finite(told.gap),
+            "seconds": told.seconds,
+            "status": told.status,
+        }
+    return {
+        "state": "running" if now.is_running else "idle",
+        "solved_version": None if now.model is None else now.model.version,
+        "fresh": now.is_fresh,
+        "error": now.error or None,
+        **known,
+    }
+
+
+def formats() -> list[dict[str, str]]:
+    """What can be exported."""
+    scene = {"name": SCENE_FILE[1:], "label": "the scene file: everything that was found out"}
+    return [scene, *({"name": suffix[1:], "label": row.phrase} for suffix, row in FORMATS.items())]
+
+
+def _lines(now: Now) -> list[dict[str, object]]:
+    graph, corrected = now.lines.graph, now.lines.corrected
+    origin = dict(zip(corrected.ids.tolist(), corrected.origin, strict=True))
+    in_space = {} if now.model is None else _in_space(now.model.scene)
+    return [
+        {
+            "id": number,
+            "axis": AXES[axis],
+            "segment": ends.tolist(),
+            **in_space.get((axis, ends.tobytes()), NOT_IN_SPACE),
+            "origin": origin[number],
+        }
+        for number, axis, ends in zip(now.lines.ids, graph.axis.tolist(), graph.segments.ends, strict=True)
+    ]
+
+
+@lru_cache(maxsize=2)
+def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
+    """What a scene says about each line, by axis and segment."""
+    lines = scene.lines
+    return {
+        look: {
+            "ends": lines.ends[row].tolist(),
+            "boundary": bool(lines.is_boundary[row]),
+            "component": int(lines.component[row]),
+            "confidence": str(lines.confidence[row]),
+        }
+        for look, row in _rows(scene).items()
+    }
+
+
+def _crossings(now: Now) -> list[dict[str, object]]:
+    graph, said, ids = now.lines.graph, now.lines.said, now.lines.ids
+    real = {} if now.model is None else now.model.real
+    changed = frozenset() if now.model is None else now.model.changed
+    rows = zip(
+        now.lines.crossings, graph.edges.tolist(), graph.kind.tolist(), graph.crossing.tolist(), said.label, strict=True
+    )
+    return [
+        {
+            "id": crossing,
+            "lines": [ids[i], ids[j]],
+            "kind": kind,
+            "pixel": pixel,
+            "real": real.get(crossing, False),
+            "label": label,
+            "changed": crossing in changed,
+        }
+        for crossing, (i, j), kind, pixel, label in rows
+    ]
+
+
+def _planes(now: Now, model: Model) -> list[dict[str, object]]:
+    """The planes as in the scene file, with the ids of the page's lines and triangles for each face."""
+    scene = model.scene
+    by_look = {
+        (axis, ends.tobytes()): number
+        for number, axis, ends in zip(
+            now.lines.ids, now.lines.graph.axis.tolist(), now.lines.graph.segments.ends, strict=True
+        )
+    }
+    number_of = {int(scene.lines.id[row]): by_look[look] for look, row in _rows(scene).items() if look in by_look}
+    weak = set(scene.lines.id[scene.lines.confidence == "weak"].tolist())
+    triangles = _triangles(scene)
+    return [
+        {
+            "id": plane.id,
+            "axis": AXES[plane.axis],
+            "offset": plane.offset,
+            "lines": [number_of[line] for line in plane.lines if line in number_of],
+            "faces": [
+                {**triangles[face.id], "weak": bool(plane.lines) and weak.issuperset(plane.lines)}
+                for face in plane.faces
+                if face.id in triangles
+            ],
+        }
+        for plane in scene.planes
+    ]
+
+
+@lru_cache(maxsize=2)
+def _triangles(scene: Scene) -> dict[int, dict[str, object]]:
+    """Of each face by its id: rings and triangles, indices into the points of all rings in their order."""
+    flat = {face.id: face for face in build_model(scene).faces}
+    found: dict[int, dict[str, object]] = {}
+    for _, face in scene.faces:
+        try:
+            indices = triangulate(flat[face.id])
+        except OutputError:  # a face that cannot be triangulated cannot be drawn; exports say what is wrong with it
+            continue
+        outline, *holes = _turned_rings(face, flat[face.id])
+        found[face.id] = {"id": face.id, "outline": outline, "holes": holes, "triangles": indices.tolist()}
+    return found
+
+
+def _turned_rings(face: Face, flat: FlatFace) -> list[list[list[float]]]:
+    """The rings of a face in the direction that its triangles count them in."""
+    return [
+        (ring if _same_direction(ring, turned) else ring[::-1]).tolist()
+        for ring, turned in zip((face.outline, *face.holes), flat.rings, strict=True)
+    ]
+
+
+def _same_direction(ring: np.ndarray, turned: np.ndarray) -> bool:
+    scale = np.linalg.norm(turned[0]) / max(np.linalg.norm(ring[0]), np.finfo(float).tiny)
+    return bool(np.abs(ring * scale - turned).max() <= np.abs(ring[::-1] * scale - turned).max())
+
+
+def _rows(scene: Scene) -> dict[tuple[int, bytes], int]:
+    """The row of each line of a scene by axis and segment."""
+    looks = zip(scene.lines.axis.tolist(), scene.lines.segment, strict=True)
+    return {(axis, ends.tobytes()): row for row, (axis, ends) in enumerate(looks)}
+
+
+def _finite(number: float) -> float | None:
+    return number if math.isfinite(number) else None

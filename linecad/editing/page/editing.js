@@ -1,0 +1,156 @@
+// Edits: each is shown at once, sent to the server one after the other, and replaced by what the server answers.
+
+import { RequestError } from "./server.js";
+
+/** The state that an edit most likely leads to; the server's answer, a moment later, decides. */
+export function expected(state, edit) {
+  switch (edit.op) {
+    case "label":
+      return relabelled({
+        ...state,
+        crossings: replaced(state.crossings, edit.crossing, (crossing) => ({ ...crossing, label: edit.value })),
+      });
+    case "axis":
+      return { ...state, lines: replaced(state.lines, edit.line, (line) => ({ ...line, axis: edit.axis })) };
+    case "delete":
+      return {
+        ...state,
+        lines: state.lines.filter((line) => line.id !== edit.line),
+        crossings: state.crossings.filter((crossing) => !crossing.lines.includes(edit.line)),
+      };
+    default:
+      return state; // what the others lead to is geometry, which the server computes
+  }
+}
+
+function relabelled(state) {
+  const done = state.crossings.filter((crossing) => crossing.label !== null).length;
+  return { ...state, labelling: { ...state.labelling, done } };
+}
+
+function replaced(list, id, change) {
+  return list.map((each) => (each.id === id ? change(each) : each));
+}
+
+/** A new state, with the very lists of what is shown where they say the same: who draws them sees it at once. */
+function keepingWhatIsSame(state, shown) {
+  const lists = ["lines", "crossings", "planes", "K", "R_cam_from_world"];
+  const kept = lists.filter((name) => shown && JSON.stringify(state[name]) === JSON.stringify(shown[name]));
+  return { ...state, ...Object.fromEntries(kept.map((name) => [name, shown[name]])) };
+}
+
+/** The queue of what is to be sent. Nothing is sent before the answer to what went before it. */
+export class Editing {
+  #queue = []; // {path, edit, tried}
+  #answered = null; // the last state that the server sent
+  #sending = false;
+  #idle = [];
+
+  constructor(server, store, tell) {
+    this.server = server;
+    this.store = store;
+    this.tell = tell;
+  }
+
+  /** Take over a state that the server sent. */
+  accept(state) {
+    this.#answered = keepingWhatIsSame(state, this.store.state);
+    this.#show();
+  }
+
+  /** Make an edit as in the list of `/api/edit`; a promise of whether the server took it. */
+  edit(edit) {
+    return this.#push("edit", edit);
+  }
+
+  undo() {
+    return this.#push("undo", null);
+  }
+
+  redo() {
+    return this.#push("redo", null);
+  }
+
+  /** Start a search, after all edits before it have been taken. */
+  solve() {
+    return this.#push("solve", null);
+  }
+
+  /** A promise that everything has been answered. */
+  settled() {
+    return this.#queue.length === 0 ? Promise.resolve() : new Promise((done) => this.#idle.push(done));
+  }
+
+  async refresh() {
+    this.accept(await this.server.get("state"));
+  }
+
+  #push(path, edit) {
+    if (!this.store.owner) {
+      this.tell("Another tab edits this photo. Take over first.", "warning");
+      return Promise.resolve(false);
+    }
+    return new Promise((done) => {
+      this.#queue.push({ path, edit, done, again: false });
+      this.#show();
+      this.#send();
+    });
+  }
+
+  #show() {
+    const state = this.#queue.reduce((shown, { edit }) => (edit ? expected(shown, edit) : shown), this.#answered);
+    this.store.set({ state, busy: this.#queue.length, saved: state.saved, solve: state.solve });
+  }
+
+  async #send() {
+    if (this.#sending) return;
+    this.#sending = true;
+    try {
+      while (this.#queue.length > 0) {
+        const taken = await this.#sendFirst(this.#queue[0]);
+        if (taken !== undefined) this.#queue.shift().done(taken);
+        this.#show();
+      }
+    } finally {
+      this.#sending = false;
+    }
+    for (const done of this.#idle.splice(0)) done();
+  }
+
+  /** Whether the server took an entry; undefined where it must be sent again, on top of a newer state. */
+  async #sendFirst(entry) {
+    const body = { base_version: this.#answered.version, ...(entry.edit && { edit: entry.edit }) };
+    try {
+      const answer = await this.server.post(entry.path, body);
+      // A search may be over before anyone asks for it: it counts as running until its end has been heard of.
+      this.#answered =
+        entry.path === "solve"
+          ? { ...this.#answered, solve: { state: "running" } }
+          : keepingWhatIsSame(answer, this.store.state);
+      return true;
+    } catch (error) {
+      if (!(error instanceof RequestError)) throw error;
+      if (error.status !== 409) {
+        this.tell(error.message, "error");
+        return false;
+      }
+      await this.#readAgain();
+      // A solve that ended meanwhile made the version old, not the edit. What undo would undo is another thing now.
+      if (entry.edit && !entry.again) {
+        entry.again = true;
+        return undefined;
+      }
+      this.tell("The model changed meanwhile; look at it and try again.", "warning");
+      return false;
+    }
+  }
+
+  async #readAgain() {
+    try {
+      this.#answered = keepingWhatIsSame(await this.server.get("state"), this.store.state);
+    } catch (error) {
+      if (!(error instanceof RequestError)) throw error;
+      this.tell(error.message, "error");
+    }
+  }
+}

@@ -1,0 +1,219 @@
+// The strip below the photo: what is selected or under the pointer, and what can be done with it.
+
+import { counted, element, keyButton } from "./dom.js";
+import { isReal } from "./store.js";
+import { fixesFrame } from "./tools.js";
+
+const KINDS = { L: "L crossing", T: "T crossing", X: "X crossing", collinear: "collinear pair" };
+const ORIGINS = { found: "", drawn: "drawn by you", split: "split by you", joined: "joined by you" };
+
+export class Inspector {
+  constructor(store, actions, tools) {
+    Object.assign(this, { store, actions, tools });
+    this.panel = document.querySelector("#inspector");
+    const shown = ["state", "selection", "hover", "tool", "labelling", "owner"];
+    store.listen((changed) => shown.some((name) => changed.has(name)) && this.#renew());
+    actions.draft.listen(() => this.#renew());
+    this.#renew();
+  }
+
+  /** Show what is now; who came here by keys stays on the button where they were. */
+  #renew() {
+    const buttons = () => [...this.panel.querySelectorAll("button")];
+    const focused = buttons().indexOf(document.activeElement);
+    this.#show();
+    if (focused >= 0) buttons()[focused]?.focus();
+  }
+
+  #show() {
+    const { store } = this;
+    this.panel.classList.toggle("labelling", store.labelling);
+    if (store.labelling) return this.panel.replaceChildren(...this.#labelling());
+    if (store.tool === "frame") return this.panel.replaceChildren(...this.#frame());
+    if (store.tool === "draw") return this.panel.replaceChildren(...this.#drawing());
+    const thing = store.selection ?? store.hover;
+    const found = store.find(thing);
+    if (!found) return this.panel.replaceChildren(...this.#summary());
+    this.panel.replaceChildren(...(thing.kind === "line" ? this.#line(found) : this.#crossing(found)));
+  }
+
+  #summary() {
+    const { lines, crossings, planes } = this.store.state;
+    const faces = planes.reduce((count, plane) => count + (plane.faces ?? []).length, 0);
+    const real = crossings.filter(isReal).length;
+    const text = [
+      counted(lines.length, "line"),
+      `${counted(crossings.length, "crossing")}, ${real.toLocaleString("en")} of them real`,
+      counted(planes.length, "plane"),
+      counted(faces, "face"),
+    ];
+    return [element("p", {}, text.join(" · ")), this.#legend()];
+  }
+
+  #legend() {
+    const entry = (name, text) => element("span", { class: `legend ${name}` }, text);
+    return element(
+      "p",
+      { class: "quiet legends" },
+      entry("real", "real"),
+      entry("fake", "fake"),
+      entry("said", "you said so"),
+      entry("changed", "changed"),
+    );
+  }
+
+  #crossing(crossing) {
+    const said =
+      crossing.label === null ? "as the solver has it" : crossing.label === "unsure" ? "you are unsure" : "as you said";
+    const names = crossing.lines.map((id) => `${id} (${this.store.lines.get(id)?.axis ?? "gone"})`);
+    const changed = crossing.changed ? ", changed by the last solve" : "";
+    const text = element(
+      "p",
+      {},
+      element("strong", {}, isReal(crossing) ? "Real" : "Fake"),
+      `, ${said}${changed} · ${KINDS[crossing.kind] ?? crossing.kind} of lines ${names.join(" and ")}`,
+    );
+    const label = (value, name, key) =>
+      keyButton(name, key, () => this.actions.label(value, crossing), {
+        "aria-pressed": String(crossing.label === value),
+        disabled: !this.store.owner,
+      });
+    return [
+      text,
+      element(
+        "div",
+        { class: "buttons" },
+        label("real", "Real", "R"),
+        label("fake", "Fake", "F"),
+        label("unsure", "Unsure", "U"),
+        label(null, "Solver decides", "G"),
+      ),
+    ];
+  }
+
+  #line(line) {
+    const facts = [
+      line.boundary ? "boundary" : null,
+      line.confidence,
+      line.component > 0 ? `component ${line.component}` : null,
+      ORIGINS[line.origin],
+      this.#length(line),
+    ];
+    const text = element(
+      "p",
+      {},
+      element("strong", {}, `Line ${line.id}`),
+      ` along ${line.axis} · ${facts.filter(Boolean).join(" · ")}`,
+    );
+    const locked = { disabled: !this.store.owner };
+    const axis = (name) =>
+      keyButton(name, name.toUpperCase(), () => this.actions.axis(name), {
+        ...locked,
+        class: `axis ${name}`,
+        "aria-pressed": String(line.axis === name),
+        "aria-label": `Axis ${name}`,
+      });
+    return [
+      text,
+      element(
+        "div",
+        { class: "buttons" },
+        element("span", { class: "together", role: "group", "aria-label": "Axis" }, axis("x"), axis("y"), axis("z")),
+        keyButton("Length", "M", () => this.actions.openLength(line), locked),
+        keyButton("Delete", "Del", () => this.actions.remove(), locked),
+      ),
+    ];
+  }
+
+  #length(line) {
+    if (!line.ends) return "not in the model yet";
+    const units = Math.hypot(...line.ends[0].map((at, k) => at - line.ends[1][k]));
+    const metres = this.store.state.metres_per_unit;
+    return metres === null ? null : `${(units * metres).toPrecision(3)} m`;
+  }
+
+  #drawing() {
+    const { draft } = this.actions;
+    const axis = this.tools.forcedAxis ?? draft.proposal?.axis;
+    const how = this.tools.forcedAxis ? "fixed" : "proposed";
+    const text =
+      draft.points.length === 0
+        ? "Click where the line begins"
+        : axis
+          ? `Along ${axis}, ${how}; click where it ends`
+          : "Click where the line ends";
+    return [element("p", {}, text), this.#axisButtons(this.tools.forcedAxis)];
+  }
+
+  #axisButtons(current, ...more) {
+    const axis = (name) =>
+      keyButton(name, name.toUpperCase(), () => (this.tools.axis(name), this.#renew()), {
+        class: `axis ${name}`,
+        "aria-pressed": String(current === name),
+        "aria-label": `Axis ${name}`,
+      });
+    return element(
+      "div",
+      { class: "buttons" },
+      element("span", { class: "together", role: "group", "aria-label": "Axis" }, axis("x"), axis("y"), axis("z")),
+      ...more,
+    );
+  }
+
+  #frame() {
+    const { lines } = this.actions.draft;
+    const count = (axis) => `${axis} ${lines.filter((line) => line.axis === axis).length}`;
+    const text = `Lines drawn: ${["x", "y", "z"].map(count).join(", ")}. Two for each of two axes fix the frame.`;
+    const ready = fixesFrame(lines);
+    return [
+      element("p", {}, text),
+      this.#axisButtons(
+        this.tools.frameAxis,
+        keyButton("Use them", "Enter", () => this.tools.apply(), { class: "primary", disabled: !ready }),
+        keyButton("Cancel", "Esc", () => (this.actions.draft.clear(), this.store.set({ tool: "correct" }))),
+      ),
+    ];
+  }
+
+  #labelling() {
+    const { done, total } = this.store.state.labelling;
+    const crossing = this.store.selectedCrossing;
+    const progress = element(
+      "div",
+      { class: "labelled" },
+      element("progress", { max: Math.max(total, 1), value: done, "aria-label": "Labelled crossings" }),
+      element("span", {}, `${done} of ${total} labelled`),
+    );
+    if (!crossing) {
+      const text = done < total ? "No crossing is chosen." : "All crossings are labelled.";
+      return [
+        element("p", {}, element("strong", {}, text)),
+        element(
+          "div",
+          { class: "buttons" },
+          keyButton("Next", "N", () => this.actions.nextUnlabelled(), { disabled: done === total }),
+        ),
+        progress,
+      ];
+    }
+    const said =
+      crossing.label === null ? `Proposal: ${crossing.real ? "real" : "fake"}.` : `You said ${crossing.label}.`;
+    const label = (value, name, key) =>
+      keyButton(name, key, () => this.actions.labelAndGoOn(value), {
+        class: `large ${value}`,
+        "aria-pressed": String(crossing.label === value),
+      });
+    return [
+      element("p", {}, element("strong", {}, "Do these two lines meet in space? "), said),
+      element(
+        "div",
+        { class: "buttons" },
+        label("real", "Real", "R"),
+        label("fake", "Fake", "F"),
+        label("unsure", "Unsure", "U"),
+        keyButton("Next", "N", () => this.actions.nextUnlabelled()),
+      ),
+      progress,
+    ];
+  }
+}

@@ -1,0 +1,102 @@
+// What the page knows: the state that the server sent, with the edits under way laid over it, and what is seen here.
+
+/** The layers that can be switched off, in the order of their buttons; `key` is the digit that does it. */
+export const LAYERS = [
+  { name: "real", label: "Real", key: "1" },
+  { name: "fake", label: "Fake", key: "2" },
+  { name: "changed", label: "Changed", key: "3" },
+  { name: "x", label: "x", key: "4" },
+  { name: "y", label: "y", key: "5" },
+  { name: "z", label: "z", key: "6" },
+  { name: "faces", label: "Faces", key: "7" },
+];
+
+/**
+ * One value that all views draw. `set` stores fields and tells every listener the names of those that changed.
+ *
+ * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing", id}`.
+ */
+export class Store {
+  state = null;
+  lines = new Map(); // id -> line
+  crossings = new Map(); // id -> crossing
+  layers = Object.fromEntries(LAYERS.map(({ name }) => [name, true]));
+  hidden = false; // everything over the photo, while a key is held
+  hover = null;
+  selection = null;
+  tool = "correct";
+  labelling = false;
+  owner = true; // false in a second tab, which only looks
+  saved = true;
+  solve = { state: "idle" };
+  busy = 0; // edits that the server has not answered yet
+  texture = true; // the photo on the faces of the model
+  #listeners = [];
+
+  /** Call `listener` with a Set of names of fields after each change. */
+  listen(listener) {
+    this.#listeners.push(listener);
+  }
+
+  set(fields) {
+    const changed = new Set();
+    for (const [name, value] of Object.entries(fields)) {
+      if (this[name] === value || (isThing(value) && same(this[name], value))) continue;
+      this[name] = value;
+      changed.add(name);
+    }
+    if (changed.has("state")) {
+      this.lines = new Map(this.state.lines.map((line) => [line.id, line]));
+      this.crossings = new Map(this.state.crossings.map((crossing) => [crossing.id, crossing]));
+      for (const name of ["hover", "selection"]) {
+        if (this[name] && !this.find(this[name])) {
+          this[name] = null;
+          changed.add(name);
+        }
+      }
+    }
+    if (changed.size > 0) for (const listener of this.#listeners) listener(changed);
+  }
+
+  /** The line or crossing that a `{kind, id}` names, or undefined. */
+  find(thing) {
+    if (!thing) return undefined;
+    return (thing.kind === "line" ? this.lines : this.crossings).get(thing.id);
+  }
+
+  /** The selected line, or undefined when nothing or a crossing is selected. */
+  get selectedLine() {
+    return this.selection?.kind === "line" ? this.find(this.selection) : undefined;
+  }
+
+  /** The selected crossing, or undefined. */
+  get selectedCrossing() {
+    return this.selection?.kind === "crossing" ? this.find(this.selection) : undefined;
+  }
+
+  showsLine(line) {
+    return this.layers[line.axis];
+  }
+
+  showsCrossing(crossing) {
+    return this.layers[isReal(crossing) ? "real" : "fake"] || (this.layers.changed && crossing.changed);
+  }
+
+  toggleLayer(name) {
+    this.set({ layers: { ...this.layers, [name]: !this.layers[name] } });
+  }
+}
+
+/** Whether a crossing is to be real: a person's word goes before the model, which may be older. */
+export function isReal({ label, real }) {
+  return label === "real" || label === "fake" ? label === "real" : real;
+}
+
+function isThing(value) {
+  return value !== null && typeof value === "object" && "kind" in value && "id" in value;
+}
+
+/** Whether two of `{kind, id}` or null name the same thing. */
+export function same(one, other) {
+  return one === other || (one && other && one.kind === other.kind && one.id === other.id);
+}

@@ -1,0 +1,83 @@
+"""The work of `linecad edit`: a photo, its corrections file and the page, from the first look to the last save."""
+
+import signal
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import FrameType
+
+from linecad.corrections import Corrections
+from linecad.correctionsfile import check_belongs, read_corrections, write_corrections
+from linecad.editing.guard import HOST, new_token
+from linecad.editing.labelling import camera_of_labels, labels_to_json
+from linecad.editing.saving import Saver
+from linecad.editing.session import Session, ToSave
+from linecad.editing.solving import SolvingProcess
+from linecad.errors import EditorError
+from linecad.files import check_output, write_text_atomically
+from linecad.finding import ReconstructOptions
+from linecad.photo import Photo
+from linecad.segments import find_segments
+
+try:
+    from linecad.editing.server import Editor, listen, serve
+except ModuleNotFoundError as missing:
+    raise EditorError(
+        f"the page needs the library {missing.name}; install it with: pip install 'linecad[editor]'"
+    ) from missing
+
+
+@dataclass(frozen=True)
+class EditOptions:
+    """What a user can choose about the page."""
+
+    corrections: Path  # read if it is there, written on every change
+    port: int = 0  # 0: any free one
+    reconstruct: ReconstructOptions = field(default_factory=ReconstructOptions)
+    labels: Path | None = None  # written on every change, beside the photo
+    camera_file: Path | None = None  # the photo's calibration, which the labels name
+
+
+def edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], on_stage: Callable[[str], None]) -> None:
+    """Serve the page until Ctrl-C; `on_ready` is told its address, which holds the token.
+
+    Raises EditorError when it cannot be served, OutputError when the corrections cannot be saved, and
+    CorrectionsFileError or ReconstructionError for a file or a photo that cannot be used.
+    """
+    check_output(options.corrections)
+    corrections = Corrections(photo.name, photo.width, photo.height)
+    if options.corrections.exists():
+        corrections = read_corrections(options.corrections)
+        check_belongs(corrections, str(options.corrections), photo.width, photo.height)
+    listener = listen(options.port)
+    try:
+        on_stage("finding segments")
+        raw = find_segments(photo.grey)
+        on_stage("finding the Manhattan frame")
+        camera = camera_of_labels(photo, options.camera_file)
+
+        def write(newest: ToSave) -> None:
+            write_corrections(newest.corrections, options.corrections)
+            if options.labels is not None:
+                graph, said = newest.lines.graph, newest.lines.said
+                write_text_atomically(options.labels, labels_to_json(photo, camera, graph, said))
+
+        saver = Saver(write)
+        session = Session(photo, raw, options.reconstruct, corrections, saver.save)
+        solving = SolvingProcess(photo, options.reconstruct, session.hear, session.take)
+        try:
+            token, port = new_token(), listener.getsockname()[1]
+            app = Editor(session, solving, saver, camera).app(token, port)
+            solving.start(session.task(session.now().version))
+            signal.signal(signal.SIGTERM, _end)
+            serve(app, listener, lambda: on_ready(f"http://{HOST}:{port}/#{token}"))
+        finally:
+            solving.close()
+            saver.close()
+    finally:
+        listener.close()
+
+
+def _end(_number: int, _frame: FrameType | None) -> None:
+    """SIGTERM ends as Ctrl-C does, with everything saved."""
+    raise KeyboardInterrupt

@@ -1,0 +1,273 @@
+"""The server of the page: Starlette on 127.0.0.1, its routes and how it starts and ends."""
+
+import os
+import socket
+import tempfile
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol
+
+import uvicorn
+from starlette.applications import Starlette
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+from starlette.responses import JSONResponse, Response
+from starlette.routing import Route
+
+from exporters.formats import FORMATS, SCENE_FILE, export
+from linecad.editing.document import document_of, solve_of
+from linecad.editing.edits import proposal, read_edit
+from linecad.editing.guard import HOST, Guard, TooLargeError
+from linecad.editing.labelling import labels_to_json
+from linecad.editing.saving import Saver
+from linecad.editing.session import Session, StaleError, ToSave
+from linecad.editing.solving import Task
+from linecad.editing.tabs import Tabs
+from linecad.editing.tiles import Pyramid
+from linecad.errors import EditorError, LinecadError
+from linecad.scenefile import write_scene
+from linecad.strictjson import JsonError, Node, parse
+
+PAGE = Path(__file__).parent / "page"
+MEDIA_TYPES = {
+    ".html": "text/html; charset=utf-8",
+    ".js": "text/javascript; charset=utf-8",
+    ".css": "text/css; charset=utf-8",
+    ".svg": "image/svg+xml",
+}
+LABELS = "labels"  # beside the formats of scenes
+LONGEST_TAB = 100  # characters of a tab's name
+STOP_S = 3  # that open requests get when the server ends
+
+
+class Solver(Protocol):
+    """What solves tasks and tells the session."""
+
+    def start(self, task: Task) -> None:
+        """Solve this next."""
+
+    def stop(self) -> None:
+        """End with the best answer so far."""
+
+
+class Editor:
+    """The routes and what they work on."""
+
+    def __init__(self, session: Session, solving: Solver, saver: Saver[ToSave], camera: object = None) -> None:
+        """`camera` is what a labels file says about it (`linecad.editing.labelling.camera_of_labels`)."""
+        self.session, self.solving, self.saver, self.camera = session, solving, saver, camera
+        self.pyramid = Pyramid(session.photo.pixels)
+        self.tabs = Tabs(time.monotonic)
+        self.files = page_files()
+
+    def app(self, token: str, port: int) -> Guard:
+        """The whole application; `port` is the one that it listens on."""
+        routes = [
+            Route("/", self.index),
+            Route("/page/{name}", self.file),
+            Route("/api/state", self.state),
+            Route("/api/progress", self.progress),
+            Route("/api/tile/{level:int}/{column:int}/{row:int}", self.tile),
+            Route("/api/edit", _post(self.edit), methods=["POST"]),
+            Route("/api/undo", _post(self.undo), methods=["POST"]),
+            Route("/api/redo", _post(self.redo), methods=["POST"]),
+            Route("/api/propose", _post(self.propose), methods=["POST"]),
+            Route("/api/solve", _post(self.solve), methods=["POST"]),
+            Route("/api/stop", _post(self.stop), methods=["POST"]),
+            Route("/api/hello", _post(self.hello), methods=["POST"]),
+            Route("/api/next-unlabelled", self.next_unlabelled),
+            Route("/api/export/{name}", self.export),
+        ]
+        return Guard(Starlette(routes=routes), token, port)
+
+    async def index(self, _request: Request) -> Response:
+        """The page itself: no secret in it."""
+        return self._file("index.html")
+
+    async def file(self, request: Request) -> Response:
+        """A script, a style or the icon of the page; only names that were there at the start."""
+        return self._file(request.path_params["name"])
+
+    def _file(self, name: str) -> Response:
+        if name not in self.files:
+            return _error(404, "there is no such file")
+        return Response(self.files[name], media_type=MEDIA_TYPES[Path(name).suffix])
+
+    def state(self, _request: Request) -> Response:
+        """GET /api/state."""
+        return self._state()
+
+    def _state(self) -> Response:
+        return JSONResponse(document_of(self.session.now(), self.pyramid.levels, self.saver.is_saved))
+
+    def progress(self, _request: Request) -> Response:
+        """GET /api/progress: small, asked for several times a second."""
+        now = self.session.now()
+        return JSONResponse({"solve": solve_of(now), "version": now.version, "saved": self.saver.is_saved})
+
+    def tile(self, request: Request) -> Response:
+        """GET /api/tile/LEVEL/COL/ROW."""
+        at = request.path_params
+        data = self.pyramid.tile(at["level"], at["column"], at["row"])
+        return _error(404, "there is no such tile") if data is None else Response(data, media_type="image/jpeg")
+
+    def edit(self, body: Node) -> Response:
+        """POST /api/edit."""
+        self.session.edit(_base(body), lambda session: read_edit(body["edit"], session))
+        return self._state()
+
+    def undo(self, body: Node) -> Response:
+        """POST /api/undo."""
+        self.session.undo(_base(body))
+        return self._state()
+
+    def redo(self, body: Node) -> Response:
+        """POST /api/redo."""
+        self.session.redo(_base(body))
+        return self._state()
+
+    def propose(self, body: Node) -> Response:
+        """POST /api/propose: what a drawn line would be."""
+        ends, axis, snapped = proposal(body, self.session.editing)
+        return JSONResponse({"axis": "xyz"[axis], "ends": ends.tolist(), "snapped": list(snapped)})
+
+    def solve(self, body: Node) -> Response:
+        """POST /api/solve."""
+        task = self.session.task(_base(body))
+        self.solving.start(task)
+        return JSONResponse({"solving": task.number})
+
+    def stop(self, _body: Node) -> Response:
+        """POST /api/stop: the search ends with the best that it has."""
+        self.solving.stop()
+        return JSONResponse({})
+
+    def hello(self, body: Node) -> Response:
+        """POST /api/hello: whether a tab is the one that edits."""
+        tab, takes_over = body["tab"].text(), body.get("take_over")
+        if not 0 < len(tab) <= LONGEST_TAB:
+            raise body["tab"].wrong(f"a name of 1 to {LONGEST_TAB} characters")
+        leaving = body.get("leaving")
+        if leaving is not None and leaving.boolean():
+            self.tabs.leave(tab)
+            return JSONResponse({"owner": False})
+        return JSONResponse({"owner": self.tabs.hello(tab, takes_over is not None and takes_over.boolean())})
+
+    def next_unlabelled(self, request: Request) -> Response:
+        """GET /api/next-unlabelled?after=CROSSING."""
+        after = request.query_params.get("after", "")
+        if len(after) > len(str(2**53)) or not (after.isdecimal() or after == ""):
+            return _error(422, "after is no crossing")
+        return JSONResponse({"crossing": self.session.next_unlabelled(int(after) if after else None)})
+
+    def export(self, request: Request) -> Response:
+        """GET /api/export/FORMAT: the bytes that `linecad export` writes."""
+        if request.path_params["name"] == LABELS:
+            return self._labels()
+        suffix = "." + request.path_params["name"]
+        if suffix != SCENE_FILE and suffix not in FORMATS:
+            return _error(404, "there is no such format")
+        try:
+            data = self._exported(suffix)
+        except LinecadError as error:
+            return _error(422, str(error))
+        return self._attached(data, suffix)
+
+    def _labels(self) -> Response:
+        """GET /api/export/labels: what `linecad evaluate` reads."""
+        lines, photo = self.session.lines, self.session.photo
+        return self._attached(labels_to_json(photo, self.camera, lines.graph, lines.said).encode(), ".labels.json")
+
+    def _attached(self, data: bytes, ending: str) -> Response:
+        stem = Path(self.session.photo.name).stem
+        name = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in stem)
+        disposition = f'attachment; filename="{name or "scene"}{ending}"'
+        return Response(data, media_type="application/octet-stream", headers={"content-disposition": disposition})
+
+    def _exported(self, suffix: str) -> bytes:
+        scene = self.session.scene()
+        with tempfile.TemporaryDirectory(prefix="linecad-") as folder:
+            path = Path(folder) / f"scene{suffix}"
+            if suffix == SCENE_FILE:
+                write_scene(scene, path)
+            else:
+                export(scene, path, self.session.photo.pixels)
+            return path.read_bytes()
+
+
+def page_files() -> dict[str, bytes]:
+    """The files of the page by name: read once, so that no request ever names a path."""
+    files = {path.name: path.read_bytes() for path in PAGE.iterdir() if path.suffix in MEDIA_TYPES}
+    if "index.html" not in files:
+        raise EditorError("the files of the page are missing; install linecad again")
+    return files
+
+
+def listen(port: int) -> socket.socket:
+    """A socket on 127.0.0.1 alone; port 0 takes a free one. EditorError when the port is taken."""
+    listener = socket.socket()
+    try:
+        if os.name == "posix":  # else a port is taken for a minute after its last connection; elsewhere it means more
+            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listener.bind((HOST, port))
+        listener.listen()
+    except OSError as error:
+        listener.close()
+        raise EditorError(
+            f"port {port} cannot be used: {error.strerror}; leave out --port to take a free one"
+        ) from None
+    return listener
+
+
+def serve(app: Guard, listener: socket.socket, on_ready: Callable[[], None]) -> None:
+    """Serve until Ctrl-C or a request to end; `on_ready` is called when the first request can come."""
+    config = uvicorn.Config(
+        app,
+        log_level="warning",
+        access_log=False,
+        server_header=False,
+        proxy_headers=False,
+        ws="none",
+        lifespan="off",
+        timeout_graceful_shutdown=STOP_S,
+    )
+    _Server(config, on_ready).run(sockets=[listener])
+
+
+class _Server(uvicorn.Server):
+    def __init__(self, config: uvicorn.Config, on_ready: Callable[[], None]) -> None:
+        super().__init__(config)
+        self.on_ready = on_ready
+
+    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
+        """Tell when the server listens."""
+        await super().startup(sockets)
+        self.on_ready()
+
+
+def _post(answer: Callable[[Node], Response]) -> Callable[[Request], Any]:
+    """A route that reads its JSON strictly and turns what a user can act on into a status and one line."""
+
+    async def route(request: Request) -> Response:
+        try:
+            body = parse((await request.body()).decode())
+            return await run_in_threadpool(answer, body)
+        except TooLargeError:
+            return _error(413, "the request is too large")
+        except UnicodeDecodeError:
+            return _error(422, "the request is not UTF-8")
+        except StaleError as error:
+            return _error(409, str(error))
+        except (JsonError, LinecadError) as error:
+            return _error(422, str(error))
+
+    return route
+
+
+def _base(body: Node) -> int:
+    return body["base_version"].integer()
+
+
+def _error(status: int, text: str) -> Response:
+    return JSONResponse({"error": text}, status_code=status)

@@ -1,0 +1,206 @@
+"""Solving in a process of its own that stays warm: the page answers while it works, and it can be stopped.
+
+The process ends when the server does, however that ends: its pipe breaks then.
+"""
+
+import contextlib
+import importlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+from types import FrameType
+from typing import TYPE_CHECKING
+
+from linecad.correcting import CorrectedLines
+from linecad.errors import ContradictionError, LinecadError
+from linecad.finding import FoundLines, ReconstructOptions
+from linecad.photo import Photo
+from linecad.pipeline import reconstruct_corrected
+from linecad.scene import Scene
+from solver.problem import Progress
+
+if TYPE_CHECKING:
+    from multiprocessing.sharedctypes import Synchronized
+
+PATIENCE_S = 5.0  # that a process gets to end by itself
+NO_TASK = -1
+LOADED_LATE = ("solver.gain", "solver.paper", "solver.scip_backend")  # by who needs them; here before
+
+_CONTEXT = multiprocessing.get_context("spawn")  # a fork of a process with OpenCV's threads hangs now and then
+
+
+@dataclass(frozen=True, eq=False)
+class Task:
+    """Lines to solve."""
+
+    number: int
+    found: FoundLines
+    corrected: CorrectedLines
+
+
+@dataclass(frozen=True, eq=False)
+class Answer:
+    """What came of a task: a scene, or an error in one line."""
+
+    number: int
+    scene: Scene | None = None
+    error: str = ""
+    lines: tuple[int, ...] = ()  # ids of lines that stand in a contradiction
+    crossings: tuple[tuple[int, int], ...] = ()  # pairs of line ids whose crossings cannot all be real
+
+
+@dataclass(frozen=True)
+class Step:
+    """How far a task has come."""
+
+    number: int
+    progress: Progress
+
+
+class SolvingProcess:
+    """The process that solves; one task at a time, the last one asked for."""
+
+    def __init__(
+        self,
+        photo: Photo,
+        options: ReconstructOptions,
+        on_step: Callable[[Step], None],
+        on_answer: Callable[[Answer], None],
+    ) -> None:
+        """The callbacks run in a thread of this object."""
+        self._photo, self._options = photo, options
+        self._on_step, self._on_answer = on_step, on_answer
+        self._lock = threading.Lock()
+        self._running: Task | None = None  # what the process works on
+        self._waiting: Task | None = None  # what it gets next
+        self._closed = False
+        # The number of the task to stop: a signal alone may come before the process has taken the task up.
+        self._asked = _CONTEXT.Value("q", NO_TASK, lock=False)
+        self._process, self._pipe = self._launch()
+
+    def start(self, task: Task) -> None:
+        """Solve this next; what is being solved is stopped, and its answer still told."""
+        with self._lock:
+            self._waiting = task
+            if self._running is None:
+                self._next()
+                return
+        self.stop()
+
+    def stop(self) -> None:
+        """End the search with the best answer so far."""
+        with self._lock:
+            if self._running is not None and self._process.pid is not None:
+                self._asked.value = self._running.number
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(self._process.pid, signal.SIGINT)
+
+    def close(self) -> None:
+        """End the process."""
+        with self._lock:
+            self._closed = True
+            self._pipe.close()
+            process = self._process
+        process.terminate()
+        process.join(PATIENCE_S)
+        if process.is_alive():
+            process.kill()
+
+    def _launch(self) -> tuple[BaseProcess, Connection]:
+        ours, theirs = _CONTEXT.Pipe()
+        process = _CONTEXT.Process(target=work, args=(theirs, self._asked), name="linecad solver", daemon=True)
+        process.start()
+        theirs.close()
+        ours.send((self._photo, self._options))
+        threading.Thread(target=self._listen, args=(ours,), name="answers of the solver", daemon=True).start()
+        return process, ours
+
+    def _next(self) -> None:
+        """Hand over what waits; the lock is held."""
+        self._running, self._waiting = self._waiting, None
+        if self._running is None:
+            return
+        try:
+            self._pipe.send(self._running)
+        except OSError:  # the process has died; its listener tells so, or has done it
+            self._process, self._pipe = self._launch()
+            self._pipe.send(self._running)
+
+    def _listen(self, pipe: Connection) -> None:
+        while True:
+            try:
+                message = pipe.recv()
+            except (EOFError, OSError):
+                self._lost(pipe)
+                return
+            if isinstance(message, Step):
+                self._on_step(message)
+                continue
+            self._on_answer(message)
+            with self._lock:
+                self._next()
+
+    def _lost(self, pipe: Connection) -> None:
+        """The process has ended without being asked to."""
+        with self._lock:
+            if self._closed or pipe is not self._pipe:
+                return
+            task = self._running
+            self._process, self._pipe = self._launch()
+            self._running = None
+        if task is not None:
+            self._on_answer(Answer(task.number, error="the solver's process ended unexpectedly; solve again"))
+        with self._lock:
+            if self._running is None:
+                self._next()
+
+
+def work(pipe: Connection, asked: "Synchronized[int]") -> None:
+    """What the process does: tasks in, steps and answers out, until the pipe breaks."""
+    # A Ctrl-C in the terminal goes to all its processes; the server alone decides.
+    if hasattr(os, "setsid"):
+        os.setsid()
+    signal.signal(signal.SIGINT, _pass)  # between searches; a search has a handler of its own
+    with contextlib.suppress(EOFError, OSError):
+        photo, options = pipe.recv()
+        _warm()
+        while True:
+            task = pipe.recv()
+            pipe.send(_solve(task, photo, options, pipe, asked))
+
+
+def _pass(_number: int, _frame: FrameType | None) -> None:
+    """A signal that came too late, or too early: `asked` tells."""
+
+
+def _warm() -> None:
+    """Load what the first task would wait for."""
+    for name in LOADED_LATE:
+        importlib.import_module(name)
+
+
+def _solve(
+    task: Task, photo: Photo, options: ReconstructOptions, pipe: Connection, asked: "Synchronized[int]"
+) -> Answer:
+    def tell(at: Progress) -> None:
+        pipe.send(Step(task.number, at))
+        if asked.value == task.number:
+            signal.raise_signal(signal.SIGINT)
+
+    return solve_task(task, photo, options, tell)
+
+
+def solve_task(task: Task, photo: Photo, options: ReconstructOptions, tell: Callable[[Progress], None]) -> Answer:
+    """The answer to a task, in this process."""
+    try:
+        scene = reconstruct_corrected(photo, task.found, task.corrected, options, tell)
+    except ContradictionError as error:
+        return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings)
+    except LinecadError as error:
+        return Answer(task.number, error=str(error))
+    return Answer(task.number, scene)

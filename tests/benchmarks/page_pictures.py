@@ -1,0 +1,81 @@
+"""The pictures of docs/edit.md, of the sample street: python tests/benchmarks/page_pictures.py [FOLDER]"""
+
+import io
+import shutil
+import sys
+import tempfile
+from pathlib import Path
+
+from driven import ROOT, opened, served, settle
+from PIL import Image
+
+LARGE = (1920, 1080)  # px, of the window
+SMALL = (1280, 800)
+WIDTH = 1280  # px, of the pictures
+QUALITY = 82  # of JPEG
+
+
+def picture(page, path):
+    """Save what the window shows."""
+    settle(page)
+    image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
+    height = round(image.height * WIDTH / image.width)
+    image.resize((WIDTH, height), Image.Resampling.LANCZOS).save(path, quality=QUALITY, optimize=True, progressive=True)
+    print(f"{path.name}: {path.stat().st_size // 1024} kB")
+
+
+def overview(page, folder):
+    """All of the photo, and the model from the side."""
+    picture(page, folder / "edit.jpg")
+
+
+def correcting(page, folder):
+    """A crossing that a person called fake, near, with its two lines on both sides."""
+    chosen = page.evaluate(
+        """() => {
+          const { state, lines } = linecad.store;
+          const inside = ([u, v]) => u > 500 && u < 1000 && v > 250 && v < 600;
+          const solid = (id) => lines.get(id)?.component === 0;
+          const fits = (each) => each.real && each.kind === "T" && inside(each.pixel) && each.lines.every(solid);
+          return state.crossings.find(fits);
+        }"""
+    )
+    page.evaluate("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel, 3))", chosen["pixel"])
+    settle(page)
+    box = page.locator("#overlay-canvas").bounding_box()
+    page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    page.mouse.move(box["x"] + box["width"] / 2 + 60, box["y"] + box["height"] - 30)
+    picture(page, folder / "edit-correct.jpg")
+    page.keyboard.press("Control+z")
+    page.keyboard.press("Escape")
+    page.keyboard.press("0")
+
+
+def labelling(page, folder):
+    """A question of the labelling mode, with the model through the camera."""
+    page.keyboard.press("l")
+    page.wait_for_timeout(500)
+    for key in "rfr":
+        settle(page)
+        page.keyboard.press(key)
+        page.wait_for_timeout(500)
+    page.keyboard.press("t")
+    page.mouse.move(5, 5)
+    picture(page, folder / "edit-label.jpg")
+
+
+def main():
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs"
+    with tempfile.TemporaryDirectory() as folder:
+        for name in ("street.jpg", "street.json"):
+            shutil.copy(ROOT / "samples" / name, folder)
+        with served(Path(folder) / "street.jpg", "--quiet") as address:
+            with opened(address, *LARGE) as page:
+                overview(page, target)
+                correcting(page, target)
+            with opened(address, *SMALL) as page:
+                labelling(page, target)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,350 @@
+"""The page in a browser: corrections by real clicks and keys, undo and redo, solving, labelling, export."""
+
+import signal
+
+import numpy as np
+import pytest
+
+from exporters.formats import export
+from linecad.photo import read_photo
+from linecad.scenefile import read_scene
+
+STEPS = 30
+
+
+def apart(crossings, least=60.0):
+    """Those crossings, of a state, that a click at the fitted view cannot mistake for another."""
+    pixels = np.array([each["pixel"] for each in crossings])
+    away = np.linalg.norm(pixels[:, None] - pixels, axis=2) + np.where(np.eye(len(pixels)), np.inf, 0)
+    return [each for each, near in zip(crossings, away.min(axis=1), strict=True) if near > least]
+
+
+def by_id(state, kind, number):
+    return next(each for each in state[kind] if each["id"] == number)
+
+
+def free_place(state, line, least=0.25):
+    """A place on a line that is far from crossings, and from its ends by a share of its length."""
+    near = np.array([each["pixel"] for each in state["crossings"]])
+    shares = np.linspace(least, 1 - least, 101)[:, None]
+    places = (1 - shares) * line["segment"][0] + shares * np.array(line["segment"][1])
+    return places[np.linalg.norm(places[:, None] - near, axis=2).min(axis=1).argmax()]
+
+
+def longest(state, axis):
+    lines = [each for each in state["lines"] if each["axis"] == axis and each["ends"]]
+    return max(lines, key=lambda each: np.linalg.norm(np.subtract(*each["segment"])))
+
+
+def decided(state):
+    return {each["id"]: each["label"] for each in state["crossings"] if each["label"]}
+
+
+def test_a_click_turns_a_crossing_from_real_to_fake_and_back(screen):
+    crossing = next(each for each in apart(screen.state["crossings"]) if each["real"])
+    for value in ("fake", "real"):
+        screen.click(crossing["pixel"])
+        assert by_id(screen.state, "crossings", crossing["id"])["label"] == value
+        assert decided(screen.served.ask("state")) == {crossing["id"]: value}
+    assert "as you said" in screen.page.locator("#inspector").inner_text()
+
+
+def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
+    crossing = next(each for each in apart(screen.state["crossings"]) if each["real"])
+    screen.run("linecad.photo.change((viewport) => viewport.zoom(2))")
+    screen.run("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel))", crossing["pixel"])
+    read = """() => {
+      const canvas = document.querySelector("#drawing-canvas");
+      const [x, y] = [canvas.width >> 1, canvas.height >> 1];
+      const { data } = canvas.getContext("2d").getImageData(x - 30, y - 30, 60, 60);
+      // A colour that is hardly there is rounded far: what counts is how much of it is seen.
+      return [...data].map((value, at) => (at % 4 === 3 ? value : (value * data[at - (at % 4) + 3]) / 255));
+    }"""
+    screen.run(read)  # the first reading changes how the browser draws
+    screen.run("linecad.photo.redraw('drawing')")
+    screen.settle()
+    before = np.array(screen.run(read))
+    screen.click(crossing["pixel"])
+    clicked = np.array(screen.run(read))
+    screen.run("linecad.photo.redraw('drawing')")
+    screen.settle()
+    anew = np.array(screen.run(read))
+    assert np.count_nonzero(clicked != before) > 50
+    # A stroke that is cut at the border differs by a shade; a missing mark would by 100 and more.
+    assert np.abs(clicked - anew).max() <= 40
+
+
+def test_keys_say_what_the_crossing_under_the_pointer_is(screen):
+    crossing = apart(screen.state["crossings"])[0]
+    screen.page.mouse.move(*screen.on_screen(crossing["pixel"]))
+    for key, value in (("f", "fake"), ("u", "unsure"), ("r", "real"), ("g", None)):
+        screen.press(key)
+        assert by_id(screen.served.ask("state"), "crossings", crossing["id"])["label"] == value
+
+
+def test_thirty_edits_are_undone_and_redone_exactly(screen):
+    chosen = apart(screen.state["crossings"], 40.0)[:10]
+    assert len(chosen) == 10
+    places = [screen.on_screen(crossing["pixel"]) for crossing in chosen]
+    states = [decided(screen.served.ask("state"))]
+    for _ in range(3):
+        for place in places:
+            screen.page.mouse.click(*place)
+        screen.settle()
+        states.append(decided(screen.served.ask("state")))
+        assert decided(screen.state) == states[-1] != states[-2]
+    assert screen.state["undo"] == 3 * len(places) == STEPS
+    for key, name, expected in (("Control+z", "Undo", states[-2::-1]), ("Control+Shift+z", "Redo", states[1:])):
+        for state in expected:
+            for _ in places:
+                screen.page.keyboard.press(key)
+            screen.settle()
+            assert decided(screen.state) == state == decided(screen.served.ask("state"))
+        assert screen.button(name).is_disabled()
+
+
+def test_keys_change_the_axis_of_a_line_and_delete_it(screen):
+    line = longest(screen.state, "z")
+    screen.press("v")
+    screen.click(free_place(screen.state, line))
+    assert screen.run("linecad.store.selection") == {"kind": "line", "id": line["id"]}
+    screen.press("x")
+    assert by_id(screen.served.ask("state"), "lines", line["id"])["axis"] == "x"
+    screen.press("Control+z")
+    assert by_id(screen.served.ask("state"), "lines", line["id"])["axis"] == "z"
+    screen.press("Delete")
+    assert line["id"] not in [each["id"] for each in screen.served.ask("state")["lines"]]
+    assert line["id"] not in [each["id"] for each in screen.state["lines"]]
+    screen.button("Undo").click()
+    screen.settle()
+    assert by_id(screen.state, "lines", line["id"])["axis"] == "z"
+
+
+def test_a_line_is_split_where_it_is_clicked_and_joined_again(screen):
+    line = longest(screen.state, "z")
+    place = free_place(screen.state, line)
+    ids = {each["id"] for each in screen.state["lines"]}
+    screen.press("k")
+    screen.click(place)
+    pieces = [each for each in screen.state["lines"] if each["origin"] == "split"]
+    assert len(pieces) == 2
+    ends = np.array([each["segment"] for each in pieces])
+    assert np.linalg.norm(ends - place, axis=2).min(axis=1).max() < 2  # both begin where the click was
+    screen.press("j")
+    for piece in pieces:
+        far = max(piece["segment"], key=lambda end: np.linalg.norm(np.subtract(end, place)))
+        screen.click(0.7 * np.array(place) + 0.3 * np.array(far))
+    joined = [each for each in screen.state["lines"] if each["origin"] == "joined"]
+    assert len(joined) == 1
+    assert np.sort(np.array(joined[0]["segment"]), axis=0) == pytest.approx(np.sort(line["segment"], axis=0), abs=1)
+    screen.press("Control+z")
+    screen.press("Control+z")
+    assert {each["id"] for each in screen.state["lines"]} == ids
+
+
+def test_a_line_is_drawn_with_undo_inside_it_and_a_proposed_axis(screen):
+    state = screen.state
+    line = longest(state, "z")
+    top, bottom = (np.array(end) for end in line["segment"])
+    beside = np.array([45.0, 0.0])  # px to the right of an edge along z, where another one is plausible
+    start, end = (screen.on_screen(0.8 * one + 0.2 * other + beside) for one, other in ((top, bottom), (bottom, top)))
+    screen.press("d")
+    screen.page.mouse.click(*start)
+    assert screen.run("linecad.draft.points.length") == 1
+    screen.press("Control+z")
+    assert screen.run("linecad.draft.points.length") == 0
+    assert screen.served.ask("state")["undo"] == 0
+    screen.press("Control+Shift+z")
+    screen.page.mouse.move(*end, steps=4)
+    screen.wait("linecad.draft.proposal !== null")
+    assert screen.run("linecad.draft.proposal.axis") == "z"
+    screen.page.mouse.click(*end)
+    screen.settle()
+    drawn = [each for each in screen.state["lines"] if each["origin"] == "drawn"]
+    assert [each["axis"] for each in drawn] == ["z"]
+    assert len(screen.state["lines"]) == len(state["lines"]) + 1
+    # The same by a drag, with the axis that a key fixes.
+    screen.press("Control+z")
+    screen.page.mouse.move(*start)
+    screen.page.mouse.down()
+    screen.page.mouse.move(*end, steps=3)
+    screen.press("y")
+    screen.page.mouse.up()
+    screen.settle()
+    assert [each["axis"] for each in screen.state["lines"] if each["origin"] == "drawn"] == ["y"]
+
+
+def test_a_known_length_sets_the_scale(screen):
+    line = longest(screen.state, "z")
+    screen.press("v")
+    screen.click(free_place(screen.state, line))
+    screen.press("m")
+    screen.page.get_by_label("Length in metres").fill("7.5")
+    screen.page.get_by_role("button", name="Set the scale").click()
+    screen.wait("linecad.store.state.metres_per_unit !== null")
+    units = np.linalg.norm(np.subtract(*line["ends"]))
+    assert screen.served.ask("state")["metres_per_unit"] * units == pytest.approx(7.5, rel=1e-3)
+    assert "7.50 m" in screen.page.locator("#inspector").inner_text()
+
+
+def test_lines_drawn_along_the_axes_give_the_frame(screen):
+    screen.press("a")
+    for axis in ("z", "x"):
+        screen.press(axis)
+        lines = [each for each in screen.state["lines"] if each["axis"] == axis and each["ends"]]
+        lines.sort(key=lambda each: -np.linalg.norm(np.subtract(*each["segment"])))
+        first = lines[0]
+        away = [np.abs(np.subtract(each["segment"][0], first["segment"][0])).sum() for each in lines[:12]]
+        for line in (first, lines[int(np.argmax(away))]):
+            start, end = (screen.on_screen(pixel) for pixel in line["segment"])
+            screen.page.mouse.move(*start)
+            screen.page.mouse.down()
+            screen.page.mouse.move(*end, steps=3)
+            screen.page.mouse.up()
+    assert [line["axis"] for line in screen.run("linecad.draft.lines")] == ["z", "z", "x", "x"]
+    screen.press("Control+z")
+    screen.press("Control+z")
+    assert screen.run("linecad.draft.lines.length") == 3
+    screen.press("Control+Shift+z")
+    screen.press("Control+Shift+z")
+    before = np.array(screen.state["R_cam_from_world"])
+    screen.press("Enter")
+    screen.wait("linecad.store.tool === 'correct'")
+    state = screen.served.ask("state")
+    assert state["undo"] == 1
+    turned = before.T @ np.array(state["R_cam_from_world"])
+    assert np.degrees(np.arccos((np.trace(turned) - 1) / 2)) < 3
+    assert (turned != np.eye(3)).any()
+
+
+def test_solving_shows_what_changed_and_undo_goes_back_across_it(screen):
+    before = screen.served.ask("state")
+    crossing = next(each for each in apart(before["crossings"]) if each["real"])
+    screen.click(crossing["pixel"])
+    screen.page.get_by_text("Your corrections are not in the model yet").wait_for()
+    screen.button("Solve again").click()
+    screen.page.get_by_text("Solved:").wait_for()
+    state = screen.served.ask("state")
+    assert by_id(state, "crossings", crossing["id"])["real"] is False
+    changed = [each["id"] for each in state["crossings"] if each["changed"]]
+    assert crossing["id"] in changed
+    assert screen.page.locator("[data-layer=changed] .count").inner_text() == str(len(changed))
+    screen.press("Control+z")
+    assert {each["id"]: each["real"] for each in screen.state["crossings"]} == {
+        each["id"]: each["real"] for each in before["crossings"]
+    }
+
+
+def edit(served, **what):
+    """An edit as the page sends it; the new state."""
+    return served.ask("edit", {"base_version": served.ask("state")["version"], "edit": what})
+
+
+def test_a_contradiction_is_named_and_lit_up(screen, made):
+    """Two uprights of one facade met by a line along it and by one into the depth: both cannot be."""
+    state = screen.state
+    upright = {each["id"]: each for each in state["lines"] if each["axis"] == "z"}
+    met = {}  # by the line along x: the uprights that it really meets
+    for crossing in state["crossings"]:
+        for one, other in (crossing["lines"], crossing["lines"][::-1]):
+            if crossing["real"] and one in upright and by_id(state, "lines", other)["axis"] == "x":
+                met.setdefault(other, []).append((upright[one]["segment"][0][0], one, crossing["id"]))
+    pairs = sorted(max(met.values(), key=len))
+    (_, left, first), (_, right, second) = pairs[0], pairs[-1]
+    away = made.camera.matrix @ made.frame.rotation[:, 1]  # the vanishing point of y
+    start, goal = free_place(state, upright[left]), away[:2] / away[2]
+    across = np.mean([end[0] for end in upright[right]["segment"]]) + 12
+    end = start + (goal - start) * (across - start[0]) / (goal[0] - start[0])
+    state = edit(screen.served, op="draw", ends=[(start - (goal - start) * 0.02).tolist(), end.tolist()], axis="y")
+    drawn = next(each["id"] for each in state["lines"] if each["origin"] == "drawn")
+    new = {tuple(sorted(each["lines"])): each for each in state["crossings"]}
+    others = [new[tuple(sorted((upright_id, drawn)))] for upright_id in (left, right)]
+    for crossing in (first, second, others[0]["id"]):
+        edit(screen.served, op="label", crossing=crossing, value="real")
+    screen.run("linecad.editing.refresh()")
+    screen.page.mouse.move(*screen.on_screen(others[1]["pixel"]))
+    screen.press("r")
+    screen.press("Escape")
+    plain = screen.painted("#overlay-canvas")
+    screen.press("s")
+
+    screen.wait("linecad.store.state.contradiction !== null")
+    screen.settle()
+    contradiction = screen.state["contradiction"]
+    assert set(contradiction["crossings"]) == {first, second, others[0]["id"], others[1]["id"]}
+    assert drawn in contradiction["lines"]
+    assert screen.page.get_by_text(contradiction["text"]).is_visible()
+    assert screen.painted("#overlay-canvas") > plain + 1000
+    screen.button("Show it").click()
+    assert screen.run("linecad.store.selection.kind") == "crossing"
+    screen.button("Undo the last change").click()
+    screen.page.get_by_text(contradiction["text"]).wait_for(state="detached")
+
+
+def test_labelling_goes_from_one_crossing_to_the_next(screen):
+    screen.press("l")
+    order = [each["id"] for each in screen.state["crossings"]]
+    for number, (key, value) in enumerate((("r", "real"), ("f", "fake"), ("u", "unsure"))):
+        screen.wait(f"linecad.store.selection?.id === {order[number]}")
+        at = screen.on_screen(screen.state["crossings"][number]["pixel"])
+        stage = screen.stage
+        assert at == pytest.approx((stage["x"] + stage["width"] / 2, stage["y"] + stage["height"] / 2), abs=1)
+        screen.press(key)
+        screen.wait(f"linecad.store.state.labelling.done === {number + 1}")
+        assert screen.served.ask("state")["crossings"][number]["label"] == value
+    screen.page.keyboard.type("rr")  # faster than the server answers
+    screen.settle()
+    assert [each["label"] for each in screen.served.ask("state")["crossings"][3:6]] == ["real", "real", None]
+    assert f"5 of {len(order)} labelled" in screen.page.locator("#inspector").inner_text()
+    screen.press("l")
+    assert screen.run("linecad.store.labelling") is False
+
+
+def test_an_export_is_the_file_that_linecad_export_writes(screen, tmp_path):
+    for name in ("json", "dxf", "glb"):
+        screen.press("e")
+        with screen.page.expect_download() as download:
+            screen.page.locator(f"[data-format={name}]").click()
+        assert download.value.suggested_filename == f"boxes.{name}"
+        download.value.save_as(tmp_path / f"page.{name}")
+    scene = read_scene(tmp_path / "page.json")
+    solved = [each["segment"] for each in screen.served.ask("state")["lines"] if each["ends"]]
+    assert sorted(scene.lines.segment.tolist()) == sorted(solved)
+    photo = read_photo(screen.served.photo, screen.served.photo.with_suffix(".json"), None)
+    for name in ("dxf", "glb"):
+        export(scene, tmp_path / f"command.{name}", photo.pixels)
+        assert (tmp_path / f"page.{name}").read_bytes() == (tmp_path / f"command.{name}").read_bytes()
+
+
+def test_a_reload_and_a_killed_server_bring_everything_back(new_screen, start):
+    first = new_screen(start())
+    first.open()
+    for crossing in apart(first.state["crossings"])[:3]:
+        first.click(crossing["pixel"])
+    said = decided(first.state)
+    assert len(said) == 3
+    first.page.reload()
+    first.page.wait_for_selector("body[data-ready=yes]")
+    assert decided(first.state) == said
+    assert first.run("linecad.store.owner")
+    first.page.get_by_text("Saved", exact=True).wait_for()
+    first.served.end(signal.SIGKILL)
+    second = new_screen(start(photo=first.served.photo))
+    second.page.goto(second.served.address)
+    second.page.wait_for_selector("body[data-ready=yes]")
+    assert decided(second.state) == said
+    first.page.get_by_text("does not answer").wait_for()
+    first.page.goto("about:blank")
+    first.complaints = [text for text in first.complaints if "ERR_CONNECTION_REFUSED" not in text]
+
+
+def test_a_search_tells_how_far_it_is_and_stop_keeps_the_best(new_screen, start, long_search):
+    slow = new_screen(start("--extension", "200", "--time-limit", "120", photo=long_search))
+    slow.page.goto(slow.served.address)
+    slow.wait("globalThis.linecad?.store.solve.state === 'running'")
+    slow.page.get_by_text("bound").wait_for()
+    assert "gap" in slow.page.locator("#solve-text").inner_text()
+    slow.button("Stop").click()
+    slow.wait("linecad.store.state.solve.status !== null")
+    assert slow.state["solve"]["status"] == "interrupted"
+    assert any(line["ends"] for line in slow.state["lines"])

@@ -1,0 +1,151 @@
+"""A session on the made scene's picture, and the server on it without a socket."""
+
+import numpy as np
+import pytest
+from starlette.testclient import TestClient
+
+import linecad.editing.session
+from linecad.corrections import Corrections
+from linecad.editing.guard import HOST
+from linecad.editing.saving import Saver
+from linecad.editing.server import Editor
+from linecad.editing.session import Session
+from linecad.finding import ReconstructOptions, name_lines
+from linecad.photo import Photo
+from linecad.segments import find_segments
+
+PORT, TOKEN = 8765, "the-token"
+URL = f"http://{HOST}:{PORT}"
+
+
+class InPlace:
+    """Solves in the same process, when it is asked to: the test decides when an answer comes."""
+
+    def __init__(self, photo, options):
+        self.photo, self.options = photo, options
+        self.waiting, self.stopped, self.take = [], 0, None
+
+    def start(self, task):
+        self.waiting.append(task)
+
+    def stop(self):
+        self.stopped += 1
+
+    def answer(self):
+        """Solve what waits longest and tell the session."""
+        from linecad.editing.solving import Answer, solve_task
+
+        task = self.waiting.pop(0)
+        answer = solve_task(task, self.photo, self.options, lambda _: None)
+        assert isinstance(answer, Answer)
+        self.take(answer)
+
+
+class Page:
+    """What a page does: requests with the token, and the version of the state that it knows."""
+
+    def __init__(self, client, session, solving, saved):
+        self.client, self.session, self.solving, self.saved = client, session, solving, saved
+        self.version = None
+
+    def get(self, path, **more):
+        return self.client.get(f"/api/{path}", **more)
+
+    def post(self, path, **body):
+        return self.client.post(f"/api/{path}", json=body)
+
+    def state(self):
+        found = self.get("state").json()
+        self.version = found["version"]
+        return found
+
+    def change(self, path, **body):
+        answer = self.post(path, base_version=self.version, **body)
+        assert answer.status_code == 200, answer.text
+        self.version = answer.json()["version"]
+        return answer.json()
+
+    def edit(self, **edit):
+        return self.change("edit", edit=edit)
+
+    def refused(self, status, path, **body):
+        """The one line with which a request is refused; the state is the same after it."""
+        before = self.state()
+        answer = self.post(path, base_version=self.version, **body)
+        assert answer.status_code == status, answer.text
+        assert self.state() == before
+        text = answer.json()["error"]
+        assert text
+        assert "\n" not in text
+        return text
+
+    def solve(self):
+        self.state()
+        assert self.post("solve", base_version=self.version).status_code == 200
+        self.solving.answer()
+        return self.state()
+
+
+@pytest.fixture(scope="session")
+def made_photo(made):
+    return Photo("made.jpg", np.repeat(made.image()[:, :, None], 3, axis=2), made.camera)
+
+
+@pytest.fixture(scope="session")
+def raw(made_photo):
+    return find_segments(made_photo.grey)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def named_once(made_photo, raw):
+    """The frame of the picture is found once for all tests: it takes longer than they do."""
+    found = name_lines(made_photo, raw)
+
+    def name(photo, segments, **more):
+        return name_lines(photo, segments, **more) if more["drawn"] is not None or segments is not raw else found
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linecad.editing.session, "name_lines", name)
+        yield
+
+
+@pytest.fixture(scope="session")
+def open_page(made_photo, raw):
+    """A function that opens a page on the made scene's picture, with corrections that were there before."""
+    savers = []
+
+    def open_(corrections=None, options=None):
+        saved = []
+        saver = Saver(saved.append)
+        savers.append(saver)
+        options = options or ReconstructOptions()
+        corrections = corrections or Corrections("made.jpg", made_photo.width, made_photo.height)
+        session = Session(made_photo, raw, options, corrections, saver.save)
+        solving = InPlace(made_photo, options)
+        solving.take = session.take
+        app = Editor(session, solving, saver).app(TOKEN, PORT)
+        client = TestClient(app, base_url=URL, headers={"X-Linecad-Token": TOKEN}, raise_server_exceptions=True)
+        page = Page(client, session, solving, saved)
+        page.state()
+        return page
+
+    yield open_
+    for saver in savers:
+        saver.close()
+
+
+@pytest.fixture
+def page(open_page):
+    return open_page()
+
+
+@pytest.fixture(scope="session")
+def one_page(open_page):
+    return open_page()
+
+
+@pytest.fixture
+def shared_page(one_page):
+    """A page for tests that change nothing but the client's headers."""
+    client = TestClient(one_page.client.app, base_url=URL, headers={"X-Linecad-Token": TOKEN})
+    return Page(client, one_page.session, one_page.solving, one_page.saved)
