@@ -8,10 +8,10 @@ from typing import Self
 from exporters.formats import export
 from exporters.options import Value
 from linecad.calibration import read_calibration
-from linecad.finding import ReconstructOptions
+from linecad.finding import ReconstructOptions, StageReport
 from linecad.metric import Known, set_scale
 from linecad.photo import Photo, read_photo
-from linecad.pipeline import StageReport, reconstruct
+from linecad.pipeline import reconstruct
 from linecad.scene import Scene
 from linecad.scenefile import write_scene
 from solver.problem import Progress
