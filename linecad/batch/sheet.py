@@ -87,9 +87,10 @@ def _links(files: Iterable[str]) -> str:
 
 def _picture(folder: Path, row: Row) -> str:
     """The small picture of a photo in base64; empty where there is none."""
-    path = folder / THUMBNAILS / f"{row.name}.jpg"
-    if path.relative_to(folder).as_posix() not in row.outcome.files:
+    name = f"{THUMBNAILS}/{row.name}.jpg"
+    if name not in row.outcome.files:
         return ""
+    path = folder / name
     try:
         if path.stat().st_size > LARGEST_THUMBNAIL:
             return ""

@@ -91,11 +91,15 @@ def test_photos_travel_as_bytes_and_results_are_those_of_convert(cluster, survey
     assert sorted(Path(row["photo"]).name for row in rows) == ["p00.png", "p01.png", "p02.png"]
     assert {row["status"] for row in rows} == {"done"}
     for photo in photos.iterdir():
-        single = [tmp_path / f"single{suffix}" for suffix in (".json", ".obj")]
+        single = [tmp_path / f"{photo.stem}{suffix}" for suffix in (".json", ".obj")]
         options = [option for path in single for option in ("-o", str(path))]
         assert main(["convert", str(photo), *options, "--camera", str(camera), "--quiet"]) == 0
         assert without_seconds(output / f"{photo.stem}.json") == without_seconds(single[0])
         assert (output / f"{photo.stem}.obj").read_bytes() == single[1].read_bytes()
+        pictures = list(tmp_path.glob(f"{photo.stem}.obj.*/*"))
+        assert pictures
+        for picture in pictures:
+            assert (output / picture.relative_to(tmp_path)).read_bytes() == picture.read_bytes()
     assert not list(output.rglob(".linecad-*"))
 
 

@@ -90,7 +90,7 @@ def test_a_photo_makes_the_same_files_as_convert(executor, survey, job_of, outpu
     photo = sorted(survey(1).iterdir())[0]
     executor.submit(0, job_of(photo, suffixes))
     assert outcomes(executor, 1)[0].status == "done"
-    single = [tmp_path / f"single{suffix}" for suffix in suffixes]
+    single = [tmp_path / f"{photo.stem}{suffix}" for suffix in suffixes]
     options = [option for path in single for option in ("-o", str(path))]
     assert main(["convert", str(photo), *options, "--focal", "300", "--time-limit", "30", "--quiet"]) == 0
     for path in single:
