@@ -9,6 +9,7 @@ import contextlib
 import importlib.util
 import math
 import re
+import shutil
 import sys
 import time
 from collections.abc import Sequence
@@ -21,6 +22,8 @@ from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
     from exporters.options import Value
+    from linecad.batch.record import Row
+    from linecad.batch.run import Progress as BatchProgress
     from linecad.finding import ReconstructOptions
     from linecad.metric import Known
     from linecad.photo import Photo
@@ -71,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
+    _add_batch(commands)
     _add_edit(commands)
     _add_evaluate(commands)
     _add_export(commands)
@@ -181,6 +185,45 @@ def _add_reconstruction(convert: argparse.ArgumentParser) -> None:
         help="lines that must tie two bodies for one scale, 1 asks nothing (with paper 1; else lines must keep their "
         "depth when others are left out)",
     )  # fmt: skip
+
+
+def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    batch = commands.add_parser(
+        "batch",
+        help="many photos, on all cores or a cluster; goes on where it was stopped",
+        description="Convert many photos into a folder, with a record, a page and a summary (docs/batch.md).",
+        epilog="example: linecad batch survey/ -o models --format step,usdz,png --camera camera.json",
+    )
+    batch.set_defaults(run=_batch)
+    batch.add_argument("photos", nargs="+", metavar="PHOTO|FOLDER|GLOB")
+    batch.add_argument("-o", "--output", type=Path, required=True, metavar="DIR", help="made when it is not there")
+    batch.add_argument(
+        "--format", type=_suffixes, default=(SCENE_SUFFIX, ".png"), metavar="FORMAT[,FORMAT]",
+        help="what is made of each photo (json,png); see linecad export --formats",
+    )  # fmt: skip
+    batch.add_argument("--workers", type=_count, metavar="N", help="photos at a time (as cores and memory allow)")
+    batch.add_argument(
+        "--photo-limit", type=_positive, metavar="S",
+        help="seconds after which a photo is given up (3 times --time-limit and 10 minutes)",
+    )  # fmt: skip
+    batch.add_argument(
+        "--memory-limit", type=_count, metavar="MB", help="memory of one photo (its share of what is free)"
+    )
+    batch.add_argument("--scheduler", metavar="ADDRESS", help="of a Dask cluster, such as tcp://10.0.0.1:8786")
+    batch.add_argument(
+        "--shared-files", action="store_true", help="the cluster sees the same folders: no photo travels"
+    )
+    _add_camera(batch)
+    _add_reconstruction(batch)
+    batch.add_argument(
+        "--camera-height", type=_camera_height, dest="known", metavar="METRES",
+        help="of the camera above the ground, the lowest horizontal plane",
+    )  # fmt: skip
+    batch.add_argument(
+        "--option", action="append", default=[], metavar="KEY=VALUE",
+        help="what one format alone needs (see linecad export --formats); may be given again",
+    )  # fmt: skip
+    _add_loudness(batch)
 
 
 def _add_objective(command: argparse.ArgumentParser) -> None:
@@ -382,6 +425,17 @@ def _families(text: str) -> frozenset[str]:
     return names
 
 
+def _suffixes(text: str) -> tuple[str, ...]:
+    from exporters.formats import FORMATS
+
+    suffixes = tuple(dict.fromkeys(f".{name.strip().lower().removeprefix('.')}" for name in text.split(",")))
+    known = (SCENE_SUFFIX, *FORMATS)
+    for suffix in suffixes:
+        if suffix not in known:
+            raise argparse.ArgumentTypeError(f"{suffix[1:]!r} is no format; use {', '.join(s[1:] for s in known)}")
+    return suffixes
+
+
 def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
     from linecad.finding import ReconstructOptions
     from solver.problem import SolveOptions
@@ -432,6 +486,35 @@ def _convert(parsed: argparse.Namespace) -> int:
     )
     _print_notes(scene)
     return 0
+
+
+def _batch(parsed: argparse.Namespace) -> int:
+    from exporters.formats import options_for
+    from linecad.batch.start import Means, make_plan, run_plan
+    from linecad.batch.summary import bar, line, table
+    from linecad.conversion import Conversion
+
+    means = Means(
+        parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit
+    )  # fmt: skip
+    formats = [Path(f"photo{suffix}") for suffix in parsed.format if suffix != SCENE_SUFFIX]
+    values = options_for(formats, parsed.option)
+    conversion = Conversion(parsed.camera, parsed.focal, _reconstruct_options(parsed), parsed.known, values)
+    plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means)
+    with _Shown(parsed) as show:
+        where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"
+        show.stage(f"{len(plan.photos)} photos {where}, at most {plan.limits.memory_mb} MiB each")
+        began = time.monotonic()
+
+        def on_row(progress: "BatchProgress", row: "Row | None") -> None:
+            if row is not None:
+                show.line(line(progress, row), row.outcome.status != "done")
+            show.bar(bar(progress, time.monotonic() - began))
+
+        result = run_plan(plan, workers, means, on_row)
+    print(table(result))
+    print(f"page: {plan.folder / 'index.html'}")
+    return 1 if result.progress.failed else 0
 
 
 def _edit(parsed: argparse.Namespace) -> int:
@@ -714,6 +797,19 @@ class _Shown:
                 f"{self.current} ... {at.seconds:.1f} s, best {at.objective:.1f}, bound {at.bound:.1f}, "
                 f"gap {at.gap:.2%} (Ctrl-C keeps the best)"
             )
+
+    def line(self, text: str, is_important: bool) -> None:
+        """One of many photos is over; on a terminal only what is important stays above the bar."""
+        if self.live:
+            if is_important or self.verbose:
+                print(f"\r\033[K{text}", file=sys.stderr, flush=True)
+        elif not self.quiet:
+            print(text, file=sys.stderr, flush=True)
+
+    def bar(self, text: str) -> None:
+        """How far many photos are, on a terminal alone, cut to its width."""
+        if self.live:
+            self._over(text[: shutil.get_terminal_size().columns - 1])
 
     def finish(self) -> None:
         """No stage any more; the next line on a terminal is a clean one."""

@@ -24,6 +24,8 @@ Pixels = NDArray[np.uint8]
 
 PIXEL_LIMIT = 200_000_000  # pixels
 SMALLEST_SIDE = 64  # px
+MOST_BYTES_A_PIXEL = 32  # four channels of doubles
+MOST_BYTES_BESIDE = 2**24  # of a file, for what is not pixels
 SERIES = ("GIF", "PNG", "TIFF", "WEBP")  # an MPO, by contrast, holds a photo and small companions of it
 DRAWINGS = ("EPS", "WMF")  # Pillow would start another program to draw these
 FULL_RANGE_16_BIT = 65535
@@ -73,7 +75,13 @@ def _decode(file: BinaryIO, path: Path) -> Decoded:
             raise PhotoError(_unknown_kind(path, start)) from error
         _check_size(*size, path)
         file.seek(0)
-        return _decode_with_opencv(file.read(), path)
+        most = size[0] * size[1] * MOST_BYTES_A_PIXEL + MOST_BYTES_BESIDE
+        data = file.read(most + 1)
+        if len(data) > most:
+            raise PhotoError(
+                f"{path} is far larger than its {size[0]} x {size[1]} px need; save it as JPEG or PNG"
+            ) from error
+        return _decode_with_opencv(data, path)
     except Exception as error:  # Pillow's plugins raise whatever their parsing trips over
         raise _damaged(path, error) from error
 

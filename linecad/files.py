@@ -64,6 +64,15 @@ def write_text_atomically(path: Path, text: str) -> None:
     write_atomically(path, lambda file: _write_text(file, text))
 
 
+def write_bytes_atomically(path: Path, data: bytes) -> None:
+    """The same for bytes."""
+    write_atomically(path, lambda file: _write_bytes(file, data))
+
+
+def _write_bytes(file: Path, data: bytes) -> None:
+    file.write_bytes(data)
+
+
 def _write_text(file: Path, text: str) -> None:
     file.write_text(text, encoding="utf-8", newline="\n")
 

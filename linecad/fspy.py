@@ -18,6 +18,7 @@ SUFFIX = ".fspy"
 _MAGIC, _VERSION = b"fspy", 1
 _HEADER = struct.Struct("<4sIII")  # magic, version, bytes of the state, bytes of the photo
 _STATE_LIMIT = 10_000_000  # bytes; a state takes some thousands
+_SMALLEST_ANGLE = 1e-6  # rad; far smaller ones have a tangent of zero
 _LARGEST_NUMBER = 1e6  # px, and in image plane coordinates
 
 
@@ -39,7 +40,7 @@ def read_fspy(path: Path) -> tuple[int, int, Float]:
             focal = relative.number(_LARGEST_NUMBER) * half
         else:  # programs that imitate fSpy may write the angle alone, of the longer side
             angle = camera["horizontalFieldOfView"]
-            if not 0 < angle.number() < math.pi:
+            if not _SMALLEST_ANGLE < angle.number() < math.pi:
                 raise angle.wrong("an angle between 0 and pi")
             focal = half / math.tan(angle.number() / 2)
     except (JsonError, UnicodeDecodeError) as error:

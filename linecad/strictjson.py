@@ -5,12 +5,14 @@ A *node* is a JSON value with its *place*, the way to it from the top of the fil
 
 import json
 import sys
+from collections import Counter
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 LARGEST_EXACT = 2**53 - 1  # whole numbers up to here are the same in every program, also where all numbers are doubles
+MOST_VALUES = 10_000_000  # in one text, at up to 100 bytes each in memory; a scene of 2,000 lines has 200,000
 SHOWN_LENGTH = 40  # characters of a wrong value that are repeated in a message
 
 
@@ -116,8 +118,8 @@ def _shown(value: object) -> str:
 def _without_duplicates(pairs: list[tuple[str, object]]) -> dict[str, object]:
     members = dict(pairs)
     if len(members) != len(pairs):
-        keys = [key for key, _ in pairs]
-        twice = next(key for key in keys if keys.count(key) > 1)
+        counts = Counter(key for key, _ in pairs)
+        twice = next(key for key, count in counts.items() if count > 1)
         raise JsonError(f"the key {_shown(twice)} stands twice in one object")
     return members
 
@@ -129,8 +131,11 @@ def _refuse_constant(token: str) -> object:
 def parse(text: str) -> Node:
     """The top of a JSON text.
 
-    Raises JsonError when it is not JSON, has NaN or Infinity, has one key twice, or nests too deeply.
+    Raises JsonError when it is not JSON, has NaN or Infinity, has one key twice, nests too deeply, or holds so many
+    values that they would not fit into memory.
     """
+    if sum(map(text.count, ",[{")) > MOST_VALUES:
+        raise JsonError(f"it holds more than {MOST_VALUES:,} values")
     try:
         return Node(json.loads(text, object_pairs_hook=_without_duplicates, parse_constant=_refuse_constant))
     except JsonError:

@@ -2,6 +2,8 @@
 
 import os
 import struct
+import subprocess
+import sys
 import zlib
 from pathlib import Path
 
@@ -10,9 +12,10 @@ import numpy as np
 import pytest
 from PIL import Image, ImageOps, TiffImagePlugin
 
-from linecad.decoding import decode_image
+from linecad.decoding import PIXEL_LIMIT, decode_image
 from linecad.errors import PhotoError
 
+ROOT = Path(__file__).resolve().parents[2]
 HEIGHT, WIDTH = 70, 90
 ORIENTATION = 0x0112
 
@@ -292,3 +295,32 @@ def test_64_px_are_enough(tmp_path: Path) -> None:
 def test_thumbnail_of_a_raw_file_is_not_taken_for_the_photo(tmp_path: Path) -> None:
     Image.fromarray(gradient()).save(tmp_path / "raw.tif", tiffinfo={254: 1})
     assert "raw file" in refuse(tmp_path / "raw.tif")
+
+
+def test_a_header_that_deceives_takes_no_memory(tmp_path: Path) -> None:
+    """Found by hand while fuzzing: OpenCV believes the size behind the empty line, linecad looked at another."""
+    path = tmp_path / "photo.hdr"
+    lying = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\nX=\n-Y 64 +X 64\n\n-Y 15000 +X 15000\n" + bytes(1000)
+    path.write_bytes(lying)
+    program = (
+        "import sys; from pathlib import Path; from linecad.decoding import decode_image\n"
+        "try: decode_image(Path(sys.argv[1]))\n"
+        "except Exception as error: print(type(error).__name__, error)"
+    )
+    command = [sys.executable, "-c", program, str(path)]  # OpenCV reads its limit when it is loaded
+    said = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+    assert said.startswith("PhotoError")
+    assert "cannot be decoded" in said
+
+
+def test_the_limit_of_opencv_is_ours() -> None:
+    assert os.environ["OPENCV_IO_MAX_IMAGE_PIXELS"] == str(PIXEL_LIMIT)
+
+
+def test_a_file_far_larger_than_its_pixels_is_not_read_whole(tmp_path: Path) -> None:
+    path = tmp_path / "photo.pfm"
+    with path.open("wb") as file:
+        file.write(b"PF\n64 64\n-1.0\n" + bytes(64 * 64 * 12))
+        file.truncate(10**10)  # a hole, which takes no room on the disk
+    with pytest.raises(PhotoError, match="far larger than its 64 x 64 px need"):
+        decode_image(path)

@@ -1,0 +1,79 @@
+"""One job done in this process, and the answer to everything that can go wrong in it."""
+
+import hashlib
+import math
+import traceback
+from pathlib import Path
+
+from linecad.batch.job import Figures, Job, Outcome
+from linecad.batch.thumbnail import write_thumbnail
+from linecad.errors import LinecadError, PhotoError
+from linecad.photo import Photo
+from linecad.scene import Scene
+
+
+def do(job: Job) -> Outcome:
+    """Convert the photo of a job. Never raises: a photo that breaks something is a row, not the end of the batch."""
+    try:
+        return _do(job)
+    except MemoryError:
+        return Outcome("memory limit", f"more than {job.limits.memory_mb} MiB were needed; raise --memory-limit")
+    except LinecadError as error:
+        return Outcome("failed", str(error))
+    except Exception as error:
+        return Outcome("failed", _unexpected(error))
+
+
+def photo_hash(path: Path) -> str:
+    """SHA-256 of a photo's bytes as 64 hexadecimal digits; PhotoError when it cannot be read."""
+    try:
+        if not path.is_file():  # a pipe would never end
+            raise PhotoError(f"{path} is {'not a file' if path.exists() else 'no longer there'}; give photos")
+        with path.open("rb") as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise PhotoError(f"{path} cannot be read ({error.strerror}); check its permissions") from error
+
+
+def _do(job: Job) -> Outcome:
+    if photo_hash(job.photo) != job.sha256:
+        raise PhotoError(f"{job.photo} was changed while the batch was running; run it again")
+    photo = job.conversion.read(job.photo)
+    try:
+        scene = job.conversion.reconstruct(photo, None, lambda _stage: None)
+    except LinecadError as error:
+        _write_thumbnail(job, photo, None)
+        return Outcome("failed", str(error), files=_sizes(job, [job.thumbnail]))
+    job.conversion.write(scene, photo, job.outputs)
+    _write_thumbnail(job, photo, scene)
+    return Outcome("done", figures=_figures(scene), files=_sizes(job, job.made()))
+
+
+def _write_thumbnail(job: Job, photo: Photo, scene: Scene | None) -> None:
+    write_thumbnail(job.thumbnail, photo.pixels, scene)
+
+
+def _sizes(job: Job, files: list[Path]) -> dict[str, int]:
+    return {file.relative_to(job.folder).as_posix(): file.stat().st_size for file in files}
+
+
+def _figures(scene: Scene) -> Figures:
+    gap = scene.solve.gap
+    return Figures(
+        lines=len(scene.lines),
+        crossings=len(scene.intersections),
+        real=int(scene.intersections.real.sum()),
+        planes=len(scene.planes),
+        faces=sum(len(plane.faces) for plane in scene.planes),
+        gap=float(gap) if math.isfinite(gap) else None,
+        solver=scene.solve.status,
+        notes=scene.notes,
+    )
+
+
+def _unexpected(error: Exception) -> str:
+    """An error that no user can act on, in one line, with the place in our code that a report needs."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" at {Path(frames[-1].filename).name}:{frames[-1].lineno}" if frames else ""
+    text = " ".join(str(error).split())
+    return f"linecad broke on this photo ({type(error).__name__}{place}: {text}); please report it"

@@ -1,0 +1,180 @@
+"""Kills the processes of `linecad batch` at random moments, and checks what every kill leaves behind.
+
+    python tests/benchmarks/batch_kills.py --kills 200 --photos 20
+
+Each round is a batch of the photos in a new folder. At a random moment, the process that gives out photos (and the one
+who forks, and one who works on a photo) is ended by SIGKILL, and the batch is begun again, until all is done. After
+every kill each file with a name of its own must be whole, and at the end of a round every photo must have exactly one
+row that says that it is done, and exactly the files of a run that nobody disturbed. Linux only.
+"""
+
+import argparse
+import collections
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import cv2
+
+ROOT = Path(__file__).resolve().parents[2]
+WIDTH = 320  # px of the photos
+OPTIONS = ["--format", "json,obj", "--focal", "300", "--time-limit", "30", "--workers", "2", "--quiet"]
+LONGEST_WAIT = 2.0  # s until a kill; a photo takes about one
+AT_WORK = 0.8  # share of the kills for which a photo must have been begun
+KINDS = ["parent", "nursery", "worker", "worker"]
+
+
+def make_photos(folder: Path, count: int) -> list[Path]:
+    """So many small photos, of different contents."""
+    folder.mkdir()
+    photos = []
+    for number in range(count):
+        name = ("room", "street", "courtyard")[number % 3]
+        photo = cv2.imread(str(ROOT / "samples" / f"{name}.jpg"))
+        width = WIDTH + 2 * number
+        small = cv2.resize(photo, (width, width * photo.shape[0] // photo.shape[1]), interpolation=cv2.INTER_AREA)
+        photos.append(folder / f"{name}{number:02d}.png")
+        cv2.imwrite(str(photos[-1]), small)
+    return photos
+
+
+def start(photos: Path, output: Path) -> "subprocess.Popen[bytes]":
+    """The batch in a process of its own."""
+    command = [sys.executable, "-m", "linecad", "batch", str(photos), "-o", str(output), *OPTIONS]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+
+def family(parent: int) -> dict[str, list[int]]:
+    """The processes of a batch by what they do."""
+    forks = children(parent)
+    return {"parent": [parent], "nursery": forks, "worker": [child for fork in forks for child in children(fork)]}
+
+
+def children(process: int) -> list[int]:
+    try:
+        return [int(word) for word in Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    except (FileNotFoundError, ProcessLookupError):
+        return []
+
+
+def rows(output: Path) -> list[dict]:
+    """The lines of the record that are JSON."""
+    found = []
+    path = output / "batch.jsonl"
+    for line in path.read_bytes().splitlines() if path.exists() else []:
+        try:
+            found.append(json.loads(line))
+        except ValueError:
+            continue
+    return found
+
+
+def contents(output: Path) -> dict[str, object]:
+    """Every made file with a name of its own, scenes without what a clock told; AssertionError for half a file."""
+    found: dict[str, object] = {}
+    for path in sorted(output.rglob("*")):
+        name = path.relative_to(output).as_posix()
+        if (
+            not path.is_file()
+            or path.name.startswith(".linecad-")
+            or name in ("batch.jsonl", "batch.lock", "index.html")
+        ):
+            continue
+        data = path.read_bytes()
+        assert data, f"{name} is empty"
+        if path.suffix == ".json":
+            document = json.loads(data)
+            document["solve"].pop("seconds")
+            found[name] = document
+        else:
+            found[name] = data
+    return found
+
+
+def check_whole(output: Path, expected: dict[str, object]) -> None:
+    """No file is half written: each is as in the run that nobody disturbed."""
+    for name, content in contents(output).items():
+        assert content == expected[name], f"{name} is not what it should be"
+
+
+def check_done(output: Path, photos: list[Path], expected: dict[str, object]) -> None:
+    """Every photo is done exactly once, with all its files, and nothing else lies there."""
+    done = collections.Counter(row["photo"] for row in rows(output) if row["status"] == "done")
+    assert done == dict.fromkeys(map(str, photos), 1), done
+    assert contents(output) == expected
+    assert not list(output.rglob(".linecad-*"))
+    assert (output / "index.html").is_file()
+
+
+def run_round(
+    photos: list[Path], output: Path, expected: dict[str, object], dice: random.Random, most: int
+) -> collections.Counter:
+    """One batch, disturbed until it is done; how many of each kind were killed."""
+    killed: collections.Counter = collections.Counter()
+    while True:
+        batch = start(photos[0].parent, output)
+        try:
+            while batch.poll() is None and killed.total() < most:
+                kind = dice.choice(KINDS)
+                # Mostly while photos are in work, sometimes at any moment.
+                awaited = "worker" if dice.random() < AT_WORK else "parent"
+                while batch.poll() is None and not family(batch.pid)[awaited]:
+                    time.sleep(0.005)
+                moment = time.monotonic() + dice.uniform(0, LONGEST_WAIT)
+                while batch.poll() is None and time.monotonic() < moment:
+                    time.sleep(0.005)
+                victims = family(batch.pid)[kind]
+                if batch.poll() is None and victims:
+                    try:
+                        os.kill(dice.choice(victims), signal.SIGKILL)
+                    except ProcessLookupError:  # it had just ended
+                        continue
+                    killed[kind] += 1
+                    if kind == "parent":
+                        break
+            code = batch.wait()
+        finally:
+            batch.kill()
+            said = batch.communicate()[1].decode()
+        assert code in (0, 1, -signal.SIGKILL), f"the batch ended with {code}: {said}"
+        assert "Traceback" not in said, said
+        check_whole(output, expected)
+        if code == 0:
+            check_done(output, photos, expected)
+            return killed
+
+
+def main() -> None:
+    """Run rounds until enough was killed."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--kills", type=int, default=200)
+    parser.add_argument("--photos", type=int, default=20)
+    parser.add_argument("--seed", type=int, default=0)
+    given = parser.parse_args()
+    dice = random.Random(given.seed)
+    killed: collections.Counter = collections.Counter()
+    with tempfile.TemporaryDirectory(prefix="linecad-kills-") as name:
+        folder = Path(name)
+        photos = make_photos(folder / "photos", given.photos)
+        calm = folder / "calm"
+        assert start(photos[0].parent, calm).wait() == 0
+        expected = contents(calm)
+        check_done(calm, photos, expected)
+        number, began = 0, time.monotonic()
+        while killed.total() < given.kills:
+            number += 1
+            killed += run_round(photos, folder / f"round{number}", expected, dice, given.kills - killed.total())
+            counts = ", ".join(f"{count} {kind}s" for kind, count in sorted(killed.items()))
+            print(f"round {number} done, killed so far: {counts} ({time.monotonic() - began:.0f} s)", flush=True)
+    print(f"{killed.total()} kills in {number} batches of {given.photos} photos: every photo done once, no file half")
+
+
+if __name__ == "__main__":
+    main()

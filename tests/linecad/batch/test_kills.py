@@ -1,0 +1,97 @@
+"""The batch of many kills (tests/benchmarks/batch_kills.py), short: nothing is lost, done twice or half written."""
+
+import importlib.util
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
+
+
+@pytest.fixture(scope="module")
+def kills():
+    """The module of the benchmark."""
+    specification = importlib.util.spec_from_file_location(
+        "batch_kills", ROOT / "tests" / "benchmarks" / "batch_kills.py"
+    )
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def undisturbed(kills, tmp_path_factory):
+    """The photos, and what a batch makes of them that nobody disturbs."""
+    folder = tmp_path_factory.mktemp("kills")
+    photos = kills.make_photos(folder / "photos", 4)
+    calm = kills.start(photos[0].parent, folder / "calm")
+    calm.communicate(timeout=100)
+    assert calm.returncode == 0
+    return photos, kills.contents(folder / "calm")
+
+
+def test_after_random_kills_every_photo_is_done_once(kills, undisturbed, tmp_path):
+    photos, expected = undisturbed
+    killed = kills.run_round(photos, tmp_path / "out", expected, random.Random(1), most=3)
+    assert killed.total() == 3
+
+
+def test_all_processes_die_with_the_one_that_gives_out_photos(kills, undisturbed, tmp_path):
+    photos, _ = undisturbed
+    batch = kills.start(photos[0].parent, tmp_path / "out")
+    end = time.monotonic() + 60
+    while not (family := kills.family(batch.pid))["worker"]:
+        assert time.monotonic() < end, "no photo was begun"
+    batch.kill()
+    batch.wait()
+    batch.stderr.close()
+    others = [*family["nursery"], *family["worker"]]
+    while any(Path(f"/proc/{process}").exists() for process in others):
+        assert time.monotonic() < end, "processes are left"
+        time.sleep(0.01)
+
+
+def test_ctrl_c_ends_the_batch_in_one_line_and_leaves_it_ready_to_go_on(kills, undisturbed, tmp_path):
+    photos, expected = undisturbed
+    output = tmp_path / "out"
+    batch = kills.start(photos[0].parent, output)
+    end = time.monotonic() + 60
+    while not kills.rows(output):
+        assert time.monotonic() < end, "no photo was done"
+        time.sleep(0.01)
+    batch.send_signal(signal.SIGINT)
+    said = batch.communicate(timeout=60)[1].decode()
+    assert batch.returncode == 1
+    assert len(said.splitlines()) == 1
+    assert "interrupted" in said
+    assert (output / "index.html").is_file()
+    again = kills.start(photos[0].parent, output)
+    again.communicate(timeout=100)
+    assert again.returncode == 0
+    kills.check_done(output, photos, expected)
+
+
+def test_a_second_batch_in_the_folder_is_refused_in_one_line(kills, undisturbed, tmp_path):
+    photos, _ = undisturbed
+    batch = kills.start(photos[0].parent, tmp_path / "out")
+    end = time.monotonic() + 60
+    while not (tmp_path / "out" / "batch.jsonl").exists():
+        assert time.monotonic() < end, "the batch did not begin"
+        time.sleep(0.01)
+    batch.send_signal(signal.SIGSTOP)  # it stays in the folder
+    try:
+        command = [sys.executable, "-m", "linecad", "batch", str(photos[0]), "-o", str(tmp_path / "out"), "--quiet"]
+        other = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    finally:
+        batch.send_signal(signal.SIGCONT)
+        batch.kill()
+        batch.communicate()
+    assert other.returncode == 1
+    assert f"another batch works in {tmp_path / 'out'} (process {batch.pid})" in other.stderr
+    assert len(other.stderr.splitlines()) == 1

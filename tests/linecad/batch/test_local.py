@@ -1,0 +1,218 @@
+"""Photos in processes of their own: their limits, their deaths, and what they leave."""
+
+import dataclasses
+import json
+import os
+import signal
+import struct
+import subprocess
+import sys
+import time
+import zlib
+from pathlib import Path
+
+import pytest
+
+from linecad.batch.local import LocalExecutor
+from linecad.cli import main
+from linecad.errors import LinecadError
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
+
+
+@pytest.fixture(scope="module")
+def executor():
+    """An executor of two processes, the same for all tests: what one does to it must not harm the next."""
+    executor = LocalExecutor(2, (".json",))
+    yield executor
+    executor.close()
+
+
+def outcomes(executor, count, seconds=60.0):
+    """The outcomes of so many jobs, by ticket."""
+    found = {}
+    end = time.monotonic() + seconds
+    while len(found) < count:
+        assert time.monotonic() < end, f"only {sorted(found)} ended"
+        found.update(executor.wait(1.0))
+    return found
+
+
+def children_of(process):
+    """The processes that a process has forked."""
+    listed = subprocess.run(["ps", "-o", "pid=", "--ppid", str(process)], capture_output=True, text=True, check=False)
+    return [int(word) for word in listed.stdout.split()]
+
+
+def nursery(executor):
+    return executor._process.pid
+
+
+def wait_until(is_so, seconds=30.0):
+    end = time.monotonic() + seconds
+    while not is_so():
+        assert time.monotonic() < end, "it never came so far"
+        time.sleep(0.01)
+
+
+def slow_photo(path):
+    """A photo with so much noise in it that it keeps its process busy for seconds."""
+    import cv2
+    import numpy as np
+
+    noise = np.random.default_rng(0).integers(0, 255, (3000, 4000), np.uint8)
+    cv2.imwrite(str(path), cv2.resize(noise, (8000, 6000), interpolation=cv2.INTER_NEAREST))
+    return path
+
+
+@pytest.fixture(scope="module")
+def slow(tmp_path_factory):
+    return slow_photo(tmp_path_factory.mktemp("slow") / "slow.png")
+
+
+def test_photos_are_converted_and_told_of(executor, survey, job_of, output):
+    photos = sorted(survey(3).iterdir())
+    for ticket, photo in enumerate(photos):
+        executor.submit(ticket, job_of(photo))
+    found = outcomes(executor, 3)
+    for ticket, photo in enumerate(photos):
+        outcome = found[ticket]
+        assert outcome.status == "done", outcome
+        assert outcome.figures.lines > 20
+        assert outcome.files.keys() == {f"{photo.stem}.json", f"thumbnails/{photo.stem}.jpg"}
+        assert all((output / file).stat().st_size == size for file, size in outcome.files.items())
+        assert outcome.cpu_seconds > 0.05
+        assert 50 < outcome.memory_mb < 1500
+
+
+def test_a_photo_makes_the_same_files_as_convert(executor, survey, job_of, output, tmp_path):
+    suffixes = (".json", ".dxf", ".glb", ".obj")
+    photo = sorted(survey(1).iterdir())[0]
+    executor.submit(0, job_of(photo, suffixes))
+    assert outcomes(executor, 1)[0].status == "done"
+    single = [tmp_path / f"{photo.stem}{suffix}" for suffix in suffixes]
+    options = [option for path in single for option in ("-o", str(path))]
+    assert main(["convert", str(photo), *options, "--focal", "300", "--time-limit", "30", "--quiet"]) == 0
+    for path in single:
+        ours, theirs = (output / f"{photo.stem}{path.suffix}").read_bytes(), path.read_bytes()
+        if path.suffix == ".json":  # the solver's seconds are those of a clock
+            ours, theirs = (json.loads(data) for data in (ours, theirs))
+            assert ours["solve"].pop("seconds") > 0
+            assert theirs["solve"].pop("seconds") > 0
+        assert ours == theirs, path.suffix
+
+
+def test_a_photo_that_cannot_be_read_is_an_outcome(executor, job_of, tmp_path):
+    photo = tmp_path / "bad.jpg"
+    photo.write_bytes(b"no photo")
+    executor.submit(0, job_of(photo))
+    outcome = outcomes(executor, 1)[0]
+    assert outcome.status == "failed"
+    assert "is not an image that linecad can read" in outcome.error
+
+
+def test_a_photo_that_was_changed_on_the_way_is_an_outcome(executor, survey, job_of):
+    photo = sorted(survey(1).iterdir())[0]
+    executor.submit(0, dataclasses.replace(job_of(photo), sha256="0" * 64))
+    assert "was changed" in outcomes(executor, 1)[0].error
+
+
+def test_a_photo_without_lines_has_a_picture_all_the_same(executor, job_of, tmp_path, output):
+    import cv2
+    import numpy as np
+
+    photo = tmp_path / "grey.png"
+    cv2.imwrite(str(photo), np.full((300, 400), 128, np.uint8))
+    executor.submit(0, job_of(photo))
+    outcome = outcomes(executor, 1)[0]
+    assert outcome.status == "failed"
+    assert outcome.figures is None
+    assert (output / "thumbnails" / "grey.jpg").stat().st_size == outcome.files["thumbnails/grey.jpg"]
+
+
+def test_the_time_limit_ends_a_photo_and_no_other(executor, slow, survey, job_of):
+    executor.submit(0, job_of(slow, seconds=0.5))
+    executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))
+    found = outcomes(executor, 2)
+    assert found[0].status == "time limit"
+    assert "--photo-limit" in found[0].error
+    assert found[1].status == "done"
+
+
+def test_the_memory_limit_ends_a_photo_and_no_other(executor, slow, survey, job_of):
+    executor.submit(0, job_of(slow, memory_mb=400))
+    executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))
+    found = outcomes(executor, 2)
+    assert found[0].status in ("memory limit", "failed", "killed")
+    assert "memory" in found[0].error
+    assert found[0].memory_mb < 450
+    assert found[1].status == "done"
+
+
+def test_a_killed_process_is_an_outcome_and_harms_no_other(executor, slow, survey, job_of):
+    executor.submit(0, job_of(slow))
+    wait_until(lambda: children_of(nursery(executor)))
+    victim = children_of(nursery(executor))[0]
+    executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))
+    os.kill(victim, signal.SIGKILL)
+    found = outcomes(executor, 2)
+    assert found[0].status == "killed"
+    assert not found[0].is_lost
+    assert "SIGKILL" in found[0].error
+    assert found[1].status == "done"
+
+
+def test_when_the_nursery_dies_its_photos_are_lost_and_the_next_one_starts_another(executor, slow, survey, job_of):
+    executor.submit(0, job_of(slow))
+    wait_until(lambda: children_of(nursery(executor)))
+    orphan = children_of(nursery(executor))[0]
+    os.kill(nursery(executor), signal.SIGKILL)
+    assert outcomes(executor, 1)[0].is_lost
+    wait_until(lambda: not is_running(orphan))
+    executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))
+    assert outcomes(executor, 1)[1].status == "done"
+
+
+def is_running(process):
+    try:
+        return Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()[0] != "Z"
+    except FileNotFoundError:
+        return False
+
+
+def test_all_processes_are_gone_after_close(slow, job_of):
+    executor = LocalExecutor(2, (".json",))
+    executor.submit(0, job_of(slow))
+    parent = nursery(executor)
+    wait_until(lambda: children_of(parent))
+    child = children_of(parent)[0]
+    executor.close()
+    assert not is_running(parent)
+    assert not is_running(child)
+
+
+def test_one_thread_a_process(executor, slow, job_of):
+    executor.submit(0, job_of(slow))
+    wait_until(lambda: children_of(nursery(executor)))
+    child = children_of(nursery(executor))[0]
+    time.sleep(0.3)
+    assert "Threads:\t1\n" in Path(f"/proc/{child}/status").read_text(encoding="ascii")
+
+
+def test_a_process_that_cannot_start_says_why(monkeypatch):
+    monkeypatch.setattr("linecad.batch.local.FORMATS", {".json": type("Row", (), {"module": "no_such_module"})})
+    with pytest.raises(LinecadError, match="no_such_module"):
+        LocalExecutor(1, (".json",))
+
+
+def test_a_photo_that_claims_to_be_huge_is_refused_at_once(executor, job_of, tmp_path):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", 200_000, 200_000, 8, 2, 0, 0, 0)
+    photo = tmp_path / "huge.png"
+    photo.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IEND", b""))
+    executor.submit(0, job_of(photo))
+    outcome = outcomes(executor, 1)[0]
+    assert "200 megapixels" in outcome.error
+    assert outcome.memory_mb < 300
