@@ -64,8 +64,8 @@ def main() -> None:
             print(
                 f"{workers} workers: {60 * len(rows) / took:.1f} photos a minute ({took:.0f} s), "
                 f"{sum(row['status'] == 'done' for row in rows)} of {len(photos)} done; processor "
-                f"{statistics.mean(row['cpu_seconds'] for row in rows):.2f} s a photo; memory of a process, mean of the "
-                f"first quarter {statistics.mean(memory[:quarter]):.0f} MiB, of the last "
+                f"{statistics.mean(row['cpu_seconds'] for row in rows):.2f} s a photo; memory of a process, mean "
+                f"of the first quarter {statistics.mean(memory[:quarter]):.0f} MiB, of the last "
                 f"{statistics.mean(memory[-quarter:]):.0f}; load {os.getloadavg()[0]:.1f}",
                 flush=True,
             )
