@@ -24,6 +24,7 @@ FIRST_SHARE, SHARE = 0.25, 0.5  # of the pixels of a cell that its plane must wi
 FREE_SHARE = 0.7  # of the pixels of a cell that no other plane has; then it comes back
 ROUNDS = 4
 PRECISION = 1e-5  # px; to which cut outlines are rounded, so that no spike of rounding is left
+LEAST_CORNERS = 3
 GRAZING = 1e-6  # relative; computed corners so near to a line's coordinate are on it
 
 
@@ -185,7 +186,11 @@ def _face(
         distance = np.abs(pixels[:, None] - piece.pixels[None]).max(axis=2)
         known_corner = distance.min(axis=1) <= 2 * PRECISION
         flat[known_corner] = piece.corners[distance.argmin(axis=1)[known_corner]]
-        rings.append(flat)
+        # Two corners of the cut outline may be one corner of a cell.
+        rings.append(flat[(np.abs(flat - np.roll(flat, 1, axis=0)) > GRAZING * abs(sheet.plane.offset)).any(axis=1)])
+    if len(rings[0]) < LEAST_CORNERS:
+        return None
+    rings[1:] = [ring for ring in rings[1:] if len(ring) >= LEAST_CORNERS]
     if not shapely.Polygon(rings[0], rings[1:]).is_valid:
         return None
     return Face(number, _in_space(sheet, rings[0]), tuple(_in_space(sheet, ring) for ring in rings[1:]))

@@ -79,6 +79,13 @@ def test_the_depths_of_component_0_are_true(sample):
     assert score.precision_5 >= precision
 
 
+def test_no_ring_has_a_corner_twice(sample):
+    _, _, scene = sample
+    rings = [ring for _, face in scene.faces for ring in (face.outline, *face.holes)]
+    apart = [float(np.linalg.norm(ring - np.roll(ring, 1, axis=0), axis=1).min()) for ring in rings]
+    assert min(apart) > 1e-6
+
+
 def test_a_photo_that_contradicts_itself_is_said_to(sample):
     name, options, scene = sample
     is_said = any("contradict each other often" in note for note in scene.notes)
