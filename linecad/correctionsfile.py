@@ -25,7 +25,7 @@ from linecad.corrections import (
     Split,
 )
 from linecad.errors import CorrectionsFileError
-from linecad.files import write_text_atomically
+from linecad.files import read_text, write_text_atomically
 from linecad.scene import AXES
 from linecad.strictjson import JsonError, Node, parse
 
@@ -42,22 +42,11 @@ OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "fra
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
     """The corrections in a file; CorrectionsFileError when it cannot be read or breaks docs/corrections.md."""
-    shown = " ".join(str(path).splitlines())
+    text = read_text(path, LARGEST_FILE, "corrections file", CorrectionsFileError)
     try:
-        with Path(path).open("rb") as file:
-            size = os.fstat(file.fileno()).st_size
-            data = file.read(LARGEST_FILE + 1) if size <= LARGEST_FILE else b""
-    except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise CorrectionsFileError(f"{shown} cannot be read: {reason}; give a corrections file") from error
-    if max(size, len(data)) > LARGEST_FILE:
-        raise CorrectionsFileError(f"{shown} is larger than {LARGEST_FILE // 2**20} MiB; a corrections file is smaller")
-    try:
-        return corrections_from_json(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise CorrectionsFileError(f"{shown}: byte {error.start} is not UTF-8; save it as UTF-8") from None
+        return corrections_from_json(text)
     except CorrectionsFileError as error:
-        raise CorrectionsFileError(f"{shown}: {error}") from None
+        raise CorrectionsFileError(f"{' '.join(str(path).splitlines())}: {error}") from None
 
 
 def write_corrections(corrections: Corrections, path: str | os.PathLike[str]) -> None:

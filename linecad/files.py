@@ -8,7 +8,7 @@ import stat
 from collections.abc import Callable
 from pathlib import Path
 
-from linecad.errors import OutputError
+from linecad.errors import LinecadError, OutputError
 
 # The hidden name says nothing about the result: no library can copy the result's name out of it into the file.
 _TEMPORARY_PREFIX = ".linecad-"
@@ -134,3 +134,21 @@ def _reason(error: OSError | ValueError) -> str:
 def _shown(path: Path) -> str:
     """The path on one line, printable even where its name is not UTF-8."""
     return " ".join(os.fsencode(path).decode(errors="replace").splitlines()) or "."
+
+
+def read_text(path: str | os.PathLike[str], largest: int, name: str, error: type[LinecadError]) -> str:
+    """The text of a file of at most `largest` bytes in UTF-8; an `error` that calls it by `name` where it is not so."""
+    shown = " ".join(str(path).splitlines())
+    try:
+        with Path(path).open("rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            data = file.read(largest + 1) if size <= largest else b""
+    except (OSError, ValueError) as failure:  # ValueError: a path with a null character
+        reason = failure.strerror if isinstance(failure, OSError) else str(failure)
+        raise error(f"{shown} cannot be read: {reason}; give a {name}") from failure
+    if max(size, len(data)) > largest:
+        raise error(f"{shown} is larger than {largest // 2**20} MiB; a {name} is smaller")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as failure:
+        raise error(f"{shown}: byte {failure.start} is not UTF-8; give a {name}, saved as UTF-8") from None

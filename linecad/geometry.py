@@ -6,7 +6,7 @@ Frames are those of `linecad.scene`. `K` is the camera matrix in px, `R` takes w
 
 import numpy as np
 
-from linecad.scene import Float
+from linecad.scene import Bool, Float
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
 DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
@@ -79,3 +79,15 @@ def rotation_about(vector: Float) -> Float:
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     rotation: Float = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     return rotation
+
+
+def inside_ring(points: Float, ring: Float) -> Bool:
+    """Which points (M, 2) lie inside a ring (V, 2): those from which a ray crosses it an odd number of times."""
+    inside = np.zeros(len(points), bool)
+    for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
+        if start[1] == end[1]:
+            continue
+        spans = (points[:, 1] < start[1]) != (points[:, 1] < end[1])
+        at = start[0] + (points[:, 1] - start[1]) / (end[1] - start[1]) * (end[0] - start[0])
+        inside ^= spans & (points[:, 0] < at)
+    return inside

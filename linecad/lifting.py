@@ -12,6 +12,7 @@ from scipy.sparse import csr_matrix, diags_array
 from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
+from linecad.groups import group_numbers
 from linecad.offsets import MIN_TOLERANCE, Merges, find_merges
 from linecad.scene import Bool, Float, Int, LineGraph, Solution
 
@@ -84,10 +85,7 @@ def _normal(graph: LineGraph, chosen: Bool) -> csr_matrix:
 
 def _parts(graph: LineGraph, chosen: Bool) -> Int:
     """Number (N,) of the group of lines that chosen crossings with a say tie to each line."""
-    used = chosen & graph.informative
-    i, j = graph.edges[used].T
-    links = csr_matrix((np.ones(len(i)), (i, j)), (len(graph.segments), len(graph.segments)))
-    return np.asarray(connected_components(links, directed=False)[1], np.int64)
+    return group_numbers(len(graph.segments), graph.edges[chosen & graph.informative])
 
 
 def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = None) -> Int:

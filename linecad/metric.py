@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.errors import ScaleError
-from linecad.geometry import world_rays
+from linecad.geometry import inside_ring, world_rays
 from linecad.scene import AXES, Face, Float, Plane, Scene
 
 REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in the photo lies on it
@@ -187,15 +187,9 @@ def _meets(ray: Float, plane: Plane, face: Face) -> bool:
     if ray[plane.axis] * plane.offset <= 0:
         return False
     others = [axis for axis in range(3) if axis != plane.axis]
-    u, v = (ray * (plane.offset / ray[plane.axis]))[others]
-    inside = False
-    for ring in (face.outline, *face.holes):
-        a, b = ring[:, others], np.roll(ring[:, others], -1, axis=0)
-        spans = (a[:, 1] > v) != (b[:, 1] > v)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            crossing = a[:, 0] + (v - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
-        inside ^= bool((spans & (crossing > u)).sum() % 2)
-    return inside
+    point = (ray * (plane.offset / ray[plane.axis]))[others][None]
+    rings = (face.outline, *face.holes)
+    return sum(bool(inside_ring(point, ring[:, others])[0]) for ring in rings) % 2 == 1
 
 
 def _checked(scene: Scene, units: float, what: str) -> float:

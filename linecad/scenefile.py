@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import cast
 
 from linecad.errors import OutputError, SceneFileError
-from linecad.files import write_atomically
+from linecad.files import read_text, write_text_atomically
 from linecad.scene import Scene
 from linecad.scenedocument import document_of, scene_of
 from linecad.strictjson import Node, parse
@@ -17,32 +17,16 @@ LARGEST_FILE = 256 * 2**20  # bytes; a scene of 2,000 lines takes about one hund
 
 def read_scene(path: str | os.PathLike[str]) -> Scene:
     """The scene in a file; SceneFileError when it cannot be read or breaks a promise of docs/scene-file.md."""
-    shown = " ".join(str(path).splitlines())
+    text = read_text(path, LARGEST_FILE, "scene file", SceneFileError)
     try:
-        with Path(path).open("rb") as file:
-            size = os.fstat(file.fileno()).st_size
-            data = file.read(LARGEST_FILE + 1) if size <= LARGEST_FILE else b""
-    except (OSError, ValueError) as error:  # ValueError: a path with a null character
-        reason = error.strerror if isinstance(error, OSError) else str(error)
-        raise SceneFileError(f"{shown} cannot be read: {reason}; give a scene file") from error
-    if max(size, len(data)) > LARGEST_FILE:
-        raise SceneFileError(f"{shown} is larger than {LARGEST_FILE // 2**20} MiB; a scene file is smaller")
-    try:
-        return scene_from_json(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise SceneFileError(f"{shown}: byte {error.start} is not UTF-8; give a scene file, saved as UTF-8") from None
+        return scene_from_json(text)
     except SceneFileError as error:
-        raise SceneFileError(f"{shown}: {error}") from None
+        raise SceneFileError(f"{' '.join(str(path).splitlines())}: {error}") from None
 
 
 def write_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
     """Write the scene file, whole or not at all; OutputError when that cannot be done."""
-    data = scene_to_json(scene).encode()
-
-    def write(temporary: Path) -> None:
-        temporary.write_bytes(data)
-
-    write_atomically(Path(path), write)
+    write_text_atomically(Path(path), scene_to_json(scene))
 
 
 def scene_from_json(text: str) -> Scene:

@@ -12,18 +12,17 @@ the whole. Their sum is the *doubt* about the photo: small for one building, wha
 several buildings that hide each other.
 """
 
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from linecad.geometry import REFERENCE_WIDTH
+from linecad.groups import group_numbers
 from linecad.hinges import HANGING, Held
 from linecad.scene import Bool, Float, Int, LineGraph
+from linecad.threads import thread_count
 
 FITS = 30
 FITS_FOR_DOUBT = 9
@@ -68,21 +67,15 @@ def draw(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Dra
             rank = random.permutation(count) / max(1, count)
         out = LEFT_OUT * (number % in_turn)
         present[number] = (rank < out) | (rank >= out + LEFT_OUT)
-    with ThreadPoolExecutor(_threads()) as pool:  # the linear algebra of sparse systems runs beside the interpreter
+    with ThreadPoolExecutor(thread_count()) as pool:  # the linear algebra of sparse systems runs beside the interpreter
         depth = np.array(list(pool.map(refit, present))).reshape(fits, count)
     group = np.zeros((fits, count), np.int64)
     for number in range(fits):
         apart = np.abs(depth[number, first] - depth[number, second] - graph.log_ratio)
         ties = graph.informative & present[number, first] & present[number, second]
         ties &= apart <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
-        group[number] = _groups(count, graph.edges[ties])
+        group[number] = group_numbers(count, graph.edges[ties])
     return Draws(present, depth, group)
-
-
-def _threads() -> int:
-    """As many as this process may use: OMP_NUM_THREADS where that is set, as by runs of many photos, else the cores."""
-    asked = os.environ.get("OMP_NUM_THREADS", "")
-    return max(1, int(asked)) if asked.isdigit() else os.cpu_count() or 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +185,7 @@ def _densest(values: Float) -> float:
 
 def _largest_part(count: int, edges: Int, lines: Bool) -> Bool:
     """Mask (N,) of the largest group that edges tie among the masked lines."""
-    group = _groups(count, edges[lines[edges].all(axis=1)])
+    group = group_numbers(count, edges[lines[edges].all(axis=1)])
     if not lines.any():
         return np.zeros(count, bool)
     largest: Bool = lines & (group == np.bincount(group[lines]).argmax())
@@ -203,7 +196,7 @@ def _with_hanging(body: Int, bodies: int, edges: Int) -> Int:
     """The bodies (N,), with small groups of other lines on the body that most of their edges lead to."""
     body = body.copy()
     rest = body < 0
-    group = _groups(len(body), edges[rest[edges].all(axis=1)])
+    group = group_numbers(len(body), edges[rest[edges].all(axis=1)])
     size = np.bincount(group[rest], minlength=len(body))
     touched: dict[int, list[int]] = {}
     for line, other in np.concatenate([edges, edges[:, ::-1]]).tolist():
@@ -218,9 +211,3 @@ def _with_hanging(body: Int, bodies: int, edges: Int) -> Int:
             body[rest & (group == number)] = others
             others += 1
     return body
-
-
-def _groups(count: int, edges: Int) -> Int:
-    """Number (N,) of the group that edges tie each line to."""
-    links = csr_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), (count, count))
-    return np.asarray(connected_components(links, directed=False)[1], np.int64)

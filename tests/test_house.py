@@ -23,7 +23,7 @@ PACKAGES = ("linecad", "exporters", "solver")
 FLOORS = [
     ["linecad"],
     ["linecad.errors"],
-    ["linecad.scene", "linecad.strictjson", "linecad.files"],
+    ["linecad.scene", "linecad.strictjson", "linecad.files", "linecad.threads"],
     [
         "linecad.scenedocument",
         "linecad.fspy",
@@ -47,6 +47,7 @@ FLOORS = [
         "linecad.calibration",
         "linecad.decoding",
         "linecad.disjoint",
+        "linecad.groups",
         "linecad.ties",
         "linecad.weighting",
         "linecad.odds",

@@ -17,15 +17,8 @@ from typing import Any
 from exporters.formats import FORMATS
 from linecad.batch.job import Job, Outcome, Status
 from linecad.errors import LinecadError
+from linecad.threads import THREADS
 
-# One thread a process: several processes would fight for the cores.
-THREADS = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-    "NUMEXPR_NUM_THREADS",
-)
 START_SECONDS = 300.0  # in which all libraries are loaded, from a network disk that is busy too
 END_SECONDS = 10.0
 
@@ -99,6 +92,7 @@ class LocalExecutor:
         """Start the nursery and wait until it has loaded everything."""
         ours, theirs = Pipe()
         command = [sys.executable, "-m", "linecad.batch.nursery", str(theirs.fileno()), *self._modules]
+        # One thread a process: several processes would fight for the cores.
         environment = {**os.environ, **dict.fromkeys(THREADS, "1")}
         # The packages are found there as they were found here, also where the working folder made the difference.
         environment["PYTHONPATH"] = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)

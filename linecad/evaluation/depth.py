@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.geometry import world_rays
+from linecad.geometry import inside_ring, world_rays
 from linecad.scene import Bool, Face, Float, Plane, Scene
 
 REACH = 4.0  # px between a surveyed point and the line that is taken to show it
@@ -67,24 +67,12 @@ def face_depths(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) ->
         with np.errstate(divide="ignore", invalid="ignore"):
             depth = plane.offset / rays[:, plane.axis]
         points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
-        inside = _inside(points, face.outline[:, flat])
+        inside = inside_ring(points, face.outline[:, flat])
         for hole in face.holes:
-            inside &= ~_inside(points, hole[:, flat])
+            inside &= ~inside_ring(points, hole[:, flat])
         hit = inside & (depth > 0) & (depth < nearest)
         nearest[hit] = depth[hit]
     return np.where(np.isfinite(nearest), nearest, np.nan)
-
-
-def _inside(points: Float, ring: Float) -> Bool:
-    """Which points (M, 2) lie inside a ring (V, 2): those from which a ray crosses it an odd number of times."""
-    inside = np.zeros(len(points), bool)
-    for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        if start[1] == end[1]:
-            continue
-        spans = (points[:, 1] < start[1]) != (points[:, 1] < end[1])
-        at = start[0] + (points[:, 1] - start[1]) / (end[1] - start[1]) * (end[0] - start[0])
-        inside ^= spans & (points[:, 0] < at)
-    return inside
 
 
 def line_depths(scene: Scene, pixels: Float, lines: Bool) -> Float:

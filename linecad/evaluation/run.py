@@ -12,15 +12,7 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.measure import PhotoResult, measure_photo
 from linecad.evaluation.methods import Settings
-
-# One thread a process: several processes would fight for the cores, and sums would come out in another order.
-THREADS = (
-    "OMP_NUM_THREADS",
-    "OPENBLAS_NUM_THREADS",
-    "MKL_NUM_THREADS",
-    "VECLIB_MAXIMUM_THREADS",
-    "NUMEXPR_NUM_THREADS",
-)
+from linecad.threads import THREADS
 
 PhotoReport = Callable[[int, int, PhotoResult], None]  # how many are done, of how many, the last one
 
@@ -55,7 +47,10 @@ def evaluate(
 
 @contextmanager
 def _one_thread() -> Iterator[None]:
-    """Processes that start in here compute with one thread; libraries read this before they are loaded."""
+    """Processes that start in here compute with one thread each.
+
+    Several would fight for the cores, and sums would come out in another order.
+    """
     before = {name: os.environ.get(name) for name in THREADS}
     os.environ.update(dict.fromkeys(THREADS, "1"))
     try:

@@ -10,7 +10,8 @@ from linecad.cli import main
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.methods import Settings
-from linecad.evaluation.run import THREADS, evaluate
+from linecad.evaluation.run import evaluate
+from linecad.threads import THREADS
 
 
 def without_seconds(value):
