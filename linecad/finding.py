@@ -6,13 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
+from linecad.calibrating import calibrate
 from linecad.corrections import SetFrame
 from linecad.errors import ReconstructionError
-from linecad.geometry import central_camera
 from linecad.graph import EXTENSION, MIN_LENGTH, MIN_TOLERANCE, Weights, build_line_graph, components
 from linecad.pencils import find_pencil_lines
 from linecad.photo import Photo
-from linecad.scene import Camera, LineGraph, ManhattanFrame, Segments
+from linecad.scene import Camera, Certainty, LineGraph, ManhattanFrame, Segments
 from linecad.segments import (
     GROUP_ALONG,
     SMALL_WIDTH,
@@ -22,12 +22,10 @@ from linecad.segments import (
     label_segments,
 )
 from linecad.support import FITS_FOR_DOUBT, MOST_DOUBT, doubt, draw
-from linecad.vanishing import FOCAL_SIGMA, default_focal, find_focal, find_frame, fit_frame
 from solver.problem import SolveOptions
 from solver.robust import RobustFit
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
-MIN_FRAME_SHARE = 0.3  # of the segment length; a frame that explains less is doubtful
 StageReport = Callable[[str], None]
 
 
@@ -93,6 +91,7 @@ class FoundLines:
     notes: tuple[str, ...]  # doubts so far
     reach: Reach | None = None  # with which the segments were grouped to whole lines; None: they are fragments
     known_doubt: float | None = None  # about the photo they come from, where that was asked before
+    certainty: Certainty | None = None  # of camera and frame
 
     def grouped(self, options: ReconstructOptions) -> "FoundLines":
         """The whole lines, as the reach in use makes them of the fragments: what a person sees and corrects."""
@@ -156,42 +155,14 @@ def name_lines(
 ) -> FoundLines:
     """The same from raw segments, as `linecad.segments.find_segments` gives them."""
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
-    camera, notes = _camera(photo, raw)
-    if drawn is None:
-        frame = find_frame(raw, camera.matrix)
-    else:
-        ends = np.array([line.ends for line in drawn.lines])
-        frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
-        notes.append("the Manhattan frame is that of lines drawn by hand")
-    if frame.explained < MIN_FRAME_SHARE:
-        notes.append(f"only {frame.explained:.0%} of the segment length runs along the three Manhattan directions")
+    calibrated = calibrate(photo, raw, drawn)
+    camera, frame = calibrated.camera, calibrated.frame
     if faint and photo.width >= SMALL_WIDTH:
         on_stage("finding faint segments")
         raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
     pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
-    return FoundLines(camera, frame, pieces, tuple(notes))
-
-
-def _camera(photo: Photo, raw: Segments) -> tuple[Camera, list[str]]:
-    """The photo's camera, or one whose focal length the vanishing points tell; and the doubts about it."""
-    notes = list(photo.notes)
-    if photo.camera is not None:
-        return photo.camera, notes
-    guess = find_focal(raw, photo.width, photo.height)
-    if guess.relative_error <= FOCAL_SIGMA:
-        notes.append(
-            f"focal length guessed from the vanishing points: {guess.focal:.0f} px, "
-            f"standard error {guess.relative_error:.1%} or more; principal point assumed in the middle"
-        )
-        matrix = central_camera(guess.focal, photo.width, photo.height)
-        return Camera(photo.width, photo.height, matrix, "vanishing points"), notes
-    focal = default_focal(photo.width, photo.height)
-    notes.append(
-        f"focal length not known and not to be told from the vanishing points; {focal:.0f} px assumed "
-        "(28 mm equivalent), so depths may be stretched; give --focal or --camera"
-    )
-    return Camera(photo.width, photo.height, central_camera(focal, photo.width, photo.height), "default"), notes
+    return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty)
 
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import cv2
 import numpy as np
@@ -17,12 +17,23 @@ from linecad.errors import CameraError
 from linecad.geometry import DIAGONAL_35MM, central_camera
 from linecad.scene import Camera, CameraSource
 
+Framing = Literal["whole", "cropped", "unknown"]
+
 ASPECT_TOLERANCE = 0.01  # relative; rounding to whole pixels changes the aspect of a scaled photo by less
 SCALE_TOLERANCE = 0.002  # relative; below it a photo counts as not resized
 RESOLUTION_TOLERANCE = 0.02  # relative; sensor resolutions that differ by more along x and y contradict each other
 OUTSIDE_NOTED = 0.005  # share of the undistorted photo that lies outside the old one; less is not worth a note
 OUTSIDE_REFUSED = 0.5
 MM_PER_RESOLUTION_UNIT = {2: 25.4, 3: 10.0, 4: 1.0, 5: 0.001}  # EXIF FocalPlaneResolutionUnit: inch, cm, mm, um
+
+
+@dataclass(frozen=True)
+class FocalHint:
+    """What EXIF says of the focal length, and how far to trust it."""
+
+    focal: float  # px, of this photo
+    relative_error: float  # standard error over focal length
+    origin: str  # where it stands, in words that fit after "focal length from"
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +44,8 @@ class Photo:
     pixels: NDArray[np.uint8]  # (H, W, 3) RGB, read-only; upright, undistorted, square pixels
     camera: Camera | None  # None: the focal length must come from the vanishing points
     notes: tuple[str, ...] = ()  # doubts that did not stop the work
+    hint: FocalHint | None = None  # where the camera is that of EXIF; also of a photo whose camera is None
+    framing: Framing = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
 
     def __post_init__(self) -> None:
         if self.pixels.dtype != np.uint8 or self.pixels.ndim != 3 or self.pixels.shape[2] != 3:

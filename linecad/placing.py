@@ -72,7 +72,8 @@ def place(
             )
         solution = replace(solution, connected=solution.connected & ~refused)
     lifted = lift(graph, solution)
-    return _scene(photo, found.camera, found.frame, graph, solution, lifted, notes, options, held, firm)
+    scene = _scene(photo, found.camera, found.frame, graph, solution, lifted, notes, options, held, firm)
+    return replace(scene, certainty=found.certainty)
 
 
 def _within_groups(graph: LineGraph, solution: Solution) -> Solution:

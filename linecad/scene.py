@@ -28,6 +28,7 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 EdgeKind = Literal["L", "T", "X", "collinear"]
 Confidence = Literal["proven", "supported", "weak"]
+Quality = Literal["good", "doubtful", "poor"]
 Formulation = Literal["gain", "paper"]
 Status = Literal[
     "optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit", "heuristic", "robust fit"
@@ -36,6 +37,7 @@ Status = Literal[
 CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 EDGE_KINDS: tuple[EdgeKind, ...] = get_args(EdgeKind)
 CONFIDENCES: tuple[Confidence, ...] = get_args(Confidence)
+QUALITIES: tuple[Quality, ...] = get_args(Quality)
 STATUSES: tuple[Status, ...] = get_args(Status)
 
 
@@ -159,6 +161,29 @@ class ManhattanFrame:
         off = np.abs(self.rotation @ self.rotation.T - np.eye(3)).max()
         if off > 1e-6 or np.linalg.det(self.rotation) < 0:
             raise ValueError(f"ManhattanFrame.rotation is not a rotation (off by {off:.3g})")
+
+
+@dataclass(frozen=True, eq=False)
+class Certainty:
+    """How sure a camera and its Manhattan frame are: standard errors, and what they mean in plain words.
+
+    An error is None where the quantity was given and not estimated.
+    """
+
+    rotation: Float  # (3,) rad, of small turns about x, y and z of the camera
+    focal: float | None  # px
+    center: tuple[float, float] | None  # px, of the principal point
+    radial: float | None  # of OpenCV's k1
+    quality: Quality
+    reason: str  # for the quality: one clause, without a full stop
+
+    def __post_init__(self) -> None:
+        _freeze(self, "rotation", np.float64, (3,))
+        if self.quality not in QUALITIES:
+            raise ValueError(f"Certainty.quality is {self.quality!r}, expected {', '.join(QUALITIES)}")
+        errors = [*self.rotation.tolist(), self.focal, *(self.center or ()), self.radial]
+        if any(error is not None and not 0 <= error < np.inf for error in errors):
+            raise ValueError(f"Certainty holds the standard errors {errors}, expected numbers from 0")
 
 
 @dataclass(frozen=True, eq=False)
@@ -377,6 +402,7 @@ class Scene:
     solve: SolveReport
     metres_per_unit: float | None = None
     notes: tuple[str, ...] = field(default=())
+    certainty: Certainty | None = None  # of camera and rotation; None in scenes that do not tell
 
     def __post_init__(self) -> None:
         _freeze(self, "rotation", np.float64, (3, 3))

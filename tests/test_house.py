@@ -71,6 +71,7 @@ FLOORS = [
         "linecad.correcting",
     ],
     ["linecad.support"],  # of hinges
+    ["linecad.calibrating", "linecad.straightening"],
     ["linecad.finding"],
     ["linecad.placing"],
     ["linecad.pipeline", "linecad.dataset.choice"],
