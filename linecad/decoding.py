@@ -158,10 +158,12 @@ def _is_raw_preview(image: Image.Image) -> bool:
 
 
 def _read_exif(image: Image.Image) -> dict[int, Any]:
-    """The EXIF tags of the picture and of its camera part."""
+    """The EXIF tags of the picture, of its camera part and of the part that tells the size of a larger original."""
     try:
         exif = image.getexif()
-        return {**exif, **exif.get_ifd(ExifTags.IFD.Exif)}
+        # The camera part first: only after it Pillow knows where the last part stands.
+        camera = exif.get_ifd(ExifTags.IFD.Exif)
+        return {**exif.get_ifd(ExifTags.IFD.Interop), **exif, **camera}
     except Exception:  # damaged metadata fails in many ways and is no reason to refuse the picture
         return {}
 

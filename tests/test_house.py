@@ -46,6 +46,8 @@ FLOORS = [
     [
         "linecad.calibration",
         "linecad.decoding",
+        "linecad.exif",
+        "linecad.sensors",
         "linecad.disjoint",
         "linecad.groups",
         "linecad.ties",
@@ -55,7 +57,8 @@ FLOORS = [
         "linecad.outlines",
         "linecad.metric",
     ],
-    ["linecad.sheets"],  # a part of faces
+    ["linecad.sheets", "linecad.framing"],  # parts of faces and of photo
+    ["linecad.hints"],  # a part of photo
     [
         "linecad.photo",
         "linecad.segments",
@@ -116,6 +119,7 @@ HEAVY = {
     "distributed",
     "ezdxf",
     "highspy",
+    "lensfunpy",
     "mitsuba",
     "networkx",
     "OCP",
