@@ -25,7 +25,7 @@ OTHER_ASPECT = (
     0.03  # more with a database where the photo has other proportions than the sensor: some sensors are wider
 )
 UNCONFIRMED = 0.05  # more where resolution stands alone: makers who store a smaller photo may leave it as it was
-SIZE_UNKNOWN = 0.3  # of resolution where a program may have resized the photo and rewritten its size
+SIZE_UNKNOWN = 0.3  # the same where a program may have resized the photo and rewritten its size
 CONTRADICTED = 0.1  # more where two ways contradict each other
 
 CONTRADICTION = 3.0  # standard errors of the difference between two ways
@@ -33,6 +33,7 @@ SENSOR_DIAGONALS = (3.0, 70.0)  # mm, from cheap phones to medium format; what i
 # mm, diagonals of sensors that are 4:3: phones and compacts, Four Thirds, medium format; others are 3:2 (1 inch, APS-C,
 # 35 mm)
 FOUR_BY_THREE = ((0.0, 14.5), (18.0, 24.0), (48.0, math.inf))
+RESOLUTION_NAME = "the sensor's resolution"
 ZOOM_IS_COUNTED = ("Apple",)  # makers whose 35 mm equivalent grows with the digital zoom; of others nothing is known
 
 
@@ -72,13 +73,13 @@ def find_hint(tags: Tags, history: History, width: int, height: int) -> tuple[Fo
     weights = [way.error**-2 for way in ways]
     first = ways[0].focal
     mean = sum(weight * math.log(way.focal / first) for weight, way in zip(weights, ways, strict=True)) / sum(weights)
-    error = math.hypot(
-        LENS,
-        sum(weights) ** -0.5,
-        history.error,
-        UNCONFIRMED if len(ways) == 1 and ways[0].name == "the sensor's resolution" else 0.0,
-        CONTRADICTED if aside else 0.0,
-    )
+    if not history.is_as_taken:  # no wonder then that a resolution does not fit, and no doubt about the others
+        aside = [way for way in aside if way.name != RESOLUTION_NAME]
+    alone = 0.0
+    if [way.name for way in ways] == [RESOLUTION_NAME]:
+        alone = UNCONFIRMED if history.is_as_taken else SIZE_UNKNOWN
+    contradicted = CONTRADICTED if aside else 0.0
+    error = math.hypot(LENS, sum(weights) ** -0.5, history.error, alone, contradicted)
     others = " and ".join(way.name for way in ways[1:])
     origin = ways[0].origin + (f", confirmed by {others}" if others else "")
     hint = FocalHint(first * math.exp(mean) * history.scale, error, origin)
@@ -100,7 +101,7 @@ def _ways(tags: Tags, history: History) -> tuple[list[_Way], list[str]]:
     if crop:
         from_sensor.append(_with_database(tags, history, crop))
     if tags.resolution and _is_sensor(math.hypot(history.long, history.short) / tags.resolution):
-        from_sensor.append(_with_resolution(tags, history))
+        from_sensor.append(_with_resolution(tags))
     if not tags.equivalent:
         return from_sensor, [] if from_sensor or not doubt else [doubt]
 
@@ -143,10 +144,9 @@ def _with_database(tags: Tags, history: History, crop: float) -> _Way:
     return _Way(tags.length * tags.zoom * crop / DIAGONAL_35MM * sensor, error, origin, "the sensor's size")
 
 
-def _with_resolution(tags: Tags, history: History) -> _Way:
-    error = RESOLUTION if history.is_as_taken else SIZE_UNKNOWN
+def _with_resolution(tags: Tags) -> _Way:
     origin = f"EXIF's {tags.length:g} mm and the sensor's resolution"
-    return _Way(tags.length * tags.zoom * tags.resolution, error, origin, "the sensor's resolution")
+    return _Way(tags.length * tags.zoom * tags.resolution, RESOLUTION, origin, RESOLUTION_NAME)
 
 
 def _crop_factor(tags: Tags) -> tuple[float | None, str]:

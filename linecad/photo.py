@@ -31,7 +31,7 @@ class Photo:
     pixels: NDArray[np.uint8]  # (H, W, 3) RGB, read-only; upright, undistorted, square pixels
     camera: Camera | None  # None: the focal length must come from the vanishing points
     notes: tuple[str, ...] = ()  # doubts that did not stop the work
-    hint: FocalHint | None = None  # where the camera is that of EXIF; also of a photo whose camera is None
+    hint: FocalHint | None = None  # of EXIF; None where it tells nothing or the camera was given
     framing: Framing = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
 
     def __post_init__(self) -> None:

@@ -9,7 +9,8 @@ SAME_SENSOR = 1.02  # ratio of crop factors; a model whose entries differ by mor
 
 @cache
 def _database() -> lensfunpy.Database:
-    return lensfunpy.Database()
+    # The one that comes with the package alone: what a machine has of its own would change what a photo gives there.
+    return lensfunpy.Database(load_common=False)
 
 
 def find_crop_factor(make: str, model: str) -> float | None:

@@ -62,7 +62,7 @@ def test_resolution_alone_is_trusted_less_than_confirmed() -> None:
     alone = hint_of(tags(length=6.0, resolution=500.0))
     both = hint_of(tags(length=6.0, resolution=500.0, equivalent=26.0))
     assert alone.focal == 3000
-    assert 26 / FULL * DIAGONAL < both.focal * (1 + 1e-9) <= 3004.7
+    assert alone.focal < both.focal < 26 / FULL * DIAGONAL
     assert both.relative_error < alone.relative_error
     assert both.origin == "EXIF's 35 mm equivalent (26 mm), confirmed by the sensor's resolution"
 
@@ -70,6 +70,13 @@ def test_resolution_alone_is_trusted_less_than_confirmed() -> None:
 @pytest.mark.parametrize("said", [{"size": None}, {"programs": "GIMP 2.10"}])
 def test_resolution_of_a_photo_that_was_perhaps_resized_is_hardly_a_hint(said: dict[str, Any]) -> None:
     assert hint_of(tags(length=6.0, resolution=500.0, **said)).relative_error > 0.25
+
+
+def test_equivalent_is_not_doubted_where_a_program_may_have_spoilt_the_resolution() -> None:
+    said = {"size": (2000, 1500), "length": 6.0, "equivalent": 26.0, "programs": "GIMP 2.10"}
+    hint, note = found(tags(resolution=500.0, **said), 2000, 1500)
+    assert hint == hint_of(tags(**said), 2000, 1500)
+    assert "aside" not in note
 
 
 def test_resolution_of_another_size_is_set_aside_and_told() -> None:
