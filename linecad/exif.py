@@ -29,7 +29,7 @@ SIZE_TAGS = (
 class Tags:
     """What EXIF says; 0 and "" where it says nothing."""
 
-    sizes: tuple[tuple[float, float], ...]  # px, longer and shorter side, wherever EXIF tells both
+    sizes: tuple[tuple[float, float], ...]  # px, width and height as stored, wherever EXIF tells both
     length: float  # mm, focal length of the lens
     equivalent: float  # mm, focal length that gives the same view on 35 mm film
     resolution: float  # px per mm on the sensor, of the photo as taken
@@ -43,10 +43,9 @@ def read_tags(exif: dict[int, Any]) -> Tags:
     """The tags that tell of size and focal length, among EXIF tags by their numbers; raises nothing."""
     texts = [_text(exif.get(tag)) for tag in TEXT_TAGS]
     zoom = _positive(exif.get(Base.DigitalZoomRatio))
-    # Programs turn photos without turning these numbers, so only their order of size means something.
-    sides = [sorted((_positive(exif.get(one)), _positive(exif.get(other)))) for one, other in SIZE_TAGS]
+    sizes = [(_positive(exif.get(width)), _positive(exif.get(height))) for width, height in SIZE_TAGS]
     return Tags(
-        sizes=tuple((long, short) for short, long in sides if short >= SIDE_RANGE[0] and long <= SIDE_RANGE[1]),
+        sizes=tuple(size for size in sizes if SIDE_RANGE[0] <= min(size) and max(size) <= SIDE_RANGE[1]),
         length=_positive(exif.get(Base.FocalLength)),
         equivalent=_positive(exif.get(Base.FocalLengthIn35mmFilm)),
         resolution=_resolution(exif),

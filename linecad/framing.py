@@ -51,8 +51,11 @@ def usual_aspect(width: float, height: float) -> bool:
     return any(abs(aspect / usual - 1) <= tolerance for usual in USUAL_ASPECTS)
 
 
-def find_history(tags: Tags, width: int, height: int) -> History:
-    """What the sizes and programs in EXIF say of a photo that now has `width` x `height` px."""
+def find_history(tags: Tags, width: int, height: int, turned: bool = False) -> History:
+    """What the sizes and programs in EXIF say of a photo that now has `width` x `height` px.
+
+    `turned` says that the EXIF orientation swapped width and height.
+    """
     long, short = max(width, height), min(width, height)
     usual = usual_aspect(long, short)
     if not tags.sizes:
@@ -61,24 +64,43 @@ def find_history(tags: Tags, width: int, height: int) -> History:
         return History("unknown", long, short, 1.0, error, False, doubt)
 
     # A program that rewrites one of these pairs may leave another; what was taken is never smaller.
-    taken_long, taken_short = max(tags.sizes, key=lambda size: size[0] * size[1])
-    of_long, of_short = long / taken_long, short / taken_short
-    if abs(of_long / of_short - 1) > ASPECT_TOLERANCE + 1 / short:
-        doubt = f"the photo seems cropped (taken with {taken_long:.0f} x {taken_short:.0f} px)"
-        least = max(of_long, of_short)  # as if one side was kept whole
+    taken = max(tags.sizes, key=lambda size: size[0] * size[1])
+    size = f"{taken[0]:.0f} x {taken[1]:.0f} px"
+    taken_long, taken_short = max(taken), min(taken)
+    upright = taken[::-1] if turned else taken
+    of_width, of_height = _scales(width, height, upright)
+    if not _is_uniform(of_width, of_height, short):
+        # Programs turn photos without turning these numbers.
+        of_width, of_height = _scales(height, width, upright)
+    if not _is_uniform(of_width, of_height, short):
+        if max(width / upright[0], height / upright[1]) <= 1 + SCALE_TOLERANCE:
+            of_width, of_height = _scales(width, height, upright)
+        least = max(of_width, of_height)  # as if one side was kept whole
         reach = min(max(1 / least, 1.0), 1 / KEPT_AT_LEAST)
-        return History("cropped", taken_long, taken_short, least * math.sqrt(reach), math.log(reach) / 2, True, doubt)
-    scale = math.sqrt(of_long * of_short)
+        scale, error = least * math.sqrt(reach), math.log(reach) / 2
+        return History(
+            "cropped", taken_long, taken_short, scale, error, True, f"the photo seems cropped (taken with {size})"
+        )
+    scale = math.sqrt(of_width * of_height)
     resized = abs(scale - 1) > SCALE_TOLERANCE
-    doubt = f"the photo was taken with {taken_long:.0f} x {taken_short:.0f} px and resized" if resized else ""
+    doubt = f"the photo was taken with {size} and resized" if resized else ""
     if not usual_aspect(taken_long, taken_short):
-        doubt = f"no camera takes photos of {taken_long:.0f} x {taken_short:.0f} px, so this one seems cropped"
+        doubt = f"no camera takes photos of {size}, so this one seems cropped"
         return History("cropped", taken_long, taken_short, scale, CROPPED_BY_UNKNOWN, False, doubt)
     editor = _editor(tags.programs)
     if editor:
-        doubt = "; ".join(filter(None, [doubt, f"{editor} wrote it and may have cropped it"]))
+        doubt = "; ".join(filter(None, [doubt, f"{editor} wrote the photo and may have cropped it"]))
         return History("unknown", taken_long, taken_short, scale, PERHAPS_CROPPED, False, doubt)
     return History("whole", taken_long, taken_short, scale, 0.0, True, doubt)
+
+
+def _scales(width: int, height: int, taken: tuple[float, float]) -> tuple[float, float]:
+    return width / taken[0], height / taken[1]
+
+
+def _is_uniform(of_width: float, of_height: float, short: int) -> bool:
+    """Whether scales along both sides differ by no more than rounding `short` px to whole ones explains."""
+    return abs(of_width / of_height - 1) <= ASPECT_TOLERANCE + 1 / short
 
 
 def _editor(programs: str) -> str:

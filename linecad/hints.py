@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from linecad.calibration import FOCAL_RANGE
 from linecad.exif import Tags
-from linecad.framing import ASPECT_TOLERANCE, History
+from linecad.framing import ASPECT_TOLERANCE, History, usual_aspect
 from linecad.geometry import DIAGONAL_35MM
 
 # Relative standard errors. What is engraved is nominal and for infinity: the real focal lengths that the lensfun
@@ -128,10 +128,11 @@ def _ways(tags: Tags, history: History) -> tuple[list[_Way], list[str]]:
 def _equivalent(tags: Tags, history: History, diagonal: float, zoom: float, spread: float) -> _Way:
     """By the 35 mm equivalent, on a sensor of a `diagonal` in mm (0: not known).
 
-    Where a photo has other proportions than its sensor, most makers tell the equivalent of the whole sensor and some
-    that of the photo; the truth is taken to be either.
+    Where a camera stored other proportions than those of its sensor, most makers tell the equivalent of the whole
+    sensor and some that of the photo; the truth is taken to be either. A program that cropped left it as it was.
     """
-    photo, sensor = math.hypot(history.long, history.short), _sensor_in_px(history, diagonal)
+    sensor = _sensor_in_px(history, diagonal)
+    photo = math.hypot(history.long, history.short) if usual_aspect(history.long, history.short) else sensor
     focal = tags.equivalent * zoom / DIAGONAL_35MM * math.sqrt(photo) * math.sqrt(sensor)
     error = math.hypot(EQUIVALENT, ROUNDING / max(tags.equivalent, 1.0), spread, math.log(sensor / photo) / 2)
     return _Way(focal, error, f"EXIF's 35 mm equivalent ({tags.equivalent:g} mm)", "the 35 mm equivalent")

@@ -73,7 +73,7 @@ def read_photo(path: Path, camera_file: Path | None = None, focal: float | None 
     decoded = decode_image(path)
     height, width = decoded.pixels.shape[:2]
     tags = read_tags(decoded.exif)
-    history = find_history(tags, width, height)
+    history = find_history(tags, width, height, decoded.turned)
     if calibration is not None:
         _check_belongs(calibration, f"{camera_file}", decoded, f"{path}")
         return _calibrated(path.name, decoded, calibration, f"{camera_file}", history.framing)

@@ -60,6 +60,17 @@ def test_photo_of_another_aspect_than_taken_is_cropped() -> None:
     assert "4000 x 3000 px" in history.doubt
 
 
+@pytest.mark.parametrize(("turned", "stored"), [(False, (4000, 3000)), (True, (3000, 4000))])
+def test_upright_crop_of_a_lying_photo_keeps_its_height(turned: bool, stored: tuple[int, int]) -> None:
+    history = find_history(taken(stored), 2000, 3000, turned)
+    assert (history.framing, history.scale, history.error) == ("cropped", 1.0, 0.0)
+
+
+def test_crop_of_a_photo_that_a_program_turned_keeps_its_height() -> None:
+    history = find_history(taken((4000, 3000)), 2000, 4000)
+    assert (history.framing, history.scale, history.error) == ("cropped", 1.0, 0.0)
+
+
 def test_scale_of_a_crop_on_both_sides_is_between_its_extremes() -> None:
     history = find_history(taken((4000, 3000)), 3200, 1600)
     assert 0.8 < history.scale < 1
@@ -98,9 +109,9 @@ def test_firmware_is_no_editor(firmware: str) -> None:
 sides = st.integers(64, 20_000)
 
 
-@given(st.lists(st.tuples(sides, sides).map(lambda pair: (max(pair), min(pair))), max_size=3), sides, sides)
-def test_history_of_any_sizes_is_finite(sizes: list[tuple[int, int]], width: int, height: int) -> None:
-    history = find_history(taken(*sizes), width, height)
+@given(st.lists(st.tuples(sides, sides), max_size=3), sides, sides, st.booleans())
+def test_history_of_any_sizes_is_finite(sizes: list[tuple[int, int]], width: int, height: int, turned: bool) -> None:
+    history = find_history(taken(*sizes), width, height, turned)
     assert 0 < history.scale < 1000
     assert 0 <= history.error < 0.2
     assert history.long >= history.short >= 64

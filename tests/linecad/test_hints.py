@@ -192,7 +192,7 @@ def test_without_the_database_a_note_says_what_would_help(monkeypatch: pytest.Mo
 
 
 amounts = st.just(0.0) | st.floats(1e-3, 1e5) | st.floats(5e-324, 1e308)
-sizes = st.none() | st.tuples(st.integers(64, 9000), st.integers(64, 9000)).map(lambda pair: (max(pair), min(pair)))
+sizes = st.none() | st.tuples(st.integers(64, 9000), st.integers(64, 9000))
 said_tags = st.builds(
     tags,
     size=sizes,
