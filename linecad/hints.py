@@ -19,7 +19,7 @@ from linecad.geometry import DIAGONAL_35MM
 LENS = 0.03
 ROUNDING = math.sqrt(1 / 12)  # mm, of the 35 mm equivalent, a whole number
 EQUIVALENT = 0.02  # by the diagonal, says CIPA DCG-001; makers who compare widths tell 4 % more of a sensor of 4:3
-RESOLUTION = 0.03  # sensor sizes of some Canons come out 3.5 % too wide and 1.8 % too high
+RESOLUTION = 0.03  # Canon's EOS 5D Mark II tells a sensor 3.5 % too wide and 1.8 % too high
 DATABASE = 0.01  # crop factors of one sensor in different models
 OTHER_ASPECT = (
     0.03  # more with a database where the photo has other proportions than the sensor: some sensors are wider

@@ -129,7 +129,16 @@ def image_seeds() -> Iterator[bytes]:
     exif = Image.Exif()
     exif[0x0112] = 6  # orientation: turned
     exif[0x010F], exif[0x0110], exif[0x0131] = "Apple", "iPhone XS", "GIMP 2.10"
-    camera = {0x920A: 4.25, 0xA405: 28, 0xA002: SIDE, 0xA003: SIDE, 0xA20E: 300.0, 0xA20F: 299.0, 0xA210: 2, 0xA404: 2.0}
+    camera = {
+        0x920A: 4.25,
+        0xA405: 28,
+        0xA002: SIDE,
+        0xA003: SIDE,
+        0xA20E: 300.0,
+        0xA20F: 299.0,
+        0xA210: 2,
+        0xA404: 2.0,
+    }
     exif.get_ifd(0x8769).update(camera)
     yield image_bytes("JPEG", exif=exif)
     yield image_bytes("JPEG", "CMYK", progressive=True, quality=30)
