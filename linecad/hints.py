@@ -14,16 +14,14 @@ from linecad.framing import ASPECT_TOLERANCE, History, usual_aspect
 from linecad.geometry import DIAGONAL_35MM
 
 # Relative standard errors. What is engraved is nominal and for infinity: the real focal lengths that the lensfun
-# database knows of five lenses lie 0.2 to 4.8 % beside it (root mean square over their zoom settings), the camera of
+# database knows of five lenses lie 0.2 to 4.9 % beside it (root mean square over their zoom settings), the camera of
 # York Urban 4.1 %; the root mean square of these six is 3.0 %.
 LENS = 0.03
 ROUNDING = math.sqrt(1 / 12)  # mm, of the 35 mm equivalent, a whole number
 EQUIVALENT = 0.02  # by the diagonal, says CIPA DCG-001; makers who compare widths tell 4 % more of a sensor of 4:3
 RESOLUTION = 0.03  # Canon's EOS 5D Mark II tells a sensor 3.5 % too wide and 1.8 % too high
 DATABASE = 0.01  # crop factors of one sensor in different models
-OTHER_ASPECT = (
-    0.03  # more with a database where the photo has other proportions than the sensor: some sensors are wider
-)
+OTHER_ASPECT = 0.03  # more with a database where photo and sensor have other proportions: some use more of the lens
 UNCONFIRMED = 0.05  # more where resolution stands alone: makers who store a smaller photo may leave it as it was
 SIZE_UNKNOWN = 0.3  # the same where a program may have resized the photo and rewritten its size
 CONTRADICTED = 0.1  # more where two ways contradict each other

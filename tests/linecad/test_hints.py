@@ -9,8 +9,10 @@ from typing import Any
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from PIL.ExifTags import Base
+from PIL.TiffImagePlugin import IFDRational
 
-from linecad.exif import Tags
+from linecad.exif import Tags, read_tags
 from linecad.framing import find_history
 from linecad.hints import FocalHint, find_hint
 from linecad.photo import read_photo
@@ -215,6 +217,33 @@ def test_any_tags_give_a_sensible_hint_or_none(said: Tags, width: int, height: i
         assert 0.1 * max(width, height) <= hint.focal * (1 + 1e-9)
         assert hint.focal * (1 - 1e-9) <= 50 * max(width, height)
         assert 0.03 <= hint.relative_error < 3
+
+
+values = (
+    st.floats() | st.integers(-1, 9000) | st.text(max_size=3) | st.builds(IFDRational, st.integers(), st.integers())
+)
+tag_numbers = st.sampled_from(
+    [
+        Base.FocalLength,
+        Base.FocalLengthIn35mmFilm,
+        Base.FocalPlaneXResolution,
+        Base.FocalPlaneResolutionUnit,
+        Base.DigitalZoomRatio,
+        Base.ExifImageWidth,
+        Base.ExifImageHeight,
+        Base.Make,
+        Base.Model,
+    ]
+).map(int)
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.dictionaries(tag_numbers, values), st.booleans())
+def test_any_exif_gives_a_sensible_hint_or_none(exif: dict[int, Any], turned: bool) -> None:
+    said = read_tags(exif)
+    hint, notes = find_hint(said, find_history(said, 120, 80, turned), 120, 80)
+    assert hint is None or 12 * (1 - 1e-9) <= hint.focal <= 6000 * (1 + 1e-9)
+    assert hint is None or notes
 
 
 def test_hint_of_york_urban_is_within_two_standard_errors(shared_data: Path) -> None:
