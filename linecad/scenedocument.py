@@ -10,13 +10,16 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     EDGE_KINDS,
+    QUALITIES,
     Camera,
     CameraSource,
+    Certainty,
     Face,
     Float,
     Intersections,
     Lines,
     Plane,
+    Quality,
     Scene,
     SolveReport,
 )
@@ -29,6 +32,8 @@ LARGEST_PHOTO = 10**6  # px along one side
 FLATNESS = 1e-6  # of the scene's size: how far a face may leave its plane before the file contradicts itself
 ROTATION_ERROR = 1e-6  # largest element of R R' - 1
 SQUARENESS = 1e-9  # relative difference of the two focal lengths, and skew over focal length
+LARGEST_ERROR = 180.0  # degrees; whoever errs by that much about a rotation knows nothing of it
+ANGLE_DIGITS = 12  # after the point, of degrees: a number that was turned to radians and back is the same again
 
 
 def document_of(scene: Scene) -> dict[str, object]:
@@ -46,6 +51,7 @@ def document_of(scene: Scene) -> dict[str, object]:
             "source": camera.source,
             "R_cam_from_world": scene.rotation.tolist(),
         },
+        "certainty": None if scene.certainty is None else certainty_document(scene.certainty),
         "metres_per_unit": None if scene.metres_per_unit is None else float(scene.metres_per_unit),
         "lines": [
             {
@@ -98,6 +104,19 @@ def document_of(scene: Scene) -> dict[str, object]:
     }
 
 
+def certainty_document(certainty: Certainty) -> dict[str, object]:
+    """How sure a camera and its frame are as plain values, as they stand in scene files and camera files."""
+    degrees = np.minimum(np.degrees(certainty.rotation), LARGEST_ERROR)
+    return {
+        "quality": certainty.quality,
+        "reason": certainty.reason,
+        "rotation_degrees": [round(angle, ANGLE_DIGITS) for angle in degrees.tolist()],
+        "focal": None if certainty.focal is None else float(certainty.focal),
+        "principal_point": None if certainty.center is None else [float(error) for error in certainty.center],
+        "k1": None if certainty.radial is None else float(certainty.radial),
+    }
+
+
 def _finite_or_null(number: float) -> float | None:
     return float(number) if math.isfinite(number) else None
 
@@ -121,6 +140,7 @@ def scene_of(top: Node) -> Scene:
         solve=_solve_report(top["solve"]),
         metres_per_unit=_metres_per_unit(top.get("metres_per_unit")),
         notes=tuple(note.text() for note in _optional_items(top, "notes")),
+        certainty=_certainty(top.get("certainty")),
     )
     _check_flatness(scene)
     return scene
@@ -146,6 +166,39 @@ def _camera(node: Node) -> tuple[Camera, Float]:
         distortion=tuple(item.number(LARGEST_NUMBER) for item in _optional_items(node, "distortion")),
     )
     return camera, rotation
+
+
+def _certainty(node: Node | None) -> Certainty | None:
+    if node is None or node.value is None:
+        return None
+    turns = node["rotation_degrees"].items()
+    if len(turns) != 3:
+        raise node["rotation_degrees"].wrong("a list of 3")
+    center = _known(node, "principal_point")
+    if center is not None and len(center.items()) != 2:
+        raise center.wrong("a list of 2")
+    focal, radial = _known(node, "focal"), _known(node, "k1")
+    x, y = (0.0, 0.0) if center is None else map(_standard_error, center.items())
+    return Certainty(
+        rotation=np.radians([_standard_error(turn, LARGEST_ERROR) for turn in turns]),
+        focal=None if focal is None else _standard_error(focal),
+        center=None if center is None else (x, y),
+        radial=None if radial is None else _standard_error(radial),
+        quality=cast(Quality, node["quality"].one_of(QUALITIES)),
+        reason=node["reason"].text(),
+    )
+
+
+def _known(node: Node, key: str) -> Node | None:
+    """The member `key` where it is neither missing nor null."""
+    member = node.get(key)
+    return None if member is None or member.value is None else member
+
+
+def _standard_error(node: Node, largest: float = LARGEST_NUMBER) -> float:
+    if node.number(largest) < 0:
+        raise node.wrong("a number of 0 or more")
+    return node.number()
 
 
 def _lines(nodes: list[Node]) -> Lines:

@@ -21,8 +21,10 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     EDGE_KINDS,
+    QUALITIES,
     STATUSES,
     Camera,
+    Certainty,
     Face,
     Intersections,
     Lines,
@@ -58,6 +60,21 @@ def cameras(draw: st.DrawFn) -> Camera:
         matrix=np.array([[focal, 0, cx], [0, focal, cy], [0, 0, 1]]),
         source=draw(st.sampled_from(CAMERA_SOURCES)),
         distortion=tuple(draw(st.lists(numbers, max_size=14))),
+    )
+
+
+@st.composite
+def certainties(draw: st.DrawFn) -> Certainty:
+    errors = st.floats(0, 1e12)
+    # Degrees stand in the file with 12 digits after the point.
+    degrees = [round(angle, 12) for angle in draw(st.tuples(*[st.floats(0, 180)] * 3))]
+    return Certainty(
+        rotation=np.radians(degrees),
+        focal=draw(st.none() | errors),
+        center=draw(st.none() | st.tuples(errors, errors)),
+        radial=draw(st.none() | errors),
+        quality=draw(st.sampled_from(QUALITIES)),
+        reason=draw(words),
     )
 
 
@@ -124,6 +141,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         ),
         metres_per_unit=draw(st.none() | st.floats(1e-6, 1e6)),
         notes=tuple(draw(st.lists(words, max_size=3))),
+        certainty=draw(st.none() | certainties()),
     )
 
 
@@ -236,10 +254,12 @@ REQUIRED = [
     *(f"planes[0].{key}" for key in ("id", "axis", "offset", "lines")),
     *(f"planes[0].faces[0].{key}" for key in ("id", "outline")),
     *(f"solve.{key}" for key in ("solver", "formulation", "status", "objective", "bound", "gap", "seconds")),
+    *(f"certainty.{key}" for key in ("quality", "reason", "rotation_degrees")),
 ]
 OPTIONAL = [
     *("camera.distortion", "metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
     *("solve.cuts", "solve.nodes"),
+    *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
 ]
 
 
@@ -312,6 +332,19 @@ WRONG = [
     ("camera.distortion", [0.1, "0"], 'camera.distortion[1] is "0", expected a number'),
     ("camera.R_cam_from_world[0][0]", 1.001, "camera.R_cam_from_world is not a rotation (off by 0.002)"),
     ("camera.R_cam_from_world[0][0]", -1, "camera.R_cam_from_world is not a rotation"),
+    ("certainty", [], "certainty is a list of 0, expected an object"),
+    ("certainty.quality", "excellent", 'certainty.quality is "excellent", expected one of good, doubtful, poor'),
+    ("certainty.reason", None, "certainty.reason is null, expected a string"),
+    ("certainty.rotation_degrees", [1, 2], "certainty.rotation_degrees is a list of 2, expected a list of 3"),
+    ("certainty.rotation_degrees[2]", -1, "certainty.rotation_degrees[2] is -1, expected a number of 0 or more"),
+    ("certainty.rotation_degrees[0]", 181, "certainty.rotation_degrees[0] is 181, expected a finite number of at most"),
+    ("certainty.focal", -5.0, "certainty.focal is -5.0, expected a number of 0 or more"),
+    ("certainty.focal", "5 px", 'certainty.focal is "5 px", expected a number'),
+    ("certainty.focal", 1e300, "certainty.focal is 1e+300, expected a finite number of at most 1e+12"),
+    ("certainty.principal_point", 3, "certainty.principal_point is 3, expected a list"),
+    ("certainty.principal_point", [3], "certainty.principal_point is a list of 1, expected a list of 2"),
+    ("certainty.principal_point", [3, None], "certainty.principal_point[1] is null, expected a number"),
+    ("certainty.k1", True, "certainty.k1 is true, expected a number"),
     ("metres_per_unit", 0, "metres_per_unit is 0, expected a positive number or null"),
     ("metres_per_unit", -2.5, "metres_per_unit is -2.5, expected a positive number or null"),
     ("metres_per_unit", "1 m", 'metres_per_unit is "1 m", expected a number'),
@@ -451,6 +484,18 @@ def test_nothing_proven_is_null_in_the_file() -> None:
     assert scene_from_json(text).solve == unproven.solve
 
 
+def test_certainty_is_null_in_the_file_where_there_is_none() -> None:
+    text = scene_to_json(replace(scene_from_json(EXAMPLE), certainty=None))
+    assert '"certainty": null' in text
+    assert scene_from_json(text).certainty is None
+
+
+def test_a_hopeless_rotation_is_180_degrees_in_the_file() -> None:
+    scene = scene_from_json(EXAMPLE)
+    lost = replace(scene, certainty=replace(scene.certainty, rotation=np.array([1e9, 0.0, 0.0])))
+    assert scene_from_json(scene_to_json(lost)).certainty.rotation == pytest.approx([np.pi, 0, 0])
+
+
 # --- files ---------------------------------------------------------------------------------------------------------
 
 
@@ -557,6 +602,7 @@ def named_in_tables(heading: str) -> list[str]:
     [
         ("The top object", "", ()),
         ("`camera`", "camera", CAMERA_SOURCES),
+        ("`certainty`", "certainty", QUALITIES),
         ("`lines[]`", "lines[0]", CONFIDENCES),
         ("`intersections[]`", "intersections[0]", ()),
         ("`planes[]`", "planes[0]", ()),
