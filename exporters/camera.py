@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from exporters.model import Model
-from linecad.scene import Camera, Float, Scene
+from linecad.scene import Camera, Float
 
 _MARGIN = 2.0  # the clipping planes lie this factor nearer and farther than anything in the model
 _WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of drawn lines over the middle depth of the model, by boundary
@@ -27,10 +27,13 @@ class PaddedFrame:
     top: float
 
 
-def camera_to_world(scene: Scene) -> Float:
-    """(4, 4) the pose of a camera that looks along -z with y up, in the scene's frame, as M @ column."""
+def camera_to_world(rotation: Float) -> Float:
+    """(4, 4) the pose of a camera that looks along -z with y up, in the scene's frame, as M @ column.
+
+    `rotation` (3, 3) is the scene's, from world to camera.
+    """
     pose = np.eye(4)
-    pose[:3, :3] = scene.rotation.T @ np.diag([1.0, -1.0, -1.0])
+    pose[:3, :3] = rotation.T @ np.diag([1.0, -1.0, -1.0])
     return pose
 
 

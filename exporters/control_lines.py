@@ -3,7 +3,7 @@
 import numpy as np
 
 from exporters.camera import principal_point
-from linecad.scene import Float, Scene
+from linecad.scene import Camera, Float, Segments
 
 _CANDIDATES = 40  # the longest segments of an axis, of which a pair is chosen
 _LEAST_ANGLE = 0.02  # sine; lines that are more parallel say too little about where they meet
@@ -12,29 +12,29 @@ _DRAWN_LENGTH = 0.2  # of the photo's shorter side
 _FLATTEST = 1e-9  # sine of the angle to the image plane; a flatter axis is drawn as if it had this one
 
 
-def vanishing_points(scene: Scene) -> Float:
+def vanishing_points(camera: Camera, rotation: Float) -> Float:
     """(3, 2) px from the photo's corner, where the three axes vanish; finite, if very far, for one in the image plane.
 
-    Each is the vanishing point of the axis's end before the camera.
+    Each is the vanishing point of the axis's end before the camera; `rotation` (3, 3) takes world to camera.
     """
-    depth = np.where(scene.rotation[2] >= 0, 1.0, -1.0) * np.maximum(np.abs(scene.rotation[2]), _FLATTEST)
-    points: Float = (scene.camera.focal * scene.rotation[:2] / depth).T + principal_point(scene.camera)
+    depth = np.where(rotation[2] >= 0, 1.0, -1.0) * np.maximum(np.abs(rotation[2]), _FLATTEST)
+    points: Float = (camera.focal * rotation[:2] / depth).T + principal_point(camera)
     return points
 
 
-def find_control_lines(scene: Scene, axis: int) -> Float:
+def find_control_lines(camera: Camera, rotation: Float, segments: Segments, axis: int) -> Float:
     """(2, 2, 2) px from the photo's corner: two segments exactly towards the axis's vanishing point.
 
-    Segments of the scene where two of them are long and meet at an angle, else lines across the photo.
+    Of `segments` where two of the axis are long and meet at an angle, else lines across the photo.
     """
-    goal = vanishing_points(scene)[axis]
-    own = scene.lines.segment[scene.lines.axis == axis] + 0.5
+    goal = vanishing_points(camera, rotation)[axis]
+    own = segments.ends[segments.axis == axis] + 0.5
     lengths = np.linalg.norm(own[:, 1] - own[:, 0], axis=1)
     own = own[np.argsort(-lengths, kind="stable")[:_CANDIDATES]]
     pair = _best_pair(_turned(own.mean(axis=1), np.linalg.norm(own[:, 1] - own[:, 0], axis=1), goal))
     if pair is not None:
         return pair
-    size = np.array([scene.camera.width, scene.camera.height], float)
+    size = np.array([camera.width, camera.height], float)
     middles = np.array(_DRAWN_AT) * size
     drawn = _turned(middles, np.full(len(middles), _DRAWN_LENGTH * size.min()), goal)
     widest = _best_pair(drawn, least_angle=0.0)

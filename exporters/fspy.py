@@ -17,6 +17,7 @@ import json
 import math
 import struct
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,7 +27,7 @@ from exporters.camera import camera_to_world, principal_point
 from exporters.control_lines import find_control_lines, vanishing_points
 from exporters.model import LineGroup, build_model
 from linecad.errors import OutputError
-from linecad.scene import AXES, Float, Scene
+from linecad.scene import AXES, Camera, Float, Scene, Segments
 
 _MAGIC, _VERSION = b"fspy", 1
 _QUALITY = 95  # of the JPEG, out of 100
@@ -37,27 +38,48 @@ _DEFAULT_DISTANCE = 10.0  # from the camera to fSpy's origin where no line gives
 _Point = dict[str, float]
 
 
+class _Reference(NamedTuple):
+    """fSpy's origin in the photo, and a length from there."""
+
+    origin: _Point
+    axis: int | None  # that the length runs along; None where nothing gives one
+    distance: float  # m
+    offset: float  # of the other end from the origin, towards the vanishing point, in relative coordinates
+    has_unit: bool  # the length is known in metres
+
+
 def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
     """Write the camera and the photo as a project; OSError where that fails, OutputError where there is no photo."""
     if photo is None:
         raise OutputError("an fSpy project holds the photo, which was not found; name it with --photo")
-    state = json.dumps(_state(scene), separators=(",", ":")).encode()
+    segments = Segments(scene.lines.segment, scene.lines.axis)
+    _write(scene.camera, scene.rotation, segments, _reference(scene), path, photo)
+
+
+def write_camera(camera: Camera, rotation: Float, segments: Segments, path: Path, photo: NDArray[np.uint8]) -> None:
+    """The same without a scene: its control lines are `segments` (axis -1: of none), its length is not known.
+
+    `rotation` (3, 3) takes world to camera. OSError where that fails.
+    """
+    _write(camera, rotation, segments, _no_reference(camera), path, photo)
+
+
+def _write(
+    camera: Camera, rotation: Float, segments: Segments, reference: _Reference, path: Path, photo: NDArray[np.uint8]
+) -> None:
+    state = json.dumps(_state(camera, rotation, segments, reference), separators=(",", ":")).encode()
     picture = io.BytesIO()
     Image.fromarray(photo).save(picture, format="JPEG", quality=_QUALITY, subsampling=0)
     image = picture.getvalue()
     path.write_bytes(_MAGIC + struct.pack("<III", _VERSION, len(state), len(image)) + state + image)
 
 
-def _state(scene: Scene) -> dict[str, object]:
+def _state(camera: Camera, rotation: Float, segments: Segments, reference: _Reference) -> dict[str, object]:
     """All that fSpy keeps of a project."""
-    first, second, third = np.argsort(-np.abs(scene.rotation[2]), kind="stable").tolist()
-    two = abs(scene.rotation[2, second]) >= _LEAST_SLOPE
-    width, height = scene.camera.width, scene.camera.height
-    longer = max(width, height)
-    centre = _relative(scene, principal_point(scene.camera))
-    origin, axis, distance, offset = _reference(scene)
-    known = scene.metres_per_unit is not None
-    controls = [_controls(scene, number) for number in (first, second, third)]
+    first, second, third = np.argsort(-np.abs(rotation[2]), kind="stable").tolist()
+    two = abs(rotation[2, second]) >= _LEAST_SLOPE
+    longer = max(camera.width, camera.height)
+    controls = [_controls(camera, rotation, segments, number) for number in (first, second, third)]
     return {
         "globalSettings": {
             "calibrationMode": "TwoVanishingPoints" if two else "OneVanishingPoint",
@@ -65,33 +87,33 @@ def _state(scene: Scene) -> dict[str, object]:
             "imageOpacity": 1.0,
         },
         "calibrationSettingsBase": {
-            "referenceDistanceAxis": None if axis is None else f"{AXES[axis]}Positive",
-            "referenceDistance": distance,
-            "referenceDistanceUnit": "Meters" if known else "No unit",
+            "referenceDistanceAxis": None if reference.axis is None else f"{AXES[reference.axis]}Positive",
+            "referenceDistance": reference.distance,
+            "referenceDistanceUnit": "Meters" if reference.has_unit else "No unit",
             "cameraData": {
                 "presetId": None,
                 "presetData": None,
-                "customSensorWidth": _FILM * width / longer,
-                "customSensorHeight": _FILM * height / longer,
+                "customSensorWidth": _FILM * camera.width / longer,
+                "customSensorHeight": _FILM * camera.height / longer,
             },
-            "firstVanishingPointAxis": _axis_word(scene, first),
-            "secondVanishingPointAxis": _axis_word(scene, second),
+            "firstVanishingPointAxis": _axis_word(rotation, first),
+            "secondVanishingPointAxis": _axis_word(rotation, second),
         },
         "calibrationSettings1VP": {
             "principalPointMode": "Manual",
-            "absoluteFocalLength": _FILM * scene.camera.focal / longer,
+            "absoluteFocalLength": _FILM * camera.focal / longer,
         },
         "calibrationSettings2VP": {"principalPointMode": "Manual", "quadModeEnabled": False},
         "controlPointsStateBase": {
-            "principalPoint": centre,
-            "origin": origin,
-            "referenceDistanceAnchor": origin,
-            "referenceDistanceHandleOffsets": [0.0, offset],
+            "principalPoint": _relative(camera, principal_point(camera)),
+            "origin": reference.origin,
+            "referenceDistanceAnchor": reference.origin,
+            "referenceDistanceHandleOffsets": [0.0, reference.offset],
             "firstVanishingPoint": controls[0],
         },
-        "controlPointsState1VP": {"horizon": _horizon(scene, first, second)},
+        "controlPointsState1VP": {"horizon": _horizon(camera, rotation, first, second)},
         "controlPointsState2VP": {"secondVanishingPoint": controls[1], "thirdVanishingPoint": controls[2]},
-        "cameraParameters": _camera_parameters(scene, (first, second, third)),
+        "cameraParameters": _camera_parameters(camera, rotation, (first, second, third)),
         "resultDisplaySettings": {
             "orientationFormat": "AxisAngleDegrees",
             "principalPointFormat": "Absolute",
@@ -101,64 +123,67 @@ def _state(scene: Scene) -> dict[str, object]:
     }
 
 
-def _camera_parameters(scene: Scene, order: tuple[int, int, int]) -> dict[str, object]:
-    width, height, focal = scene.camera.width, scene.camera.height, scene.camera.focal
+def _camera_parameters(camera: Camera, rotation: Float, order: tuple[int, int, int]) -> dict[str, object]:
+    width, height = camera.width, camera.height
     half = max(width, height) / 2
-    pose = camera_to_world(scene)
-    points = vanishing_points(scene)[list(order)]
+    pose = camera_to_world(rotation)
+    points = vanishing_points(camera, rotation)[list(order)]
     return {
-        "principalPoint": _on_image_plane(scene, principal_point(scene.camera)),
+        "principalPoint": _on_image_plane(camera, principal_point(camera)),
         "viewTransform": {"rows": np.linalg.inv(pose).tolist()},
         "cameraTransform": {"rows": pose.tolist()},
-        "horizontalFieldOfView": 2.0 * math.atan(half / focal),
-        "verticalFieldOfView": 2.0 * math.atan(half * height / width / focal),
-        "vanishingPoints": [_on_image_plane(scene, (x, y)) for x, y in points.tolist()],
-        "vanishingPointAxes": [_axis_word(scene, axis) for axis in order],
-        "relativeFocalLength": focal / half,
+        "horizontalFieldOfView": 2.0 * math.atan(half / camera.focal),
+        "verticalFieldOfView": 2.0 * math.atan(half * height / width / camera.focal),
+        "vanishingPoints": [_on_image_plane(camera, (x, y)) for x, y in points.tolist()],
+        "vanishingPointAxes": [_axis_word(rotation, axis) for axis in order],
+        "relativeFocalLength": camera.focal / half,
         "imageWidth": width,
         "imageHeight": height,
     }
 
 
-def _axis_word(scene: Scene, axis: int) -> str:
+def _axis_word(rotation: Float, axis: int) -> str:
     """The end of an axis that runs away from the camera, whose vanishing point is the one before it."""
-    return f"{AXES[axis]}{'Positive' if scene.rotation[2, axis] >= 0 else 'Negative'}"
+    return f"{AXES[axis]}{'Positive' if rotation[2, axis] >= 0 else 'Negative'}"
 
 
-def _controls(scene: Scene, axis: int) -> dict[str, object]:
-    lines = find_control_lines(scene, axis)
-    return {"lineSegments": [[_relative(scene, (x, y)) for x, y in line] for line in lines.tolist()]}
+def _controls(camera: Camera, rotation: Float, segments: Segments, axis: int) -> dict[str, object]:
+    lines = find_control_lines(camera, rotation, segments, axis)
+    return {"lineSegments": [[_relative(camera, (x, y)) for x, y in line] for line in lines.tolist()]}
 
 
-def _horizon(scene: Scene, first: int, second: int) -> list[_Point]:
+def _horizon(camera: Camera, rotation: Float, first: int, second: int) -> list[_Point]:
     """Two points in the photo on a line that runs as the one through both vanishing points does."""
-    start, end = vanishing_points(scene)[[first, second]]
+    start, end = vanishing_points(camera, rotation)[[first, second]]
     direction = (end - start) / np.linalg.norm(end - start)
-    size = np.array([scene.camera.width, scene.camera.height], float)
+    size = np.array([camera.width, camera.height], float)
     reach = 0.3 * size.min() * direction
-    return [_relative(scene, (x, y)) for x, y in (size / 2 - reach, size / 2 + reach)]
+    return [_relative(camera, (x, y)) for x, y in (size / 2 - reach, size / 2 + reach)]
 
 
-def _reference(scene: Scene) -> tuple[_Point, int | None, float, float]:
-    """fSpy's origin in the photo, and a length from there: axis, length in m, and its end in the photo.
-
-    The longest line of the largest group is taken; the end is told by its distance from the origin towards the
-    vanishing point, in relative coordinates.
-    """
+def _reference(scene: Scene) -> _Reference:
+    """The longest line of the largest group."""
     largest = set(scene.lines.id[scene.lines.component == 0].tolist())
     groups = [group for group in build_model(scene).groups if largest & set(group.ids.tolist())]
     found = _longest(groups, largest)
+    known = scene.metres_per_unit is not None
     if found is None:
-        middle = (scene.camera.width / 2, scene.camera.height / 2)
-        return _relative(scene, middle), None, _DEFAULT_DISTANCE, 0.0
+        return _no_reference(scene.camera)._replace(has_unit=known)
     axis, ends = found
     rays = ends @ scene.rotation.T @ scene.camera.matrix.T
     size = np.array([scene.camera.width, scene.camera.height])
     start, end = (rays[:, :2] / rays[:, 2:] + 0.5) / size
-    goal = vanishing_points(scene)[axis] / size
+    goal = vanishing_points(scene.camera, scene.rotation)[axis] / size
     towards = goal - start
     offset = float((end - start) @ towards / np.linalg.norm(towards))
-    return {"x": float(start[0]), "y": float(start[1])}, axis, float(np.linalg.norm(ends[1] - ends[0])), offset
+    origin = {"x": float(start[0]), "y": float(start[1])}
+    return _Reference(origin, axis, float(np.linalg.norm(ends[1] - ends[0])), offset, known)
+
+
+def _no_reference(camera: Camera) -> _Reference:
+    """The middle of the photo, some way off."""
+    middle = _relative(camera, (camera.width / 2, camera.height / 2))
+    return _Reference(middle, None, _DEFAULT_DISTANCE, 0.0, False)
 
 
 def _longest(groups: list[LineGroup], ids: set[int]) -> tuple[int, Float] | None:
@@ -174,13 +199,13 @@ def _longest(groups: list[LineGroup], ids: set[int]) -> tuple[int, Float] | None
     return best
 
 
-def _relative(scene: Scene, point: tuple[float, float]) -> _Point:
+def _relative(camera: Camera, point: tuple[float, float]) -> _Point:
     """Relative coordinates of px from the photo's corner."""
-    return {"x": float(point[0]) / scene.camera.width, "y": float(point[1]) / scene.camera.height}
+    return {"x": float(point[0]) / camera.width, "y": float(point[1]) / camera.height}
 
 
-def _on_image_plane(scene: Scene, point: tuple[float, float]) -> _Point:
+def _on_image_plane(camera: Camera, point: tuple[float, float]) -> _Point:
     """Image plane coordinates of px from the photo's corner."""
-    width, height = scene.camera.width, scene.camera.height
+    width, height = camera.width, camera.height
     half = max(width, height) / 2
     return {"x": (point[0] - width / 2) / half, "y": (height / 2 - point[1]) / half}

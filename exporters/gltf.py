@@ -155,7 +155,7 @@ def _add_camera(tree: _Tree, scene: Scene, model: Model) -> None:
         "zfar": far,
     }
     tree["cameras"] = [{"type": "perspective", "name": _CAMERA, "perspective": perspective, "extras": extras}]
-    pose = camera_to_world(scene)
+    pose = camera_to_world(scene.rotation)
     pose[:3, :3] = _Y_UP @ pose[:3, :3]
     matrix = pose.T.ravel().tolist()  # glTF stores columns
     tree["nodes"].append({"name": _CAMERA, "camera": 0, "matrix": matrix, "extras": extras})

@@ -184,7 +184,7 @@ def _add_camera(stage: Usd.Stage, scene: Scene, model: Model) -> None:
     camera.CreateHorizontalApertureOffsetAttr(_APERTURE * (0.5 - cx / width))
     camera.CreateVerticalApertureOffsetAttr(_APERTURE * height / width * (cy / height - 0.5))
     camera.CreateClippingRangeAttr(Gf.Vec2f(*clipping_range(model, scene.rotation)))
-    pose = Gf.Matrix4d(camera_to_world(scene).T.tolist())  # USD multiplies rows from the left
+    pose = Gf.Matrix4d(camera_to_world(scene.rotation).T.tolist())  # USD multiplies rows from the left
     camera.AddTransformOp(UsdGeom.XformOp.PrecisionDouble).Set(pose)
     prim = camera.GetPrim()
     _set(prim, "linecad:imageWidth", Sdf.ValueTypeNames.Int, width)

@@ -30,7 +30,7 @@ def test_the_padded_frame_is_even_and_holds_the_photo_about_the_principal_point(
 
 
 def test_the_pose_turns_what_is_seen_before_a_camera_that_looks_along_minus_z(scene, line_ends):
-    pose = camera_to_world(scene)
+    pose = camera_to_world(scene.rotation)
     assert np.linalg.det(pose[:3, :3]) == pytest.approx(1)
     seen = np.concatenate(list(line_ends.values())) @ np.linalg.inv(pose)[:3, :3].T
     assert (seen[:, 2] < 0).all()

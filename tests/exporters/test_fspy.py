@@ -13,8 +13,9 @@ from PIL import Image
 
 from exporters.control_lines import find_control_lines, vanishing_points
 from exporters.formats import export
+from exporters.fspy import write_camera
 from linecad.errors import OutputError
-from linecad.scene import Camera
+from linecad.scene import Camera, Segments
 
 AXES = {"xPositive": (0, 1), "yPositive": (1, 1), "zPositive": (2, 1)}
 AXES |= {"xNegative": (0, -1), "yNegative": (1, -1), "zNegative": (2, -1)}
@@ -147,7 +148,7 @@ def test_the_reference_distance_is_a_line_of_the_scene(project, scene):
     size = np.array([scene.camera.width, scene.camera.height])
     start, end = (scene.lines.segment[row] + 0.5) / size
     np.testing.assert_allclose([points["origin"]["x"], points["origin"]["y"]], start, atol=1e-9)
-    towards = vanishing_points(scene)[axis] / size - start
+    towards = vanishing_points(scene.camera, scene.rotation)[axis] / size - start
     first, second = points["referenceDistanceHandleOffsets"]
     assert first == 0
     np.testing.assert_allclose(start + second * towards / np.linalg.norm(towards), end, atol=1e-9)
@@ -180,7 +181,7 @@ def test_without_lines_they_are_drawn_across_the_photo(no_lines, photo, tmp_path
     project = Project(tmp_path / "a.fspy")
     meeting = project.meeting(project.state["controlPointsStateBase"]["firstVanishingPoint"])
     axis, _ = AXES[project.state["calibrationSettingsBase"]["firstVanishingPointAxis"]]
-    np.testing.assert_allclose(meeting, vanishing_points(no_lines)[axis], rtol=1e-8)
+    np.testing.assert_allclose(meeting, vanishing_points(no_lines.camera, no_lines.rotation)[axis], rtol=1e-8)
     assert project.state["calibrationSettingsBase"]["referenceDistanceAxis"] is None
 
 
@@ -195,10 +196,11 @@ def test_control_lines_run_to_the_vanishing_point_however_the_camera_is_held(sce
         turn[i, j], turn[j, i] = -np.sin(angle), np.sin(angle)
         rotation = rotation @ turn
     held = replace(scene, rotation=rotation)
-    goals = vanishing_points(held)
+    segments = Segments(held.lines.segment, held.lines.axis)
+    goals = vanishing_points(held.camera, held.rotation)
     assert np.isfinite(goals).all()
     for axis in range(3):
-        for start, end in find_control_lines(held, axis):
+        for start, end in find_control_lines(held.camera, held.rotation, segments, axis):
             along, towards = end - start, goals[axis] - start
             off = along[0] * towards[1] - along[1] * towards[0]
             assert abs(off) <= 1e-6 * np.linalg.norm(along) * np.linalg.norm(towards)
@@ -209,3 +211,21 @@ def test_a_project_without_photo_is_refused(scene, tmp_path):
     with pytest.raises(OutputError, match="name it with --photo"):
         export(scene, tmp_path / "a.fspy")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_camera_alone_is_the_camera_of_its_scene(scene, project, photo, tmp_path):
+    write_camera(
+        scene.camera, scene.rotation, Segments(scene.lines.segment, scene.lines.axis), tmp_path / "a.fspy", photo
+    )
+    alone = Project(tmp_path / "a.fspy")
+    assert alone.camera == project.camera
+    assert alone.image == project.image
+    assert alone.state["controlPointsState2VP"] == project.state["controlPointsState2VP"]
+
+
+def test_a_camera_alone_has_no_length(scene, photo, tmp_path):
+    segments = Segments(np.zeros((0, 2, 2)), np.zeros(0))
+    write_camera(scene.camera, scene.rotation, segments, tmp_path / "a.fspy", photo)
+    base = Project(tmp_path / "a.fspy").state["calibrationSettingsBase"]
+    assert base["referenceDistanceAxis"] is None
+    assert base["referenceDistanceUnit"] == "No unit"
