@@ -14,6 +14,8 @@ from linecad.scene import Float
 
 _SHIFT = 4  # bits after the point in OpenCV's coordinates
 _FARTHEST = 1e6  # px; OpenCV's coordinates are 32 bits wide, and this is far outside of any picture
+_COLOUR_KEPT = 0.50  # of the colours of a photo, so that those of the lines stand out
+_BRIGHTENED = 0.30  # share of white laid over a photo
 
 
 @dataclass(frozen=True)
@@ -57,6 +59,12 @@ class Canvas:
         """Paint all of it."""
         self.pixels[:] = _bytes(colour)
 
+    def show(self, photo: NDArray[np.uint8]) -> None:
+        """Fill it with a photo (H, W, 3), paler than it is."""
+        smaller = self.width < photo.shape[1]
+        size, how = (self.width, self.height), cv2.INTER_AREA if smaller else cv2.INTER_CUBIC
+        self.pixels[:] = _faded(np.asarray(cv2.resize(photo, size, interpolation=how), np.float32))
+
     def frame(self, colour: RGB) -> None:
         """Draw a border one pixel wide."""
         for edge in (np.s_[:1], np.s_[-1:], np.s_[:, :1], np.s_[:, -1:]):
@@ -69,6 +77,15 @@ class Canvas:
     def disc(self, centre: Sequence[float], radius: float, colour: RGB) -> None:
         """A filled circle."""
         cv2.circle(self.pixels, _fixed(centre), round(radius * 2**_SHIFT), _bytes(colour), -1, cv2.LINE_AA, _SHIFT)
+
+    def ring(self, centre: Sequence[float], radius: float, colour: RGB, width: int) -> None:
+        """A circle `width` px wide."""
+        self.ellipse(centre, (radius, radius), colour, width)
+
+    def ellipse(self, centre: Sequence[float], radii: Sequence[float], colour: RGB, width: int) -> None:
+        """An upright ellipse, its line `width` px wide."""
+        axes = _fixed(radii)
+        cv2.ellipse(self.pixels, _fixed(centre), axes, 0, 0, 360, _bytes(colour), width, cv2.LINE_AA, _SHIFT)
 
     def cross(self, centre: Sequence[float], radius: float, colour: RGB, width: int) -> None:
         """Two strokes at 45 degrees, each reaching `radius` px to both sides."""
@@ -116,6 +133,12 @@ def _font(size: int) -> ImageFont.FreeTypeFont:
     font = ImageFont.load_default(size)  # the font that comes with Pillow: the same on every machine
     assert isinstance(font, ImageFont.FreeTypeFont)  # Pillow's wheels all have FreeType
     return font
+
+
+def _faded(photo: NDArray[np.float32]) -> NDArray[np.uint8]:
+    grey = photo @ np.array([0.299, 0.587, 0.114], np.float32)
+    faded = grey[..., None] * (1 - _COLOUR_KEPT) + photo * _COLOUR_KEPT
+    return np.asarray(np.round(faded * (1 - _BRIGHTENED) + 255 * _BRIGHTENED), np.uint8)
 
 
 def _fixed(point: Sequence[float]) -> tuple[int, int]:

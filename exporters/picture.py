@@ -3,7 +3,6 @@
 from pathlib import Path
 from typing import NamedTuple
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,8 +25,6 @@ _NO_PHOTO = (0.86, 0.86, 0.87)
 _REAL, _FAKE, _CASING = (1.0, 0.84, 0.12), (0.80, 0.05, 0.62), (1.0, 1.0, 1.0)
 _TITLE, _TEXT = 42, 27  # px of text
 
-_COLOUR_KEPT = 0.50  # of the photo's colours, so that those of the lines stand out
-_BRIGHTENED = 0.30  # share of white laid over the photo
 _LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 4, False: 2}  # px, by boundary
 _CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wider than the line
 _FEW_LINES = 600  # from there on they are drawn thin
@@ -101,9 +98,7 @@ def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) ->
     if photo is None:
         panel.fill(_NO_PHOTO)
     else:
-        smaller = panel.width < scene.camera.width
-        size, how = (panel.width, panel.height), cv2.INTER_AREA if smaller else cv2.INTER_CUBIC
-        panel.pixels[:] = _faded(np.asarray(cv2.resize(photo, size, interpolation=how), np.float32))
+        panel.show(photo)
     scale = np.array([panel.width / scene.camera.width, panel.height / scene.camera.height])
 
     def shown(pixels: Float) -> Float:
@@ -115,12 +110,6 @@ def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) ->
     _draw_crossings(panel, scene, shown(scene.intersections.pixel))
     if photo is None:
         panel.text(panel.width / 2, 24, "photo not given", _TEXT, _QUIET, "ma")
-
-
-def _faded(photo: NDArray[np.float32]) -> NDArray[np.uint8]:
-    grey = photo @ np.array([0.299, 0.587, 0.114], np.float32)
-    faded = grey[..., None] * (1 - _COLOUR_KEPT) + photo * _COLOUR_KEPT
-    return np.asarray(np.round(faded * (1 - _BRIGHTENED) + 255 * _BRIGHTENED), np.uint8)
 
 
 def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:

@@ -74,6 +74,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
     _add_convert(commands)
+    _add_camera_command(commands)
     _add_batch(commands)
     _add_edit(commands)
     _add_evaluate(commands)
@@ -106,6 +107,23 @@ def _add_convert(commands: "argparse._SubParsersAction[_Parser]") -> None:
     _add_reconstruction(convert)
     _add_scale(convert)
     _add_loudness(convert)
+
+
+def _add_camera_command(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    command = commands.add_parser(
+        "camera",
+        help="the camera of a photo alone, and how sure it is",
+        description="Find the camera and the Manhattan frame of a photo, print them, or write them (docs/camera.md).",
+        epilog="example: linecad camera facade.jpg -o facade.camera.json -o facade.camera.png",
+    )
+    command.set_defaults(run=_camera)
+    command.add_argument("photo", type=Path, metavar="PHOTO")
+    command.add_argument(
+        "-o", "--output", type=Path, action="append", default=[], metavar="OUT",
+        help="file to write: .json, which --camera reads, .fspy or .png, a picture; may be given again",
+    )  # fmt: skip
+    _add_camera(command)
+    _add_loudness(command)
 
 
 def _add_edit(commands: "argparse._SubParsersAction[_Parser]") -> None:
@@ -465,6 +483,7 @@ def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
 
 def _convert(parsed: argparse.Namespace) -> int:
     values = _check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections], parsed.option)
+    from linecad.cameratext import summary
     from linecad.correctionsfile import check_belongs, read_corrections
     from linecad.photo import read_photo
     from linecad.pipeline import reconstruct
@@ -484,7 +503,33 @@ def _convert(parsed: argparse.Namespace) -> int:
         f"{scene.solve.status} in {scene.solve.seconds:.1f} s, gap "
         + (f"{scene.solve.gap:.2%}" if math.isfinite(scene.solve.gap) else "unknown")
     )
-    _print_notes(scene)
+    if scene.certainty is not None:
+        print(summary(scene.camera, scene.certainty))
+    _print_notes(scene.notes)
+    return 0
+
+
+def _camera(parsed: argparse.Namespace) -> int:
+    from linecad.camerafile import check_suffix, write_camera
+    from linecad.camerareport import find_camera
+    from linecad.cameratext import summary, table
+    from linecad.files import check_output
+
+    for path in parsed.output:
+        check_suffix(path)
+        check_output(path)
+    _check_kept(parsed.output, [parsed.photo, *([parsed.camera] if parsed.camera else [])])
+    _check_distinct(parsed.output)
+    with _Shown(parsed) as show:
+        report = find_camera(parsed.photo, parsed.camera, parsed.focal, show.stage)
+        for path in parsed.output:
+            show.stage(f"writing {path}")
+            write_camera(report, path)
+    if parsed.output:
+        print(summary(report.camera, report.certainty))
+        _print_notes(report.notes)
+    else:
+        print("\n".join(table(report)))
     return 0
 
 
@@ -759,8 +804,8 @@ def _print_formats() -> int:
     return 0
 
 
-def _print_notes(scene: "Scene") -> None:
-    for note in scene.notes:
+def _print_notes(notes: tuple[str, ...]) -> None:
+    for note in notes:
         print(f"note: {note}")
 
 

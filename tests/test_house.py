@@ -76,7 +76,9 @@ FLOORS = [
     ["linecad.support"],  # of hinges
     ["linecad.calibrating", "linecad.straightening"],
     ["linecad.finding"],
-    ["linecad.placing"],
+    ["linecad.placing", "linecad.camerareport"],
+    ["linecad.cameratext"],
+    ["linecad.camerafile"],
     ["linecad.pipeline", "linecad.dataset.choice"],
     ["linecad.conversion"],
     ["linecad.evaluation", "linecad.batch", "linecad.editing", "linecad.dataset.make"],
