@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from exporters.camera import principal_point
 from exporters.canvas import Canvas, drawable, text_width
 from exporters.colours import RGB, line_colour
 from exporters.control_lines import vanishing_points
@@ -26,7 +25,7 @@ _ROW = 40  # px between rows of text
 
 _PAPER, _INK, _QUIET = (0.965, 0.965, 0.97), (0.13, 0.13, 0.15), (0.40, 0.40, 0.43)
 _GROUND = (0.90, 0.90, 0.91)  # of the margin
-_OUTLIER, _HORIZON, _CASING = (0.48, 0.48, 0.50), (0.93, 0.45, 0.05), (1.0, 1.0, 1.0)
+_OUTLIER, _HORIZON, _CASING = (0.35, 0.35, 0.37), (0.93, 0.45, 0.05), (1.0, 1.0, 1.0)
 _CENTRE = (0.62, 0.05, 0.60)
 _QUALITY: dict[str, RGB] = {"good": (0.05, 0.50, 0.20), "doubtful": (0.75, 0.42, 0.0), "poor": (0.78, 0.08, 0.08)}
 
@@ -83,12 +82,12 @@ def write(picture: CameraPicture, path: Path, photo: NDArray[np.uint8]) -> None:
     window.canvas.fill(_GROUND)
     window.photo.show(photo)
     _draw_segments(window, picture.segments)
-    _draw_horizon(window, picture.horizon)
+    horizon_shows = _draw_horizon(window, picture.horizon)
     _draw_centre(window, picture)
     _draw_vanishing_points(window, picture)
-    _draw_legend(canvas, picture, below)
+    _draw_legend(canvas, picture, below, horizon_shows)
     for number, row in enumerate(facts):
-        canvas.text(_EDGE, below + _ROW * (number + 1), row, _TEXT, _QUIET, "lm")
+        canvas.text(_EDGE, below + 6 + _ROW * (number + 1), row, _TEXT, _QUIET, "lm")
     canvas.image().save(path, format="PNG")
 
 
@@ -127,28 +126,26 @@ def _draw_segments(window: _Window, segments: Segments) -> None:
     ends = window.shown(segments.ends) - (window.left, window.top)
     thinner = 1 if len(segments) > _MANY else 0
     for start, end in ends[segments.axis < 0].tolist():
-        window.photo.line(start, end, _OUTLIER, _OUTLIER_LINE - thinner)
-    own = np.flatnonzero(segments.axis >= 0).tolist()
-    for number in own:
-        window.photo.line(*ends[number].tolist(), _CASING, _LINE + _CASED - thinner)
-    for number in own:
-        window.photo.line(*ends[number].tolist(), line_colour(int(segments.axis[number]), True), _LINE - thinner)
+        window.photo.line(start, end, _OUTLIER, _OUTLIER_LINE)
+    own = segments.axis >= 0
+    for start, end in ends[own].tolist():
+        window.photo.line(start, end, _CASING, _LINE + _CASED - thinner)
+    for axis, (start, end) in zip(segments.axis[own].tolist(), ends[own].tolist(), strict=True):
+        window.photo.line(start, end, line_colour(axis, True), _LINE - thinner)
 
 
-def _draw_horizon(window: _Window, horizon: Float | None) -> None:
-    """From border to border of the margin."""
+def _draw_horizon(window: _Window, horizon: Float | None) -> bool:
+    """From border to border of the margin; whether any of it shows."""
     if horizon is None:
-        return
+        return False
     start, end = window.shown(horizon)
     along = (end - start) / np.linalg.norm(end - start)
     middle = start + ((window.canvas.width / 2, window.canvas.height / 2) - start) @ along * along
     reach = (window.canvas.width + window.canvas.height) * along
-    _cased_line(window.canvas, middle - reach, middle + reach, _HORIZON)
-
-
-def _cased_line(canvas: Canvas, start: Float, end: Float, colour: RGB) -> None:
-    canvas.line(start.tolist(), end.tolist(), _CASING, _LINE + _CASED + 1)
-    canvas.line(start.tolist(), end.tolist(), colour, _LINE)
+    before = window.canvas.pixels.copy()
+    for colour, width in ((_CASING, _LINE + _CASED + 1), (_HORIZON, _LINE)):
+        window.canvas.line((middle - reach).tolist(), (middle + reach).tolist(), colour, width)
+    return bool((before != window.canvas.pixels).any())
 
 
 def _draw_centre(window: _Window, picture: CameraPicture) -> None:
@@ -170,9 +167,9 @@ def _draw_principal_point(canvas: Canvas, centre: list[float], errors: list[floa
 def _draw_vanishing_points(window: _Window, picture: CameraPicture) -> None:
     canvas = window.canvas
     size = np.array([canvas.width, canvas.height], float)
+    horizon = None if picture.horizon is None else window.shown(picture.horizon)
     points = window.shown(vanishing_points(picture.camera, picture.rotation) - 0.5)
-    middle = window.shown(np.array(principal_point(picture.camera)) - 0.5)
-    middle = np.clip(middle, _INSET + _ARROW, np.maximum(size - _INSET - _ARROW, _INSET + _ARROW))
+    centre = window.shown(picture.camera.matrix[:2, 2])
     for axis, (point, place) in enumerate(zip(points, picture.places, strict=True)):
         text, colour = f"{AXES[axis]}  {place}", line_colour(axis, True)
         if (point > _POINT).all() and (point < size - 1 - _POINT).all():
@@ -181,10 +178,23 @@ def _draw_vanishing_points(window: _Window, picture: CameraPicture) -> None:
             canvas.disc(point.tolist(), 4.0, colour)
             _draw_label(canvas, point, np.array([0.0, 1.0]), text, colour)
         else:
+            middle = _arrow_start(centre, None if axis == AXES.index("z") else horizon, size)
             along = (point - middle) / np.linalg.norm(point - middle)
             tip = middle + _reach(middle, along, size) * along
             _draw_arrow(canvas, tip, along, colour)
             _draw_label(canvas, tip - _ARROW / 2 * along, along, text, colour)
+
+
+def _arrow_start(centre: Float, horizon: Float | None, size: Float) -> Float:
+    """Where the way to a vanishing point starts: at the principal point, or on a horizon that the window shows."""
+    start = centre
+    if horizon is not None:
+        along = (horizon[1] - horizon[0]) / np.linalg.norm(horizon[1] - horizon[0])
+        foot = horizon[0] + (centre - horizon[0]) @ along * along
+        if (foot > _INSET).all() and (foot < size - 1 - _INSET).all():
+            start = foot
+    inside: Float = np.clip(start, _INSET, np.maximum(size - 1 - _INSET, _INSET))
+    return inside
 
 
 def _reach(start: Float, along: Float, size: Float) -> float:
@@ -217,7 +227,7 @@ def _draw_label(canvas: Canvas, at: Float, along: Float, text: str, colour: RGB)
     canvas.text(x, y, text, _LABEL, colour, "mm")
 
 
-def _draw_legend(canvas: Canvas, picture: CameraPicture, y: float) -> None:
+def _draw_legend(canvas: Canvas, picture: CameraPicture, y: float, horizon_shows: bool) -> None:
     x = float(_EDGE)
     for axis, share in enumerate(picture.shares):
         colour = line_colour(axis, True) if axis < len(AXES) else _OUTLIER
@@ -225,7 +235,7 @@ def _draw_legend(canvas: Canvas, picture: CameraPicture, y: float) -> None:
         canvas.line((x, y), (x + 44, y), colour, 5)
         x = _label(canvas, x + 56, y, f"{name} {share:.0%}")
     canvas.line((x, y), (x + 44, y), _HORIZON, 5)
-    x = _label(canvas, x + 56, y, "horizon")
+    x = _label(canvas, x + 56, y, "horizon" if horizon_shows else "horizon: outside")
     canvas.ring((x + 14, y), _POINT, _INK, 4)
     canvas.disc((x + 14, y), 4.0, _INK)
     x = _label(canvas, x + 38, y, "vanishing point")
@@ -233,7 +243,7 @@ def _draw_legend(canvas: Canvas, picture: CameraPicture, y: float) -> None:
     x = _label(canvas, x + 58, y, "farther off")
     estimated = picture.certainty.center is not None
     _draw_principal_point(canvas, [x + 14, y], [11.0, 8.0] if estimated else None)
-    _label(canvas, x + 38, y, "principal point" + (" and its error" if estimated else ", given or assumed"))
+    _label(canvas, x + 38, y, "principal point" + (" and its error" if estimated else ""))
 
 
 def _label(canvas: Canvas, x: float, y: float, text: str) -> float:

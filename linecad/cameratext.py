@@ -10,11 +10,13 @@ FINEST = 0.005  # px and degrees; smaller errors are not said with more digits
 
 SOURCES = {
     "file": "the camera file",
-    "focal option": "--focal, the principal point assumed in the middle",
+    "focal option": "--focal",
     "exif": "EXIF",
     "vanishing points": "the vanishing points",
     "default": "nothing: a usual one is assumed",
 }
+
+GIVEN = ("file", "focal option")
 
 
 def summary(camera: Camera, certainty: Certainty) -> str:
@@ -47,7 +49,10 @@ def table(report: CameraReport) -> list[str]:
     ]
     names = ["vanishing points", "", ""]
     for name, point in zip(names, report.vanishing_points, strict=True):
-        rows.append((name, f"{AXES[point.axis]}  {place_words(point)}, {point.share:.0%} of the segment length"))
+        place = place_words(point)
+        if point.pixel is None:
+            place += f", its lines at {_slope(point):.1f} degrees to the photo's rows"
+        rows.append((name, f"{AXES[point.axis]}  {place}, {point.share:.0%} of the segment length"))
     rows.append(("", f"none of them: {report.unexplained:.0%}"))
     return [f"{name:{NAME_WIDTH}}{text}" for name, text in rows] + [f"note: {note}" for note in report.notes]
 
@@ -57,7 +62,7 @@ def facts(report: CameraReport) -> tuple[str, ...]:
     certainty = report.certainty
     across = math.degrees(report.field_of_view[0])
     found = [
-        f"{report.equivalent:.0f} mm in 35 mm terms, {across:.0f} degrees across",
+        f"{report.equivalent:.0f} mm (35 mm equivalent), {across:.0f} degrees across",
         f"camera from {SOURCES[report.camera.source]}",
         f"tilt {tilt_words(report.tilt)}",
         f"roll {roll_words(report.roll)}",
@@ -67,6 +72,12 @@ def facts(report: CameraReport) -> tuple[str, ...]:
     if any(report.camera.distortion):
         found.append(f"radial distortion {_radial(report.camera, certainty)}")
     return tuple(found)
+
+
+def _slope(point: VanishingPoint) -> float:
+    """Degrees, 0 to 180, by which lines to a point at infinity rise to the right."""
+    x, y = point.direction
+    return math.degrees(math.atan2(-y, x)) % 180
 
 
 def tilt_words(tilt: Angle) -> str:
@@ -93,10 +104,12 @@ def _error(error: float) -> str:
 
 def _focal(report: CameraReport) -> str:
     camera, certainty = report.camera, report.certainty
-    text = f"{camera.focal:.1f} px, as given"
+    text = f"{camera.focal:.1f} px"
+    if camera.source in GIVEN:
+        text += ", as given"
     if certainty.focal is not None:
         text = f"{camera.focal:.0f} ± {_error(certainty.focal)} px ({certainty.focal / camera.focal:.1%})"
-    return f"{text}; {report.equivalent:.1f} mm in 35 mm terms"
+    return f"{text}; {report.equivalent:.1f} mm (35 mm equivalent)"
 
 
 def _principal_point(camera: Camera, certainty: Certainty) -> str:
@@ -125,7 +138,4 @@ def _horizon(report: CameraReport) -> str:
 
 def place_words(point: VanishingPoint) -> str:
     """Where a vanishing point lies."""
-    if point.pixel is not None:
-        return f"({point.pixel[0]:.0f}, {point.pixel[1]:.0f}) px"
-    x, y = point.direction
-    return f"at infinity, {math.degrees(math.atan2(-y, x)) % 180:.1f} degrees from the photo's x, counter-clockwise"
+    return "at infinity" if point.pixel is None else f"({point.pixel[0]:.0f}, {point.pixel[1]:.0f}) px"
