@@ -221,9 +221,10 @@ def _draw_label(canvas: Canvas, at: Float, along: Float, text: str, colour: RGB)
         x = at[0] - width / 2 - 26
     x = float(np.clip(x, width / 2 + 4, max(canvas.width - width / 2 - 4, width / 2 + 4)))
     y = float(np.clip(y, height / 2 + 4, max(canvas.height - height / 2 - 4, height / 2 + 4)))
-    half = np.array([width / 2, height / 2])
-    corners = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]]) * half + (x, y)
-    canvas.tint([[corners]], _CASING, 0.85)
+    left, top = max(round(x - width / 2), 0), max(round(y - height / 2), 0)
+    ground = canvas.window(left, top, round(width), round(height))  # small: a tint costs what its picture is large
+    right, bottom = ground.width - 1.0, ground.height - 1.0
+    ground.tint([[np.array([[0.0, 0.0], [right, 0.0], [right, bottom], [0.0, bottom]])]], _CASING, 0.85)
     canvas.text(x, y, text, _LABEL, colour, "mm")
 
 

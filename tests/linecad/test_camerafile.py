@@ -88,7 +88,7 @@ def test_the_picture_is_a_png_of_a_size_for_screens(room, tmp_path):
 
 @pytest.mark.parametrize("name", ["camera.step", "camera", "camera.json.bak"])
 def test_other_suffixes_are_refused(name, tmp_path):
-    with pytest.raises(OutputError, match="a camera is written as .json, .fspy or .png"):
+    with pytest.raises(OutputError, match=r"a camera is written as \.json, \.fspy or \.png"):
         check_suffix(tmp_path / name)
 
 

@@ -26,9 +26,7 @@ yaws = st.floats(-3.0, 3.0)
 
 def held(yaw, tilt, roll):
     """World to camera: turned right by `yaw`, then up by `tilt`, then clockwise by `roll`."""
-    right, up, clockwise = (
-        rotation_about(np.array(vector)) for vector in ((0, 0, -yaw), (-tilt, 0, 0), (0, 0, -roll))
-    )
+    right, up, clockwise = (rotation_about(np.array(vector)) for vector in ((0, 0, -yaw), (-tilt, 0, 0), (0, 0, -roll)))
     return clockwise @ up @ LEVEL @ right.T
 
 
@@ -59,7 +57,9 @@ def test_errors_of_tilt_and_roll_are_those_of_small_turns_of_the_camera(yaw, til
     changes = []
     for turn in step * np.eye(3):
         turned = [report(rotation_about(sign * turn) @ rotation) for sign in (1, -1)]
-        changes.append([(getattr(turned[0], n).value - getattr(turned[1], n).value) / 2 / step for n in ("tilt", "roll")])
+        changes.append(
+            [(getattr(turned[0], n).value - getattr(turned[1], n).value) / 2 / step for n in ("tilt", "roll")]
+        )
     expected = np.linalg.norm(np.array(changes) * np.array(SURE)[:, None], axis=0)
     found = report(rotation)
     assert [found.tilt.error, found.roll.error] == pytest.approx(np.minimum(expected, math.pi), rel=1e-4)
