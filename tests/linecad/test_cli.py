@@ -356,7 +356,7 @@ def test_version_and_help(folder):
 
 
 def test_every_option_is_explained(capsys):
-    for command in ("convert", "export"):
+    for command in ("convert", "camera", "export"):
         with pytest.raises(SystemExit, match="0"):
             main([command, "--help"])
         text = capsys.readouterr().out
