@@ -6,6 +6,7 @@ from typing import Literal, Protocol, get_args
 
 from exporters.beside import folder_name, library_name
 from linecad.conversion import Conversion
+from linecad.scene import Quality
 
 # done; failed: linecad said why, or broke; time limit, memory limit: of the photo; killed: its process died.
 Status = Literal["done", "failed", "time limit", "memory limit", "killed"]
@@ -77,6 +78,7 @@ class Figures:
     gap: float | None  # of the solver, relative; None where it proved no bound
     solver: str  # its status
     notes: tuple[str, ...] = ()
+    camera: Quality | None = None  # how sure the camera is; None in records that do not tell
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from linecad import __version__
 from linecad.batch.job import STATUSES, Figures, Outcome, Status
 from linecad.conversion import Conversion
 from linecad.errors import InputError, OutputError
+from linecad.scene import QUALITIES, Quality
 from linecad.strictjson import JsonError, Node, parse
 
 NAME = "batch.jsonl"
@@ -171,7 +172,7 @@ def parse_row(line: bytes) -> Row | None:
 
 
 def _figures(top: Node) -> Figures:
-    gap = top["gap"]
+    gap, camera = top["gap"], top.get("camera")
     return Figures(
         lines=top["lines"].integer(),
         crossings=top["crossings"].integer(),
@@ -181,6 +182,7 @@ def _figures(top: Node) -> Figures:
         gap=None if gap.value is None else gap.number(),
         solver=top["solver"].text(),
         notes=tuple(note.text() for note in top["notes"].items()),
+        camera=None if camera is None or camera.value is None else cast(Quality, camera.one_of(QUALITIES)),
     )
 
 

@@ -71,9 +71,10 @@ def _article(folder: Path, row: Row) -> Iterator[str]:
 def figures_text(figures: Figures) -> str:
     """The figures of a scene in one line."""
     gap = "no bound" if figures.gap is None else f"gap {figures.gap:.2%}"
+    camera = "" if figures.camera is None else f", camera {figures.camera}"
     return (
         f"{figures.lines} lines, {figures.real} of {figures.crossings} crossings real, {figures.planes} planes, "
-        f"{figures.faces} faces; {figures.solver}, {gap}"
+        f"{figures.faces} faces; {figures.solver}, {gap}{camera}"
     )
 
 

@@ -68,6 +68,7 @@ def _figures(scene: Scene) -> Figures:
         gap=float(gap) if math.isfinite(gap) else None,
         solver=scene.solve.status,
         notes=scene.notes,
+        camera=None if scene.certainty is None else scene.certainty.quality,
     )
 
 

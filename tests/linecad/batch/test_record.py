@@ -12,9 +12,10 @@ from linecad.batch.record import NAME, Record, Row, options_hash, parse_row, row
 from linecad.conversion import Conversion
 from linecad.errors import InputError, OutputError
 from linecad.finding import ReconstructOptions
+from linecad.scene import QUALITIES
 from solver.problem import SolveOptions
 
-FIGURES = Figures(20, 30, 25, 4, 5, None, "optimal", ("a note",))
+FIGURES = Figures(20, 30, 25, 4, 5, None, "optimal", ("a note",), "doubtful")
 
 
 def row(name="facade", **changes):
@@ -28,8 +29,9 @@ seconds = st.floats(0, 1e6).map(lambda number: round(number, 1))
 words = st.text(max_size=20)
 plain = st.from_regex(r"[\w(][\w .()-]{0,20}", fullmatch=True)
 some_figures = st.builds(
-    Figures, whole, whole, whole, whole, whole, st.none() | st.floats(0, 1e9), words, st.lists(words).map(tuple)
-)
+    Figures, whole, whole, whole, whole, whole, st.none() | st.floats(0, 1e9), words, st.lists(words).map(tuple),
+    st.none() | st.sampled_from(QUALITIES),
+)  # fmt: skip
 outcomes = st.builds(
     Outcome, st.sampled_from(STATUSES), words, seconds, seconds, seconds, st.none() | some_figures,
     st.dictionaries(plain | plain.map("thumbnails/{}".format), whole, max_size=3),
@@ -43,6 +45,12 @@ def test_a_row_reads_back_as_it_was(given_row):
     assert line.count(b"\n") == 1
     assert line.isascii()
     assert parse_row(line) == given_row
+
+
+def test_a_row_of_before_tells_nothing_of_the_camera():
+    document = json.loads(row_line(row()))
+    del document["camera"]
+    assert parse_row(json.dumps(document).encode()).outcome.figures.camera is None
 
 
 def test_rows_are_read_back_in_their_order(tmp_path):

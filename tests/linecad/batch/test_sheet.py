@@ -39,7 +39,7 @@ def page_of(folder, *rows):
 
 
 def row(photo, name="facade", **changes):
-    figures = Figures(20, 30, 25, 4, 5, 0.015, "time limit", ())
+    figures = Figures(20, 30, 25, 4, 5, 0.015, "time limit", (), "poor")
     files = {f"{name}.step": 10, f"thumbnails/{name}.jpg": len(PICTURE)}
     return Row(photo, "0" * 64, "f" * 64, name, Outcome("done", "", 2.0, 1.0, 200.0, figures, files), **changes)
 
@@ -55,7 +55,7 @@ def test_a_photo_has_its_picture_figures_and_files(folder):
     page = page_of(folder, row("/p/facade.jpg"))
     assert "facade.jpg" in page.words
     assert "20 lines, 25 of 30 crossings real" in page.words
-    assert "gap 1.50%" in page.words
+    assert "gap 1.50%, camera poor" in page.words
     assert page.addresses == ["data:image/jpeg;base64,/9ggYSBwaWN0dXJl", "./facade.step"]
 
 
