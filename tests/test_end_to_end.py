@@ -12,6 +12,7 @@ import pytest
 import trimesh
 
 from linecad.calibration import undistort_points
+from linecad.cameratext import summary
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
 from linecad.finding import ReconstructOptions
@@ -130,7 +131,8 @@ def test_the_command_turns_a_photo_into_every_kind_of_file(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted(outputs + beside)
     scene = read_scene(tmp_path / "scene.json")
     assert ended.stdout.startswith(f"{len(scene.lines)} lines, {int(scene.intersections.real.sum())} of ")
-    assert ended.stdout.splitlines()[1:] == [f"note: {note}" for note in scene.notes]
+    camera = summary(scene.camera, scene.certainty)
+    assert ended.stdout.splitlines()[1:] == [camera, *(f"note: {note}" for note in scene.notes)]
     pixels, depth, _ = truth_of("courtyard")
     assert score_depth(scene, pixels, depth).precision_5 >= LEAST["courtyard", "default"][1]
     # The faces of the model are those of the scene, in whatever frame and unit the format has.
