@@ -28,7 +28,7 @@ def focal_words(camera: Camera, certainty: Certainty) -> str:
     """The focal length with its error, if it has one."""
     if certainty.focal is None:
         return f"focal length {camera.focal:.0f} px"
-    return f"focal length {camera.focal:.0f} ± {_error(certainty.focal)} px"
+    return f"focal length {_estimate(camera.focal, certainty.focal)} px"
 
 
 def table(report: CameraReport) -> list[str]:
@@ -92,14 +92,21 @@ def roll_words(roll: Angle) -> str:
 
 def _angle(angle: Angle, positive: str, negative: str) -> str:
     degrees, error = math.degrees(angle.value), math.degrees(angle.error)
-    return f"{abs(degrees):.1f} ± {_error(error)} degrees {positive if degrees >= 0 else negative}"
+    return f"{_estimate(abs(degrees), error)} degrees {positive if degrees >= 0 else negative}"
 
 
 def _error(error: float) -> str:
     """A standard error with the digits that mean something."""
-    if error < FINEST:
-        return "0"
-    return f"{error:.2f}" if error < 0.1 else f"{error:.1f}" if error < 10 else f"{error:.0f}"
+    return "0" if error < FINEST else f"{error:.{_digits(error)}f}"
+
+
+def _estimate(value: float, error: float) -> str:
+    """A number and its standard error, both with as many digits after the point."""
+    return f"{value:.{_digits(error)}f} ± {_error(error)}"
+
+
+def _digits(error: float) -> int:
+    return 2 if error < 0.1 else 1 if error < 10 else 0
 
 
 def _focal(report: CameraReport) -> str:
@@ -108,14 +115,14 @@ def _focal(report: CameraReport) -> str:
     if camera.source in GIVEN:
         text += ", as given"
     if certainty.focal is not None:
-        text = f"{camera.focal:.0f} ± {_error(certainty.focal)} px ({certainty.focal / camera.focal:.1%})"
+        text = f"{_estimate(camera.focal, certainty.focal)} px ({certainty.focal / camera.focal:.1%})"
     return f"{text}; {report.equivalent:.1f} mm (35 mm equivalent)"
 
 
 def _principal_point(camera: Camera, certainty: Certainty) -> str:
     x, y = camera.matrix[:2, 2].tolist()
     if certainty.center is not None:
-        return f"({x:.0f} ± {_error(certainty.center[0])}, {y:.0f} ± {_error(certainty.center[1])}) px"
+        return f"({_estimate(x, certainty.center[0])}, {_estimate(y, certainty.center[1])}) px"
     how = "as given" if camera.source == "file" else "the middle of the photo, assumed"
     return f"({x:.1f}, {y:.1f}) px, {how}"
 
