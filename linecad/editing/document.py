@@ -8,6 +8,7 @@ import numpy as np
 from exporters.faces import triangulate
 from exporters.formats import FORMATS, SCENE_FILE
 from exporters.model import FlatFace, build_model
+from linecad.cameratext import summary
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError
@@ -26,6 +27,7 @@ def document_of(now: Now, levels: int, is_saved: bool) -> dict[str, object]:
         "photo": {
             "name": now.photo.name, "width": camera.width, "height": camera.height, "tile": TILE, "levels": levels,
         },
+        "camera": None if now.found.certainty is None else summary(camera, now.found.certainty),
         "K": camera.matrix.tolist(),
         "R_cam_from_world": now.found.frame.rotation.tolist(),
         "metres_per_unit": None if scene is None else scene.metres_per_unit,

@@ -202,10 +202,11 @@ export class Panels {
       button.setAttribute("aria-expanded", String(!list.hidden));
     });
     const show = () => {
-      const { notes } = this.store.state;
-      button.disabled = notes.length === 0;
+      const { camera, notes } = this.store.state;
+      const lines = camera === null ? notes : [camera, ...notes];
+      button.disabled = lines.length === 0;
       button.querySelector(".count").textContent = String(notes.length);
-      list.replaceChildren(...notes.map((note) => element("li", {}, note)));
+      list.replaceChildren(...lines.map((line) => element("li", {}, line)));
     };
     this.store.listen((changed) => changed.has("state") && show());
     show();

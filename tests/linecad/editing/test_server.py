@@ -1,6 +1,7 @@
 """What the page can ask for: state, tiles, edits, undo, solving, labels, exports."""
 
 import json
+import re
 
 import cv2
 import numpy as np
@@ -32,6 +33,9 @@ class TestState:
         assert len({crossing["id"] for crossing in state["crossings"]}) == len(state["crossings"])
         assert np.abs(np.array(state["R_cam_from_world"]) - made.frame.rotation).max() < 0.01
         assert (state["undo"], state["redo"], state["saved"], state["contradiction"]) == (0, 0, True, None)
+
+    def test_it_tells_how_sure_the_camera_is(self, page):
+        assert re.match(r"camera (good|doubtful|poor): .+; focal length \d", page.state()["camera"])
 
     def test_after_a_solve_it_tells_the_model(self, page, made_photo):
         state = page.solve()
