@@ -122,16 +122,14 @@ def _rows(facts: Sequence[str]) -> list[str]:
 
 
 def _draw_segments(window: _Window, segments: Segments) -> None:
-    """Those of no axis below the others, which have a light casing that keeps them apart from the photo."""
+    """Those of no axis below the others; all have a light casing that keeps them apart from the photo."""
     ends = window.shown(segments.ends) - (window.left, window.top)
     thinner = 1 if len(segments) > _MANY else 0
-    for start, end in ends[segments.axis < 0].tolist():
-        window.photo.line(start, end, _OUTLIER, _OUTLIER_LINE)
-    own = segments.axis >= 0
-    for start, end in ends[own].tolist():
-        window.photo.line(start, end, _CASING, _LINE + _CASED - thinner)
-    for axis, (start, end) in zip(segments.axis[own].tolist(), ends[own].tolist(), strict=True):
-        window.photo.line(start, end, line_colour(axis, True), _LINE - thinner)
+    for own, width in ((segments.axis < 0, _OUTLIER_LINE), (segments.axis >= 0, _LINE - thinner)):
+        for start, end in ends[own].tolist():
+            window.photo.line(start, end, _CASING, width + _CASED)
+        for axis, (start, end) in zip(segments.axis[own].tolist(), ends[own].tolist(), strict=True):
+            window.photo.line(start, end, _OUTLIER if axis < 0 else line_colour(axis, True), width)
 
 
 def _draw_horizon(window: _Window, horizon: Float | None) -> bool:
