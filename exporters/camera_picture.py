@@ -33,7 +33,7 @@ _LINE, _OUTLIER_LINE, _CASED = 3, 2, 2  # px: widths, and how much wider a casin
 _MANY = 1500  # segments; from there on they are drawn thinner
 _POINT, _ARROW, _HEAD = 13.0, 64.0, 18.0  # px: radius of a vanishing point, length of an arrow and of its head
 _INSET = 34.0  # px between the tip of an arrow and the border of the margin
-_SMALLEST_ELLIPSE = 6.0  # px, so that a point that is known well is seen
+_INNER_ARM, _SMALLEST_ELLIPSE = 4.0, 9.0  # px, so that a point that is known well is seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,10 +154,12 @@ def _draw_centre(window: _Window, picture: CameraPicture) -> None:
 
 
 def _draw_principal_point(canvas: Canvas, centre: list[float], errors: list[float] | None) -> None:
-    (x, y), arm = centre, _POINT
-    for colour, width in ((_CASING, 6), (_CENTRE, 3)):
-        canvas.line((x - arm, y), (x + arm, y), colour, width)
-        canvas.line((x, y - arm), (x, y + arm), colour, width)
+    # Inside of an ellipse the cross is small, so that the two do not become a blot.
+    (x, y), arm, thick = centre, *((_POINT, 3) if errors is None else (_INNER_ARM, 2))
+    for colour, wider in ((_CASING, 3), (_CENTRE, 0)):
+        canvas.line((x - arm, y), (x + arm, y), colour, thick + wider)
+        canvas.line((x, y - arm), (x, y + arm), colour, thick + wider)
+    for colour, width in ((_CASING, 5), (_CENTRE, 3)):
         if errors is not None:
             canvas.ellipse(centre, [max(error, _SMALLEST_ELLIPSE) for error in errors], colour, width)
 
@@ -241,7 +243,7 @@ def _draw_legend(canvas: Canvas, picture: CameraPicture, y: float, horizon_shows
     _draw_arrow(canvas, np.array([x + 46.0, y]), np.array([1.0, 0.0]), _INK)
     x = _label(canvas, x + 58, y, "farther off")
     estimated = picture.certainty.center is not None
-    _draw_principal_point(canvas, [x + 14, y], [11.0, 8.0] if estimated else None)
+    _draw_principal_point(canvas, [x + 14, y], [14.0, 10.0] if estimated else None)
     _label(canvas, x + 38, y, "principal point" + (" and its error" if estimated else ""))
 
 

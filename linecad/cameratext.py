@@ -68,7 +68,7 @@ def facts(report: CameraReport) -> tuple[str, ...]:
         f"roll {roll_words(report.roll)}",
     ]
     if certainty.center is not None:
-        found.append(f"principal point ± {_error(certainty.center[0])}, {_error(certainty.center[1])} px")
+        found.append(f"principal point ± {_error(certainty.center[0])}, ± {_error(certainty.center[1])} px")
     if any(report.camera.distortion):
         found.append(f"radial distortion {_radial(report.camera, certainty)}")
     return tuple(found)

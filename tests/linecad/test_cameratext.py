@@ -89,7 +89,7 @@ def test_the_summary_is_one_line_with_the_word_and_its_reason():
 
 
 def test_the_picture_is_told_errors_only_of_what_was_estimated():
-    assert "principal point ± 14, 9.4 px" in facts(report(ESTIMATED, "vanishing points"))
+    assert "principal point ± 14, ± 9.4 px" in facts(report(ESTIMATED, "vanishing points"))
     assert not any("principal point" in fact for fact in facts(report(GIVEN, "file")))
 
 
