@@ -1,0 +1,157 @@
+"""A camera and a frame that were found against the true ones, in standard errors and in plain measures."""
+
+import time
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from linecad.calibrating import Calibrated, calibrate
+from linecad.errors import LinecadError
+from linecad.evaluation.frames import rotation_error
+from linecad.photo import Photo
+from linecad.scene import Float, Segments
+from linecad.segments import find_segments
+from linecad.straightening import straighten
+
+NEAR_FOCAL, NEAR_TURN = 0.05, np.radians(1.0)  # relative and rad: recovered, whatever the standard errors say
+FAR_FOCAL, FAR_TURN = 0.05, np.radians(1.5)  # beyond one of them, a wrong answer that is called good is a silent one
+SIGMAS, FAR_SIGMAS = 2.0, 3.0
+FINITE = 5.0  # of the larger side; vanishing points within it of the photo's middle count as finite
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was found in one photo, against the truth."""
+
+    name: str
+    kind: str
+    perspective: int  # finite vanishing points of the true frame
+    error: str | None = None  # the message, where nothing was found
+    turn: float = np.nan  # rad
+    focal: float = np.nan  # relative error, signed
+    sigmas: dict[str, tuple[float, ...]] = field(default_factory=dict)  # errors in standard errors, by quantity
+    focal_sigma: float | None = None  # relative standard error
+    quality: str = ""
+    reason: str = ""
+    notes: tuple[str, ...] = ()
+    seconds: float = 0.0  # of `calibrate`
+    found: Calibrated | None = None
+
+    @property
+    def focal_off(self) -> float:
+        """The relative error of the focal length without its sign."""
+        return abs(self.focal)
+
+    @property
+    def is_recovered(self) -> bool:
+        """Whether focal length and rotation are right, by a fixed limit or by the standard errors."""
+        return self.error is None and (
+            (abs(self.focal) < NEAR_FOCAL or self._within("focal", SIGMAS))
+            and (self.turn < NEAR_TURN or self._within("rotation", SIGMAS))
+        )
+
+    @property
+    def is_flagged(self) -> bool:
+        """Whether linecad refused the photo or doubts its own answer."""
+        return self.error is not None or self.quality != "good"
+
+    @property
+    def is_silently_wrong(self) -> bool:
+        """Whether an answer that is called good is far from the truth by any measure."""
+        if self.is_flagged:
+            return False
+        focal = abs(self.focal) > FAR_FOCAL and not self._within("focal", FAR_SIGMAS)
+        turn = self.turn > FAR_TURN and not self._within("rotation", FAR_SIGMAS)
+        return focal or turn
+
+    def _within(self, quantity: str, sigmas: float) -> bool:
+        """Whether all errors of a quantity are within so many standard errors; False where it has none."""
+        found = self.sigmas.get(quantity, ())
+        return bool(found) and max(map(abs, found)) <= sigmas
+
+
+def judge(name: str, kind: str, photo: Photo, matrix: Float, rotation: Float, radial: float = 0.0) -> Verdict:
+    """Straighten and calibrate a photo, and compare. `matrix` (3, 3) is the true K, `rotation` the true frame."""
+    perspective = finite_points(matrix, rotation, photo.width, photo.height)
+    verdict = Verdict(name, kind, perspective)
+    seconds = 0.0
+    try:
+        straight = straighten(photo)
+        raw: Segments = find_segments(straight.grey)
+        began = time.perf_counter()
+        found = calibrate(straight, raw)
+        seconds = time.perf_counter() - began
+    except LinecadError as error:
+        return replace(verdict, error=str(error), seconds=seconds)
+    camera, certainty = found.camera, found.certainty
+    turn = turn_between(found.frame.rotation, rotation)
+    sigmas = {"rotation": _in_sigmas(turn, certainty.rotation)}
+    relative = camera.focal / matrix[0, 0] - 1
+    if certainty.focal is not None:
+        sigmas["focal"] = _in_sigmas([camera.focal - matrix[0, 0]], [certainty.focal])
+    if certainty.center is not None:
+        sigmas["principal point"] = _in_sigmas(camera.matrix[:2, 2] - matrix[:2, 2], certainty.center)
+    if certainty.radial is not None:
+        removed = camera.distortion[0] if camera.distortion else 0.0
+        sigmas["k1"] = _in_sigmas([removed - radial], [certainty.radial])
+    return replace(
+        verdict,
+        turn=float(np.linalg.norm(turn)),
+        focal=float(relative),
+        sigmas=sigmas,
+        focal_sigma=None if certainty.focal is None else certainty.focal / camera.focal,
+        quality=certainty.quality,
+        reason=certainty.reason,
+        notes=found.notes,
+        seconds=seconds,
+        found=found,
+    )
+
+
+def _in_sigmas(errors: Float | list[float], sigmas: Float | tuple[float, ...] | list[float]) -> tuple[float, ...]:
+    """Errors over their standard errors; infinite where an error is called 0 and is not."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratios = np.nan_to_num(np.asarray(errors) / np.asarray(sigmas), nan=0.0, posinf=np.inf, neginf=-np.inf)
+    return tuple(ratios.tolist())
+
+
+def turn_between(found: Float, true: Float) -> Float:
+    """Rotation vector (3,), rad, about x, y and z of the camera, that takes the true frame to the found one.
+
+    Axes have no names here: the found ones are those that fit best.
+    """
+    _, names = rotation_error(found, true)
+    named = found[:, list(names)]
+    turn = (named * np.sign((named * true).sum(axis=0))) @ true.T
+    vector = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
+    sine = float(np.linalg.norm(vector))
+    angle = float(np.arctan2(sine, (np.trace(turn) - 1) / 2))
+    scaled: Float = vector * (angle / sine if sine > 1e-12 else 1.0)
+    return scaled
+
+
+def finite_points(matrix: Float, rotation: Float, width: int, height: int) -> int:
+    """How many of the three vanishing points lie within FINITE larger sides of the photo's middle."""
+    return int(_is_finite(matrix, rotation, width, height).sum())
+
+
+def finite_level_points(matrix: Float, rotation: Float, width: int, height: int) -> int:
+    """The same of the two axes that are not the upright one."""
+    finite = _is_finite(matrix, rotation, width, height)
+    return int(np.delete(finite, np.abs(rotation[1]).argmax()).sum())
+
+
+def _is_finite(matrix: Float, rotation: Float, width: int, height: int) -> Float:
+    points = (matrix @ rotation).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        away = np.linalg.norm(points[:, :2] / points[:, 2:] - ((width - 1) / 2, (height - 1) / 2), axis=1)
+    finite: Float = away < FINITE * max(width, height)  # NaN is not
+    return finite
+
+
+def area_below(errors: Float, limit: float) -> float:
+    """Area under the share of errors (N,) that are smaller than a threshold, from 0 to `limit`, over `limit`.
+
+    Missing answers are infinite errors.
+    """
+    return float(np.clip(1 - np.asarray(errors) / limit, 0, None).mean())
