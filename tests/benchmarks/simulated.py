@@ -19,6 +19,7 @@ from linecad.dataset.scenes import SceneKind, draw_scene
 from linecad.dataset.textures import clouds, texture
 from linecad.dataset.truth import NOTHING
 from linecad.dataset.view import View
+from linecad.geometry import rotation_about
 from linecad.scene import Float, Int
 
 OF_TEN: tuple[SceneKind, ...] = (*("street",) * 4, *("courtyard",) * 3, *("room",) * 3)
@@ -30,6 +31,7 @@ PITCH, YAW, ROLL = np.radians(25.0), np.radians(60.0), np.radians(5.0)  # larges
 OFF_CENTRE = 0.006  # of the larger side, one standard deviation of the principal point
 FROM_ABOVE = np.radians(-8.0)  # a camera that looks down further stands above the street
 HIGH = (5.0, 16.0)  # m, where it stands then
+SECOND_FRAME = np.radians((15.0, 75.0))  # by which a house is turned against the others
 CAMERA_TRIES = 40
 LEAST_LENGTH = 0.03  # of the larger side; shorter edges do not count in the next two numbers
 LEAST_EDGES, LEAST_OF_SECOND = 40, 12  # edges before the camera, in all and along the second most common axis
@@ -39,7 +41,7 @@ TALLEST_SHARE = 0.25  # px of a canvas; quads that are smaller both ways are not
 LEVELS = 8  # of a texture, each of half the size of the one before
 AMBIENT = (0.35, 0.75)  # share of the light that comes from everywhere
 CONTRAST = (0.45, 1.0)
-CABLES = 7  # most lines of no direction that hang in a picture
+CABLES = 5  # most lines of no direction that hang in a picture
 BLUR = (0.25, 0.8)  # px
 NOISE = (0.5, 5.0)  # of 255
 QUALITY = (72, 97)  # of the JPEG file
@@ -104,6 +106,35 @@ def _draw_view(view: View, kind: SceneKind, width: int, rng: Generator, longer: 
         focal=float(np.exp(rng.uniform(*np.log(FOCAL)))) * longer / width,
         off_centre=(float(off[0]), float(off[1])),
     )
+
+
+def with_turned_house(shot: Shot, rng: Generator) -> Shot:
+    """The same scene with the house that shows the most turned about its middle, in its own Manhattan frame.
+
+    In a room, the piece of furniture with the most edges is turned.
+    """
+    model, (ends, body) = shot.model, shot.model.edges()
+    camera = (ends.mean(axis=1) - shot.view.eye) @ shot.view.rotation().T
+    image = camera @ shot.view.matrix(shot.width, shot.height).T
+    inside = (image[:, :2] >= 0).all(axis=1) & (image[:, :2] < image[:, 2:] * (shot.width, shot.height)).all(axis=1)
+    can_turn = np.isin([model.kinds[number] for number in body], ["building", "furniture"]) & inside
+    # Of a room the walls are a building too, and they are what the frame is.
+    if "furniture" in model.kinds:
+        can_turn &= np.array([model.kinds[number] for number in body]) == "furniture"
+    if not can_turn.any():
+        return shot
+    chosen = int(np.bincount(body[can_turn]).argmax())
+    middle = ends[body == chosen].reshape(-1, 3).mean(axis=0)
+    turn = rotation_about(np.array([0.0, 0.0, rng.uniform(*SECOND_FRAME)]))
+
+    def moved(points: list[Float], owners: list[int]) -> list[Float]:
+        return [
+            (point - middle) @ turn.T + middle if owner == chosen else point
+            for point, owner in zip(points, owners, strict=True)
+        ]
+
+    corners, own_ends = moved(model.corners, model.body), moved(model.ends, model.edge_body)
+    return replace(shot, model=replace(model, corners=corners, ends=own_ends))
 
 
 def _shows_enough(edges: Float, shot: Shot) -> bool:
@@ -219,7 +250,7 @@ def _hang_cables(pixels: NDArray[np.uint8], rng: Generator) -> None:
     height, width = pixels.shape[:2]
     for _ in range(int(rng.integers(0, CABLES + 1))):
         middle, angle = rng.uniform((0, 0), (width, height)), rng.uniform(0, np.pi)
-        reach = rng.uniform(0.05, 0.5) * max(width, height) * np.array([np.cos(angle), np.sin(angle)])
+        reach = rng.uniform(0.05, 0.3) * max(width, height) * np.array([np.cos(angle), np.sin(angle)])
         ends = np.rint(16 * np.array([middle - reach, middle + reach])).astype(int)
         tone = int(rng.integers(10, 200))
         cv2.line(pixels, ends[0].tolist(), ends[1].tolist(), (tone,) * 3, int(rng.integers(1, 5)), cv2.LINE_AA, 4)

@@ -4,16 +4,16 @@ import json
 import os
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator
-from simulated import Canvas, Shot, bent, cropped, draw_canvas, draw_shot, finished, turned
+from simulated import SUPER, Canvas, Shot, bent, cropped, draw_canvas, draw_shot, finished, turned, with_turned_house
 
 from linecad.scene import Float
 
 RECIPE = 1  # counts the changes of what is made, so that a folder with older photos is not taken for the new ones
-BENT_EVERY = 5  # each of the kinds but the plain one is made of one scene in so many
 RADIAL = (-0.3, 0.1)  # k1
 LEAST_SLOPE = 0.3  # of the distorted over the straight radius in the corners; lenses that fold are none
 LARGEST_CUT = 0.3  # of width and of height
@@ -30,6 +30,7 @@ class Made:
     matrix: Float  # (3, 3) K, px
     rotation: Float  # (3, 3) world to camera
     radial: float  # k1
+    size: tuple[int, int]  # px, width and height
 
 
 def _plain(canvas: Canvas, _rng: Generator) -> Canvas:
@@ -62,39 +63,52 @@ CHANGES: dict[str, Callable[[Canvas, Generator], Canvas]] = {
     "plain": _plain,
     "bent": _bent,
     "cropped": _cropped,
-    "rolled": _plain,  # the camera itself is rolled
+    "rolled": _plain,  # these two are drawn anew
+    "turned house": _plain,
     "upside down": _upside_down,
     "on its side": _on_its_side,
 }
-PLAIN, ROLLED = "plain", "rolled"
+PLAIN, ROLLED, TURNED_HOUSE = "plain", "rolled", "turned house"
 
 
 def kinds_of(index: int) -> tuple[str, str]:
     """The kinds of photo that are made of scene `index`: the plain one and another."""
     others = [kind for kind in CHANGES if kind != PLAIN]
-    # Not the remainder of 5 alone: scenes repeat their kinds every ten.
-    return PLAIN, others[(index + index // 10) % BENT_EVERY]
+    # Not the remainder alone: scenes repeat their kinds every ten.
+    return PLAIN, others[(index + index // 10) % len(others)]
 
 
 def simulated_photos(folder: Path, seed: int, count: int) -> Iterator[Made]:
-    """The photos of `count` scenes, made where the folder does not have them yet."""
-    folder.mkdir(parents=True, exist_ok=True)
+    """The photos of `count` scenes."""
     for index in range(count):
-        shot, canvas = None, None
         for kind in kinds_of(index):
-            name = f"{RECIPE}-{seed}-{index:04d}-{kind.replace(' ', '-')}"
-            path = folder / f"{name}.jpg"
-            if not path.with_suffix(".json").is_file():
-                rng = np.random.default_rng([seed, index, list(CHANGES).index(kind)])
-                shot = shot or draw_shot(seed, index)
-                if kind == ROLLED:
-                    own = draw_canvas(_rolled(shot, rng), np.random.default_rng([seed, index, 100]))
-                else:
-                    canvas = canvas or draw_canvas(shot, np.random.default_rng([seed, index, 100]))
-                    own = CHANGES[kind](canvas, rng)
-                _store(own, path, rng)
-            known = json.loads(path.with_suffix(".json").read_text())
-            yield Made(name, kind, path, np.array(known["K"]), np.array(known["R"]), known["k1"])
+            yield simulated_photo(folder, seed, index, kind)
+
+
+def simulated_photo(folder: Path, seed: int, index: int, kind: str) -> Made:
+    """The photo of a kind of scene `index` of a seed, made where the folder does not have it yet."""
+    name = f"{RECIPE}-{seed}-{index:04d}-{kind.replace(' ', '-')}"
+    path = folder / f"{name}.jpg"
+    if not path.with_suffix(".json").is_file():
+        folder.mkdir(parents=True, exist_ok=True)
+        rng = np.random.default_rng([seed, index, list(CHANGES).index(kind)])
+        _store(_draw(seed, index, kind, rng), path, rng)
+    known = json.loads(path.with_suffix(".json").read_text())
+    size = (known["size"][0], known["size"][1])
+    return Made(name, kind, path, np.array(known["K"]), np.array(known["R"]), known["k1"], size)
+
+
+def _draw(seed: int, index: int, kind: str, rng: Generator) -> Canvas:
+    if kind not in (ROLLED, TURNED_HOUSE):
+        return CHANGES[kind](_plain_canvas(seed, index), rng)
+    shot = draw_shot(seed, index)
+    other = _rolled(shot, rng) if kind == ROLLED else with_turned_house(shot, rng)
+    return draw_canvas(other, np.random.default_rng([seed, index, 100]))
+
+
+@lru_cache(maxsize=1)  # of a scene two photos are made, one after the other
+def _plain_canvas(seed: int, index: int) -> Canvas:
+    return draw_canvas(draw_shot(seed, index), np.random.default_rng([seed, index, 100]))
 
 
 def _rolled(shot: Shot, rng: Generator) -> Shot:
@@ -105,8 +119,9 @@ def _rolled(shot: Shot, rng: Generator) -> Shot:
 def _store(canvas: Canvas, path: Path, rng: Generator) -> None:
     """Write the photo, then its truth, so that a photo without one is made again."""
     data, matrix = finished(canvas, rng)
+    size = [side // SUPER for side in canvas.pixels.shape[1::-1]]
     path.write_bytes(data)
-    known = {"K": matrix.tolist(), "R": canvas.rotation.tolist(), "k1": canvas.radial}
+    known = {"K": matrix.tolist(), "R": canvas.rotation.tolist(), "k1": canvas.radial, "size": size}
     half = path.with_suffix(f".{os.getpid()}")
     half.write_text(json.dumps(known))
     half.replace(path.with_suffix(".json"))
