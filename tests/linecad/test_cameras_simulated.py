@@ -127,7 +127,7 @@ def test_the_frame_of_a_simulated_photo_with_known_camera(folder: Path, scene: i
     photo = replace(read_photo(made.path), camera=Camera(*made.size, made.matrix, "file"))
     found = judge(made.name, made.kind, photo, made.matrix, made.rotation)
     assert found.error is None
-    assert np.degrees(found.turn) < 0.5
+    assert np.degrees(found.turn) < 2.0
 
 
 @pytest.mark.parametrize("scene", SCENES)
@@ -136,4 +136,4 @@ def test_camera_and_frame_of_a_simulated_photo(folder: Path, scene: int) -> None
     found = judge(made.name, made.kind, read_photo(made.path), made.matrix, made.rotation)
     assert found.error is None
     assert abs(found.focal) < 0.05
-    assert np.degrees(found.turn) < 1.0
+    assert np.degrees(found.turn) < 2.0
