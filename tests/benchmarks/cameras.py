@@ -1,4 +1,4 @@
-"""How well a photo's camera and frame are found, and how honest the standard errors are (docs/cameras.md).
+"""How well a photo's camera and frame are found, and how honest the standard errors are.
 
     PYTHONPATH=. python tests/benchmarks/cameras.py real DATA [--photos] [--depth]
     PYTHONPATH=. python tests/benchmarks/cameras.py simulated CACHE [--count 300] [--kinds plain bent] [--photos]
