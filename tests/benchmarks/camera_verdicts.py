@@ -70,8 +70,19 @@ class Verdict:
         return bool(found) and max(map(abs, found)) <= sigmas
 
 
-def judge(name: str, kind: str, photo: Photo, matrix: Float, rotation: Float, radial: float = 0.0) -> Verdict:
-    """Straighten and calibrate a photo, and compare. `matrix` (3, 3) is the true K, `rotation` the true frame."""
+def judge(
+    name: str,
+    kind: str,
+    photo: Photo,
+    matrix: Float,
+    rotation: Float,
+    radial: float = 0.0,
+    second: Float | None = None,
+) -> Verdict:
+    """Straighten and calibrate a photo, and compare. `matrix` (3, 3) is the true K, `rotation` the true frame.
+
+    Where the scene has a `second` frame, either is right. Straightening keeps the focal length and the photo's middle.
+    """
     perspective = finite_points(matrix, rotation, photo.width, photo.height)
     verdict = Verdict(name, kind, perspective)
     seconds = 0.0
@@ -84,13 +95,16 @@ def judge(name: str, kind: str, photo: Photo, matrix: Float, rotation: Float, ra
     except LinecadError as error:
         return replace(verdict, error=str(error), seconds=seconds)
     camera, certainty = found.camera, found.certainty
-    turn = turn_between(found.frame.rotation, rotation)
+    # The middle of a straightened photo that is larger or smaller than the photo is the same place.
+    moved = np.array([straight.width - photo.width, straight.height - photo.height]) / 2
+    turns = [turn_between(found.frame.rotation, true) for true in (rotation, second) if true is not None]
+    turn = min(turns, key=lambda one: float(np.linalg.norm(one)))
     sigmas = {"rotation": _in_sigmas(turn, certainty.rotation)}
     relative = camera.focal / matrix[0, 0] - 1
     if certainty.focal is not None:
         sigmas["focal"] = _in_sigmas([camera.focal - matrix[0, 0]], [certainty.focal])
     if certainty.center is not None:
-        sigmas["principal point"] = _in_sigmas(camera.matrix[:2, 2] - matrix[:2, 2], certainty.center)
+        sigmas["principal point"] = _in_sigmas(camera.matrix[:2, 2] - matrix[:2, 2] - moved, certainty.center)
     if certainty.radial is not None:
         removed = camera.distortion[0] if camera.distortion else 0.0
         sigmas["k1"] = _in_sigmas([removed - radial], [certainty.radial])

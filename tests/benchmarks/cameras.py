@@ -114,7 +114,8 @@ def show_simulated(cache: Path, seed: int, count: int, kinds: set[str], photos: 
             shown = {CROPPED: replace(photo, framing="cropped"), CROP_NOT_SAID: photo}
         for kind in kinds & shown.keys():
             one = shown[kind]
-            by_kind[kind].append(judge(made.name, kind, one, made.matrix, made.rotation, made.radial))
+            truth = (made.matrix, made.rotation, made.radial, made.second)
+            by_kind[kind].append(judge(made.name, kind, one, *truth))
         judging += time.monotonic() - began
         began = time.monotonic()
     print(f"## {count} simulated scenes, seed {seed}: made in {making:.0f} s, judged in {judging:.0f} s\n")

@@ -55,6 +55,7 @@ class Canvas:
     matrix: Float  # (3, 3) K, px of the canvas
     rotation: Float  # (3, 3) world to camera
     radial: float = 0.0  # k1
+    second: Float | None = None  # (3, 3) a second Manhattan frame in the scene to camera
 
     def project(self, points: Float) -> Float:
         """Pixels (N, 2) of world points (N, 3) before the camera."""
@@ -108,8 +109,8 @@ def _draw_view(view: View, kind: SceneKind, width: int, rng: Generator, longer: 
     )
 
 
-def with_turned_house(shot: Shot, rng: Generator) -> Shot:
-    """The same scene with the house that shows the most turned about its middle, in its own Manhattan frame.
+def with_turned_house(shot: Shot, rng: Generator) -> tuple[Shot, Float]:
+    """The same scene with the house that shows the most turned about its middle, and the turn (3, 3).
 
     In a room, the piece of furniture with the most edges is turned.
     """
@@ -122,7 +123,7 @@ def with_turned_house(shot: Shot, rng: Generator) -> Shot:
     if "furniture" in model.kinds:
         can_turn &= np.array([model.kinds[number] for number in body]) == "furniture"
     if not can_turn.any():
-        return shot
+        return shot, np.eye(3)
     chosen = int(np.bincount(body[can_turn]).argmax())
     middle = ends[body == chosen].reshape(-1, 3).mean(axis=0)
     turn = rotation_about(np.array([0.0, 0.0, rng.uniform(*SECOND_FRAME)]))
@@ -134,7 +135,7 @@ def with_turned_house(shot: Shot, rng: Generator) -> Shot:
         ]
 
     corners, own_ends = moved(model.corners, model.body), moved(model.ends, model.edge_body)
-    return replace(shot, model=replace(model, corners=corners, ends=own_ends))
+    return replace(shot, model=replace(model, corners=corners, ends=own_ends)), turn
 
 
 def _shows_enough(edges: Float, shot: Shot) -> bool:

@@ -31,6 +31,7 @@ class Made:
     rotation: Float  # (3, 3) world to camera
     radial: float  # k1
     size: tuple[int, int]  # px, width and height
+    second: Float | None  # (3, 3) the frame of a turned house; which of the two a photo shows more of is not known
 
 
 def _plain(canvas: Canvas, _rng: Generator) -> Canvas:
@@ -95,15 +96,20 @@ def simulated_photo(folder: Path, seed: int, index: int, kind: str) -> Made:
         _store(_draw(seed, index, kind, rng), path, rng)
     known = json.loads(path.with_suffix(".json").read_text())
     size = (known["size"][0], known["size"][1])
-    return Made(name, kind, path, np.array(known["K"]), np.array(known["R"]), known["k1"], size)
+    second = np.array(known["second"]) if "second" in known else None
+    return Made(name, kind, path, np.array(known["K"]), np.array(known["R"]), known["k1"], size, second)
 
 
 def _draw(seed: int, index: int, kind: str, rng: Generator) -> Canvas:
     if kind not in (ROLLED, TURNED_HOUSE):
         return CHANGES[kind](_plain_canvas(seed, index), rng)
     shot = draw_shot(seed, index)
-    other = _rolled(shot, rng) if kind == ROLLED else with_turned_house(shot, rng)
-    return draw_canvas(other, np.random.default_rng([seed, index, 100]))
+    light = np.random.default_rng([seed, index, 100])
+    if kind == ROLLED:
+        return draw_canvas(_rolled(shot, rng), light)
+    shot, turn = with_turned_house(shot, rng)
+    canvas = draw_canvas(shot, light)
+    return replace(canvas, second=canvas.rotation @ turn)
 
 
 @lru_cache(maxsize=1)  # of a scene two photos are made, one after the other
@@ -122,6 +128,8 @@ def _store(canvas: Canvas, path: Path, rng: Generator) -> None:
     size = [side // SUPER for side in canvas.pixels.shape[1::-1]]
     path.write_bytes(data)
     known = {"K": matrix.tolist(), "R": canvas.rotation.tolist(), "k1": canvas.radial, "size": size}
+    if canvas.second is not None:
+        known["second"] = canvas.second.tolist()
     half = path.with_suffix(f".{os.getpid()}")
     half.write_text(json.dumps(known))
     half.replace(path.with_suffix(".json"))
