@@ -8,6 +8,7 @@ import numpy as np
 from linecad.calibrating import Calibrated, calibrate
 from linecad.errors import LinecadError
 from linecad.evaluation.frames import rotation_error
+from linecad.geometry import angles_to, vanishing_points
 from linecad.photo import Photo
 from linecad.scene import Float, Segments
 from linecad.segments import find_segments
@@ -16,6 +17,7 @@ from linecad.straightening import straighten
 NEAR_FOCAL, NEAR_TURN = 0.05, np.radians(1.0)  # relative and rad: recovered, whatever the standard errors say
 FAR_FOCAL, FAR_TURN = 0.05, np.radians(1.5)  # beyond one of them, a wrong answer that is called good is a silent one
 SIGMAS, FAR_SIGMAS = 2.0, 3.0
+NEAR_ANGLE = np.radians(2.0)  # between a segment and the vanishing point that explains it
 FINITE = 5.0  # of the larger side; vanishing points within it of the photo's middle count as finite
 
 
@@ -35,6 +37,7 @@ class Verdict:
     reason: str = ""
     notes: tuple[str, ...] = ()
     seconds: float = 0.0  # of `calibrate`
+    explained: tuple[float, float] = (0.0, 0.0)  # share of the segment length, by the true frame and by the found one
     found: Calibrated | None = None
 
     @property
@@ -118,8 +121,15 @@ def judge(
         reason=certainty.reason,
         notes=found.notes,
         seconds=seconds,
+        explained=(_explained(raw, matrix, rotation), _explained(raw, camera.matrix, found.frame.rotation)),
         found=found,
     )
+
+
+def _explained(raw: Segments, matrix: Float, rotation: Float) -> float:
+    """Share of the segment length that points to one of the vanishing points of a frame."""
+    near = angles_to(raw.ends, vanishing_points(matrix, rotation)).min(axis=0) < np.sin(NEAR_ANGLE)
+    return float(raw.length[near].sum() / raw.length.sum())
 
 
 def _in_sigmas(errors: Float | list[float], sigmas: Float | tuple[float, ...] | list[float]) -> tuple[float, ...]:

@@ -70,12 +70,12 @@ def show_york(folder: Path, photos: bool) -> None:
         print(f"area under the error curve at 3 / 5 / 10 degrees, {what}: {areas}")
     labels = [_label_share(verdict, reference) for verdict, (_, _, reference) in zip(known, cases, strict=True)]
     print(f"labels of marked lines, mean of photos: {np.mean(labels):.2%}")
-    milliseconds = 1000 * np.array([verdict.seconds for verdict in known])
-    print(f"calibrate: median {np.median(milliseconds):.0f} ms, largest {milliseconds.max():.0f} ms")
+    show_seconds(known)
     unknown = [_judge(case, "K unknown", photo, reference, _bare(photo)) for case, photo, reference in cases]
     exif = [_judge(case, "EXIF kept", photo, ref, read_photo(case.photo)) for case, photo, ref in cases]
     for verdicts in (unknown, exif):
         print(f"\n{verdicts[0].kind}")
+        show_seconds(verdicts)
         show_focals(verdicts)
         show_turns(verdicts)
         show_honesty({"all": verdicts})
@@ -119,6 +119,7 @@ def show_simulated(cache: Path, seed: int, count: int, kinds: set[str], photos: 
         judging += time.monotonic() - began
         began = time.monotonic()
     print(f"## {count} simulated scenes, seed {seed}: made in {making:.0f} s, judged in {judging:.0f} s\n")
+    show_seconds([verdict for verdicts in by_kind.values() for verdict in verdicts])
     plain = by_kind[PLAIN]
     groups = {"K known": by_kind[KNOWN], "K unknown": plain}
     groups |= {f"- {word}": [verdict for verdict in plain if verdict.quality == word] for word in QUALITIES}
@@ -132,6 +133,12 @@ def show_simulated(cache: Path, seed: int, count: int, kinds: set[str], photos: 
     show_kinds(by_kind)
     if photos:
         show_photos([verdict for verdicts in by_kind.values() for verdict in verdicts])
+
+
+def show_seconds(verdicts: list[Verdict]) -> None:
+    """How long calibration took after the detector, in a line."""
+    milliseconds = 1000 * np.array([verdict.seconds for verdict in verdicts])
+    print(f"calibrate: median {np.median(milliseconds):.0f} ms, largest {milliseconds.max():.0f} ms")
 
 
 def show_turns(verdicts: list[Verdict]) -> None:
@@ -194,10 +201,14 @@ def show_kinds(by_kind: dict[str, list[Verdict]]) -> None:
 
 def show_photos(verdicts: list[Verdict]) -> None:
     """A line for each photo."""
-    print("\n| photo | kind | finite points | focal error | its standard error | turn | quality |")
-    print("| --- " * 7 + "|")
+    print(
+        "\n| photo | kind | finite points | explained by truth, found | focal | its standard error | turn | quality |"
+    )
+    print("| --- " * 8 + "|")
     for verdict in verdicts:
-        print("| " + " | ".join([verdict.name, verdict.kind, f"{verdict.perspective}", *_cells(verdict)]) + " |")
+        explained = ", ".join(f"{share:.0%}" for share in verdict.explained)
+        cells = [verdict.name, verdict.kind, f"{verdict.perspective}", explained, *_cells(verdict)]
+        print("| " + " | ".join(cells) + " |")
 
 
 def _cells(verdict: Verdict) -> list[str]:
