@@ -201,9 +201,7 @@ def show_kinds(by_kind: dict[str, list[Verdict]]) -> None:
 
 def show_photos(verdicts: list[Verdict]) -> None:
     """A line for each photo."""
-    print(
-        "\n| photo | kind | finite points | explained by truth, found | focal | standard error | turn | quality |"
-    )
+    print("\n| photo | kind | finite points | explained by truth, found | focal | standard error | turn | quality |")
     print("| --- " * 8 + "|")
     for verdict in verdicts:
         explained = ", ".join(f"{share:.0%}" for share in verdict.explained)
