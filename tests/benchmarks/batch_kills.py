@@ -2,14 +2,16 @@
 
     python tests/benchmarks/batch_kills.py --kills 200 --photos 20
 
-Each round is a batch of the photos in a new folder. At a random moment, the process that gives out photos (and the one
-who forks, and one who works on a photo) is ended by SIGKILL, and the batch is begun again, until all is done. After
+Each round is a batch of the photos in a new folder. At a random moment, the process that gives out photos (or the one
+who forks, or one who works on a photo) is ended by SIGKILL, and the batch is begun again, until all is done. After
 every kill each file with a name of its own must be whole, and at the end of a round every photo must have exactly one
-row that says that it is done, and exactly the files of a run that nobody disturbed. Linux only.
+row that says that it is done, and exactly the files of a run that nobody disturbed. How long a kill waits follows from
+what that run took, so that kills hit work on any machine. Linux only.
 """
 
 import argparse
 import collections
+import itertools
 import json
 import os
 import random
@@ -18,6 +20,8 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
 import cv2
@@ -25,8 +29,10 @@ import cv2
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH = 320  # px of the photos
 OPTIONS = ["--format", "json,obj", "--focal", "300", "--time-limit", "30", "--workers", "2", "--quiet"]
-LONGEST_WAIT = 2.0  # s until a kill; a photo takes about one
-AT_WORK = 0.8  # share of the kills for which a photo must have been begun
+AT_WORK = 0.8  # share of the kills that wait until a photo was begun; the others come at any moment from the start
+LONGEST_BATCH = 600.0  # s without an end: it hangs
+FEWEST_KILLS = 1 / 3  # a round, on average; where fewer succeed, the waits are wrong
+LOOK = 0.002  # s between two looks at the processes
 KINDS = ["parent", "nursery", "worker", "worker"]
 
 
@@ -49,6 +55,32 @@ def start(photos: Path, output: Path) -> "subprocess.Popen[bytes]":
     command = [sys.executable, "-m", "linecad", "batch", str(photos), "-o", str(output), *OPTIONS]
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     return subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+
+@dataclass(frozen=True)
+class Calm:
+    """A batch that nobody disturbed: what it made, and what it took on this machine."""
+
+    contents: dict[str, object]
+    loading_s: float  # until the first photo was begun
+    photo_s: float  # a photo, on average
+
+
+def run_calm(photos: list[Path], output: Path) -> Calm:
+    """Convert the photos in peace."""
+    began = time.monotonic()
+    with start(photos[0].parent, output) as batch:
+        try:
+            while batch.poll() is None and not family(batch.pid)["worker"]:
+                time.sleep(LOOK)
+            loading = time.monotonic() - began
+            said = batch.communicate(timeout=LONGEST_BATCH)[1].decode()
+        finally:
+            batch.kill()
+    assert batch.returncode == 0, said
+    expected = contents(output)
+    check_done(output, photos, expected)
+    return Calm(expected, loading, sum(row["seconds"] for row in rows(output)) / len(photos))
 
 
 def family(parent: int) -> dict[str, list[int]]:
@@ -113,42 +145,61 @@ def check_done(output: Path, photos: list[Path], expected: dict[str, object]) ->
     assert (output / "index.html").is_file()
 
 
-def run_round(
-    photos: list[Path], output: Path, expected: dict[str, object], dice: random.Random, most: int
-) -> collections.Counter:
-    """One batch, disturbed until it is done; how many of each kind were killed."""
-    killed: collections.Counter = collections.Counter()
+def run_round(photos: list[Path], output: Path, calm: Calm, dice: random.Random, most: int) -> collections.Counter[str]:
+    """One batch, disturbed at most so often until it is done; how many of each kind were killed."""
+    killed: collections.Counter[str] = collections.Counter()
     while True:
-        batch = start(photos[0].parent, output)
-        try:
-            while batch.poll() is None and killed.total() < most:
-                kind = dice.choice(KINDS)
-                # Mostly while photos are in work, sometimes at any moment.
-                awaited = "worker" if dice.random() < AT_WORK else "parent"
-                while batch.poll() is None and not family(batch.pid)[awaited]:
-                    time.sleep(0.005)
-                moment = time.monotonic() + dice.uniform(0, LONGEST_WAIT)
-                while batch.poll() is None and time.monotonic() < moment:
-                    time.sleep(0.005)
-                victims = family(batch.pid)[kind]
-                if batch.poll() is None and victims:
+        before = killed.total()
+        with start(photos[0].parent, output) as batch:
+            try:
+                while killed.total() < most and (victim := wait_for_victim(batch, calm, dice)):
+                    kind, process = victim
                     try:
-                        os.kill(dice.choice(victims), signal.SIGKILL)
+                        os.kill(process, signal.SIGKILL)
                     except ProcessLookupError:  # it had just ended
                         continue
                     killed[kind] += 1
                     if kind == "parent":
                         break
-            code = batch.wait()
-        finally:
-            batch.kill()
-            said = batch.communicate()[1].decode()
-        assert code in (0, 1, -signal.SIGKILL), f"the batch ended with {code}: {said}"
+                said = batch.communicate(timeout=LONGEST_BATCH)[1].decode()
+            finally:
+                batch.kill()
+        code = batch.returncode
+        assert code == 0 or (code in (1, -signal.SIGKILL) and killed.total() > before), f"ended with {code}: {said}"
         assert "Traceback" not in said, said
-        check_whole(output, expected)
+        check_whole(output, calm.contents)
         if code == 0:
-            check_done(output, photos, expected)
+            check_done(output, photos, calm.contents)
             return killed
+
+
+def wait_for_victim(batch: "subprocess.Popen[bytes]", calm: Calm, dice: random.Random) -> tuple[str, int] | None:
+    """Kind and number of a process of the batch at a random moment; None when the batch ended before."""
+    kind = dice.choice(KINDS)
+    at_work = dice.random() < AT_WORK
+    while batch.poll() is None:
+        while at_work and batch.poll() is None and not family(batch.pid)["worker"]:
+            time.sleep(LOOK)
+        moment = time.monotonic() + dice.uniform(0, calm.photo_s + (0 if at_work else calm.loading_s))
+        while batch.poll() is None and time.monotonic() < moment:
+            time.sleep(LOOK)
+        victims = family(batch.pid)[kind]
+        if batch.poll() is None and victims:
+            return kind, dice.choice(victims)
+    return None
+
+
+def run_rounds(
+    photos: list[Path], folder: Path, calm: Calm, dice: random.Random, kills: int
+) -> Iterator[collections.Counter[str]]:
+    """Rounds in new folders until so many processes were killed; after each, how many of each kind by then."""
+    killed: collections.Counter[str] = collections.Counter()
+    for number in itertools.count(1):
+        killed += run_round(photos, folder / f"round{number}", calm, dice, kills - killed.total())
+        yield killed.copy()
+        if killed.total() >= kills:
+            return
+        assert killed.total() >= number * FEWEST_KILLS - 1, f"{number} rounds, and only {killed.total()} kills hit"
 
 
 def main() -> None:
@@ -159,18 +210,14 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=0)
     given = parser.parse_args()
     dice = random.Random(given.seed)
-    killed: collections.Counter = collections.Counter()
+    killed: collections.Counter[str] = collections.Counter()
     with tempfile.TemporaryDirectory(prefix="linecad-kills-") as name:
         folder = Path(name)
         photos = make_photos(folder / "photos", given.photos)
-        calm = folder / "calm"
-        assert start(photos[0].parent, calm).wait() == 0
-        expected = contents(calm)
-        check_done(calm, photos, expected)
+        calm = run_calm(photos, folder / "calm")
+        print(f"undisturbed: {calm.loading_s:.1f} s of loading, then {calm.photo_s:.2f} s a photo", flush=True)
         number, began = 0, time.monotonic()
-        while killed.total() < given.kills:
-            number += 1
-            killed += run_round(photos, folder / f"round{number}", expected, dice, given.kills - killed.total())
+        for number, killed in enumerate(run_rounds(photos, folder, calm, dice, given.kills), start=1):
             counts = ", ".join(f"{count} {kind}s" for kind, count in sorted(killed.items()))
             print(f"round {number} done, killed so far: {counts} ({time.monotonic() - began:.0f} s)", flush=True)
     print(f"{killed.total()} kills in {number} batches of {given.photos} photos: every photo done once, no file half")
