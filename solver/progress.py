@@ -11,9 +11,13 @@ from solver.problem import Progress, relative_gap
 
 @contextmanager
 def catch_interrupt() -> Iterator[threading.Event]:
-    """While this is open, Ctrl-C sets the event instead of raising; in the main thread, as Python allows no other."""
+    """While this is open, Ctrl-C sets the event instead of raising; in the main thread, as Python allows no other.
+
+    A process that ignores SIGINT, as shells start it in the background of a script, goes on ignoring it.
+    """
     stop = threading.Event()
-    if threading.current_thread() is not threading.main_thread():
+    is_main = threading.current_thread() is threading.main_thread()
+    if not is_main or signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
         yield stop
         return
     previous = signal.signal(signal.SIGINT, lambda _number, _frame: stop.set())

@@ -2,16 +2,27 @@
 
 import ctypes
 import os
+import signal
 import sys
 from collections.abc import Generator, Iterator
 from pathlib import Path
 from typing import TypeVar
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 ROOT = Path(__file__).resolve().parent.parent
 NO_SKIPS = "LINECAD_NO_SKIPS"  # 1 where everything that a test may need is there, so that a skip is a failure
 DATA = "LINECAD_DATA"  # the folder with the photographs for measuring, when it is not ../shared/data
+
+# How long an example takes says how busy the machine is.
+settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("any machine")
+
+# A shell starts what it runs in the background with SIGINT ignored, and every child inherits that: no Ctrl-C that a
+# test sends would arrive.
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 Report = TypeVar("Report", pytest.TestReport, pytest.CollectReport)
 

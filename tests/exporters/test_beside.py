@@ -201,9 +201,13 @@ def test_an_end_at_any_moment_leaves_the_old_file_or_the_new_one_and_all_that_it
 def kill_at_forty_moments(folder):
     path, chance, found = folder / "a.obj", random.Random(1), []
     put(path, 0)
+    began = time.perf_counter()
+    for number in range(10):
+        put(path, number)
+    longest = 4 * (time.perf_counter() - began)
     for number in range(1, 41):
         child = fork(lambda number=number: [put(path, each) for each in itertools.islice(itertools.count(number), 60)])
-        time.sleep(chance.uniform(0.0, 0.05))
+        time.sleep(chance.uniform(0.0, longest))
         os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
         found.append(check(path))

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from exporters.faces import triangulate
@@ -68,7 +68,6 @@ faces = st.tuples(
 )
 
 
-@settings(deadline=None)  # the machine may be busy with something else
 @given(faces)
 def test_the_triangles_are_the_polygon(scene_of, drawn):
     rings, axis, offset, reverse = drawn

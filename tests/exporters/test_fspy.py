@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
@@ -185,7 +185,6 @@ def test_without_lines_they_are_drawn_across_the_photo(no_lines, photo, tmp_path
     assert project.state["calibrationSettingsBase"]["referenceDistanceAxis"] is None
 
 
-@settings(deadline=None)
 @given(st.floats(-3, 3), st.floats(-1.5, 1.5), st.floats(-3, 3))
 def test_control_lines_run_to_the_vanishing_point_however_the_camera_is_held(scene, yaw, pitch, roll):
     turns = [(yaw, 0, 2), (pitch, 1, 2), (roll, 0, 1)]

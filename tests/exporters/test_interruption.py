@@ -88,6 +88,8 @@ for number in range(8):
     time.sleep(duration * (0.15 + 0.85 * number / 7))
     os.kill(child, signal.SIGKILL)
     _, status = os.waitpid(child, 0)
+    if not os.WIFSIGNALED(status):
+        duration /= 2  # the machine was busier when it was measured
     outcomes.append([os.WIFSIGNALED(status), found()])
 print(json.dumps(outcomes))
 """

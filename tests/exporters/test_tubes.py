@@ -2,7 +2,7 @@
 
 import numpy as np
 import trimesh
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from exporters.tubes import build_tubes
@@ -14,7 +14,6 @@ coordinate = st.floats(-50, 50)
 point = st.tuples(coordinate, coordinate, coordinate)
 
 
-@settings(deadline=None)
 @given(point, point)
 def test_a_tube_is_a_closed_prism_about_its_line(start, end):
     ends = np.array([[start, end]])

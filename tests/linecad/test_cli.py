@@ -8,7 +8,6 @@ import struct
 import subprocess
 import sys
 import threading
-import time
 import zlib
 from pathlib import Path
 
@@ -494,37 +493,46 @@ def test_a_full_disk_leaves_what_was_there(folder, scene_file, output):
     assert [path.name for path in folder.rglob("*") if path.name.startswith(".linecad-")] == []
 
 
-def start_and_interrupt(arguments, folder, stage, after):
-    """Start the command, send Ctrl-C `after` seconds into the stage that begins with `stage`, and wait."""
+def interrupt(arguments, folder, moment):
+    """Run the command on a terminal and press Ctrl-C when that shows `moment`: exit code, stdout and what it showed."""
+    import pty
+
+    ours, theirs = pty.openpty()
     child = subprocess.Popen(
         [sys.executable, "-m", "linecad", *map(str, arguments)], cwd=folder, text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, stderr=theirs,
     )  # fmt: skip
-    watchdog = threading.Timer(90, child.kill)
+    os.close(theirs)
+    watchdog = threading.Timer(300, child.kill)
     watchdog.start()
+    shown, is_sent = b"", False
     try:
-        lines = []
-        for line in child.stderr:
-            lines.append(line.rstrip())
-            if line.startswith(stage):
-                time.sleep(after)
+        while piece := read_terminal(ours):
+            shown += piece
+            if moment in shown.decode(errors="replace") and not is_sent:
                 child.send_signal(signal.SIGINT)
-        out = child.stdout.read()
-        return child.wait(), out, lines
+                is_sent = True
+        return child.wait(), child.stdout.read(), shown.decode()
     finally:
         watchdog.cancel()
         child.kill()
         child.wait()
         child.stdout.close()
-        child.stderr.close()
+        os.close(ours)
+
+
+def read_terminal(descriptor):
+    """What a terminal shows next, nothing when its programs have ended."""
+    try:
+        return os.read(descriptor, 4096)
+    except OSError:  # Linux says so in this way
+        return b""
 
 
 @posix
 def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
     street = [SAMPLES / "street.jpg", "--camera", SAMPLES / "street.json", "--extension", 90, "--mu-boundary", 1]
-    code, out, _ = start_and_interrupt(
-        ["convert", *street, "-o", "a.json", "-o", "a.obj"], folder, "solving", after=1.5
-    )
+    code, out, _ = interrupt(["convert", *street, "-o", "a.json", "-o", "a.obj"], folder, "Ctrl-C keeps the best")
     assert code == 0
     scene = json.loads((folder / "a.json").read_text())
     assert scene["solve"]["status"] == "interrupted"
@@ -536,11 +544,13 @@ def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
 
 @posix
 def test_ctrl_c_before_the_solver_writes_nothing(folder):
-    code, out, lines = start_and_interrupt(["convert", ROOM, "-o", "a.json"], folder, "reading the photo", after=0)
+    code, out, shown = interrupt(["convert", ROOM, "-o", "a.json"], folder, "reading the photo")
     assert code == 1
     assert out == ""
-    assert lines[-1].startswith("linecad: interrupted")
-    assert not any("Traceback" in line for line in lines)
+    assert shown.splitlines()[-1].endswith(
+        "\033[Klinecad: interrupted; a file that was not written yet is as it was before"
+    )
+    assert "Traceback" not in shown
     assert list(folder.iterdir()) == []
 
 

@@ -16,7 +16,7 @@ def network(edges):
     return net
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(pairs, st.sets(st.integers(1, 8), min_size=1, max_size=5))
 def test_paths_to_several_goals_end_apart(edges, goals):
     net = network(edges)
@@ -28,7 +28,7 @@ def test_paths_to_several_goals_end_apart(edges, goals):
     assert disjoint_paths(dict(net.adj), 0, goals, 20) == expected
 
 
-@settings(deadline=None, max_examples=200)
+@settings(max_examples=200)
 @given(pairs)
 def test_paths_to_one_joint_goal(edges):
     net = network(edges)

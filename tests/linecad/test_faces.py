@@ -181,7 +181,7 @@ def box(left, wide, near, deep, low, high):
     return edges + [edge(1, (a, near, b), 0.4) for a in u for b in v]
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=15)
 @given(boxes, st.sampled_from([AHEAD, TURNED]))
 def test_faces_of_any_boxes_lie_in_their_planes_and_do_not_overlap(rows, rotation):
     edges = [each for row in rows for each in box(*row)]

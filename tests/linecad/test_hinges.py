@@ -149,7 +149,7 @@ edges_of_a_graph = st.sets(
 )
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(edges_of_a_graph, st.integers(2, 4))
 def test_no_fewer_lines_part_two_lines_of_a_body(edges, witnesses):
     net = nx.Graph(sorted(edges))

