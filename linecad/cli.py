@@ -184,7 +184,7 @@ def _add_reconstruction(convert: argparse.ArgumentParser) -> None:
     convert.add_argument(
         "--gap", type=_not_negative, default=0.0, metavar="G", help="relative gap that is good enough (0)"
     )
-    convert.add_argument("--seed", type=int, default=0, metavar="N", help="seed of the solver (0)")
+    convert.add_argument("--seed", type=_seed, default=0, metavar="N", help="seed of the solver (0)")
     convert.add_argument(
         "--extension", type=_extension, metavar="PX",
         help="how far segments are extended to find crossings, px on a photo 3840 px wide (75; with paper 30)",
@@ -362,6 +362,14 @@ def _count(text: str) -> int:
     return int(text)
 
 
+def _seed(text: str) -> int:
+    from solver.problem import LARGEST_SEED
+
+    if not (text.isascii() and text.isdecimal() and len(text) < LONGEST_ID and int(text) <= LARGEST_SEED):
+        raise argparse.ArgumentTypeError(f"{text!r} is no seed; give a whole number from 0 to {LARGEST_SEED}")
+    return int(text)
+
+
 def _port(text: str) -> int:
     if not text.isdecimal() or not 0 <= int(text) <= LARGEST_PORT:
         raise argparse.ArgumentTypeError(f"{text!r} is no port; give a number from 1 to {LARGEST_PORT}")
@@ -485,6 +493,7 @@ def _convert(parsed: argparse.Namespace) -> int:
     values = _check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections], parsed.option)
     from linecad.cameratext import summary
     from linecad.correctionsfile import check_belongs, read_corrections
+    from linecad.outputs import write_outputs
     from linecad.photo import read_photo
     from linecad.pipeline import reconstruct
 
@@ -496,7 +505,7 @@ def _convert(parsed: argparse.Namespace) -> int:
         if corrections is not None:
             check_belongs(corrections, str(parsed.corrections), photo.width, photo.height)
         scene = _measured(reconstruct(photo, options, show.progress, show.stage, corrections), parsed.known)
-        _write(scene, photo, parsed.output, values, show)
+        write_outputs(scene, photo.pixels, parsed.output, values, show.stage)
     real = int(scene.intersections.real.sum())
     print(
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes; "
@@ -662,13 +671,14 @@ def _export(parsed: argparse.Namespace) -> int:
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
     values = _check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera], parsed.option)
+    from linecad.outputs import write_outputs
     from linecad.scenefile import read_scene
 
     with _Shown(parsed) as show:
         show.stage("reading the scene")
         scene = _measured(read_scene(parsed.scene), parsed.known)
         photo = _photo_for_outputs(scene, parsed, values, show)
-        _write(scene, photo, parsed.output, values, show)
+        write_outputs(scene, None if photo is None else photo.pixels, parsed.output, values, show.stage)
     return 0
 
 
@@ -777,20 +787,6 @@ def _check_kept(outputs: list[Path], inputs: list[Path]) -> None:
 def _check_distinct(outputs: list[Path]) -> None:
     if len({path.resolve() for path in outputs}) < len(outputs):
         raise OutputError("the same output was named twice; name each once")
-
-
-def _write(
-    scene: "Scene", photo: "Photo | None", outputs: list[Path], values: "dict[str, Value]", show: "_Shown"
-) -> None:
-    from exporters.formats import export
-    from linecad.scenefile import write_scene
-
-    for path in outputs:
-        show.stage(f"writing {path}")
-        if path.suffix.lower() == SCENE_SUFFIX:
-            write_scene(scene, path)
-        else:
-            export(scene, path, None if photo is None else photo.pixels, values)
 
 
 def _print_formats() -> int:

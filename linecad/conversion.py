@@ -5,18 +5,15 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Self
 
-from exporters.formats import export
 from exporters.options import Value
 from linecad.calibration import read_calibration
 from linecad.finding import ReconstructOptions, StageReport
 from linecad.metric import Known, set_scale
+from linecad.outputs import write_outputs
 from linecad.photo import Photo, read_photo
 from linecad.pipeline import reconstruct
 from linecad.scene import Scene
-from linecad.scenefile import write_scene
 from solver.problem import Progress
-
-SCENE_SUFFIX = ".json"
 
 
 @dataclass(frozen=True)
@@ -46,8 +43,4 @@ class Conversion:
 
     def write(self, scene: Scene, photo: Photo, outputs: Sequence[Path]) -> None:
         """Write a scene in the formats that the suffixes choose, each file whole or not at all. Raises OutputError."""
-        for path in outputs:
-            if path.suffix.lower() == SCENE_SUFFIX:
-                write_scene(scene, path)
-            else:
-                export(scene, path, photo.pixels, self.values)
+        write_outputs(scene, photo.pixels, outputs, self.values)

@@ -23,7 +23,7 @@ PACKAGES = ("linecad", "exporters", "solver")
 FLOORS = [
     ["linecad"],
     ["linecad.errors"],
-    ["linecad.scene", "linecad.strictjson", "linecad.files", "linecad.threads"],
+    ["linecad.scene", "linecad.strictjson", "linecad.files", "linecad.locking", "linecad.threads"],
     [
         "linecad.scenedocument",
         "linecad.fspy",
@@ -76,7 +76,7 @@ FLOORS = [
     ["linecad.support"],  # of hinges
     ["linecad.calibrating", "linecad.straightening"],
     ["linecad.finding"],
-    ["linecad.placing", "linecad.camerareport"],
+    ["linecad.placing", "linecad.outputs", "linecad.camerareport"],
     ["linecad.cameratext"],
     ["linecad.camerafile"],
     ["linecad.pipeline", "linecad.dataset.choice"],

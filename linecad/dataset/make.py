@@ -21,12 +21,14 @@ from linecad.dataset.textures import Image
 from linecad.dataset.truth import Truth
 from linecad.dataset.view import View
 from linecad.errors import DatasetError, LinecadError, OutputError
+from linecad.locking import alone
 
 JUDGED_SIZE = (1920, 1080)  # px; scenes are judged at it whatever their size, so that the size does not change them
 SMALLEST_SIDE, LARGEST_SIDE = 64, 8192  # px
 MOST_SCENES = 10_000
 MOST_SAMPLES = 4096
 DEFAULT_SAMPLES = 32  # a pixel
+LOCK = ".linecad-lock"  # in the folder while a run works in it
 
 OnStage = Callable[[str], None]
 
@@ -111,6 +113,12 @@ def measure(draft: Draft, width: int, height: int) -> Truth:
 def make_dataset(folder: Path, options: DatasetOptions, on_stage: OnStage) -> Made:
     """Make what is missing of a dataset in `folder`. Raises LinecadError."""
     render = _renderer()
+    _make_folder(folder)
+    with alone(folder / LOCK, f"another linecad dataset works in {folder}", "wait for it, or give another folder"):
+        return _make_missing(folder, options, render, on_stage)
+
+
+def _make_missing(folder: Path, options: DatasetOptions, render: ModuleType, on_stage: OnStage) -> Made:
     made = _begin(folder, options)
     names = [scene_name(index) for index in range(options.scenes)]
     missing = [index for index, name in enumerate(names) if name not in made]
@@ -152,10 +160,16 @@ def _photo_writer(radiance: Image, samples: int, rng: Generator) -> Callable[[Pa
     return lambda path: write_photo(photo, path, rng)
 
 
-def _begin(folder: Path, options: DatasetOptions) -> frozenset[str]:
-    """The scenes that are there already; makes the folder and its list where there are none. Raises LinecadError."""
+def _make_folder(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder} cannot be used: {error.strerror}; choose another folder") from error
+
+
+def _begin(folder: Path, options: DatasetOptions) -> frozenset[str]:
+    """The scenes that are there already; makes the list where there is none. Raises LinecadError."""
+    try:
         others = [path.name for path in folder.iterdir() if not path.name.startswith(".linecad-")]
     except OSError as error:
         raise OutputError(f"{folder} cannot be used: {error.strerror}; choose another folder") from error

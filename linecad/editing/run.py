@@ -1,5 +1,6 @@
 """The work of `linecad edit`: a photo, its corrections file and the page, from the first look to the last save."""
 
+import contextlib
 import signal
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -16,6 +17,7 @@ from linecad.editing.solving import SolvingProcess
 from linecad.errors import EditorError
 from linecad.files import check_output, write_text_atomically
 from linecad.finding import ReconstructOptions
+from linecad.locking import alone
 from linecad.photo import Photo
 from linecad.segments import find_segments
 
@@ -41,10 +43,25 @@ class EditOptions:
 def edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], on_stage: Callable[[str], None]) -> None:
     """Serve the page until Ctrl-C; `on_ready` is told its address, which holds the token.
 
-    Raises EditorError when it cannot be served, OutputError when the corrections cannot be saved, and
-    CorrectionsFileError or ReconstructionError for a file or a photo that cannot be used.
+    Raises EditorError when it cannot be served, OutputError when the corrections cannot be saved, LinecadError when
+    another page writes the same file, and CorrectionsFileError or ReconstructionError for a file or a photo that
+    cannot be used.
     """
     check_output(options.corrections)
+    with contextlib.ExitStack() as stack:
+        for path in (options.corrections, options.labels):
+            if path is not None:
+                stack.enter_context(_only_writer(path))
+        _edit(photo, options, on_ready, on_stage)
+
+
+def _only_writer(path: Path) -> contextlib.AbstractContextManager[None]:
+    target = path.resolve()
+    who = f"another linecad edit writes {path}"
+    return alone(target.with_name(f".{target.name}.lock"), who, "end that one first, or name another file")
+
+
+def _edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], on_stage: Callable[[str], None]) -> None:
     corrections = Corrections(photo.name, photo.width, photo.height)
     if options.corrections.exists():
         corrections = read_corrections(options.corrections)

@@ -226,7 +226,6 @@ def test_export_without_a_scene(fails):
 
 
 def test_numbers_that_the_solver_cannot_use(fails):
-    assert "seed is -1" in fails("convert", ROOM, "-o", "a.json", "--seed", "-1")
     assert "mu_boundary is 1e+300" in fails("convert", ROOM, "-o", "a.json", "--mu-boundary", "1e300")
     assert "time_limit_s is 1e+300" in fails("convert", ROOM, "-o", "a.json", "--time-limit", "1e300")
 
@@ -240,7 +239,9 @@ def test_numbers_that_the_solver_cannot_use(fails):
         (["--focal", "nan"], "nan is not a number of zero or more"),
         (["--focal=-5"], "-5 is not a number of zero or more"),
         (["--time-limit", "inf"], "inf is not a number of zero or more"),
-        (["--seed", "1.5"], "--seed"),
+        (["--seed", "1.5"], "'1.5' is no seed"),
+        (["--seed", "-1"], "'-1' is no seed; give a whole number from 0 to 2147483647"),
+        (["--seed", "2147483648"], "'2147483648' is no seed"),
         (["--weights", "heavy"], "--weights"),
         (["--formulation", "other"], "--formulation"),
         (["--focal", "900", "--camera", "room.json"], "not allowed with"),

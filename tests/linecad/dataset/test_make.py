@@ -9,10 +9,11 @@ import pytest
 
 from linecad.cli import main
 from linecad.dataset.choice import judge
-from linecad.dataset.make import DatasetOptions, draw_draft, make_dataset, measure, scene_name
+from linecad.dataset.make import LOCK, DatasetOptions, draw_draft, make_dataset, measure, scene_name
 from linecad.dataset.store import LIST, PHOTO, read_list, read_truth
 from linecad.dataset.truth import NOTHING
 from linecad.errors import DatasetError, LinecadError, OutputError
+from linecad.locking import alone
 from linecad.photo import read_photo
 
 OPTIONS = DatasetOptions(scenes=2, seed=3, width=320, height=180, samples=2)
@@ -67,6 +68,12 @@ def test_a_run_goes_on_where_another_one_was_killed(dataset: Path, tmp_path: Pat
     assert (folder / "street-0000" / PHOTO).stat().st_mtime_ns == before
     assert sorted(path.name for path in folder.iterdir()) == [LIST, "street-0000", "street-0001"]
     np.testing.assert_array_equal(read_truth(folder / "street-0001").ids, read_truth(dataset / "street-0001").ids)
+
+
+def test_a_second_run_in_the_folder_is_refused(dataset: Path) -> None:
+    with alone(dataset / LOCK, "", ""), pytest.raises(LinecadError, match="another linecad dataset works in"):
+        make_dataset(dataset, OPTIONS, silent)
+    assert make_dataset(dataset, OPTIONS, silent).kept == 2
 
 
 def test_a_scene_that_the_list_does_not_know_yet_is_kept(dataset: Path, tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ import pytest
 
 from linecad.cli import main
 from linecad.editing.guard import HOST
+from linecad.locking import alone
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "samples"
@@ -231,3 +232,15 @@ class TestRefusals:
         assert ended.stderr == (
             "linecad: the page needs the library uvicorn; install it with: pip install 'linecad[editor]'\n"
         )
+
+
+@posix
+@pytest.mark.parametrize("name", ["room.jpg.corrections.json", "room.labels.json"])
+def test_a_second_page_on_one_file_is_refused_in_one_line(folder, capsys, name):
+    """It once began with the same corrections, and the last change on either page was all that was kept."""
+    command = ["edit", str(folder / "room.jpg"), "--focal", "900", "--labels", str(folder / "room.labels.json")]
+    with alone(folder / f".{name}.lock", "", ""):
+        assert main([*command, "--no-browser", "--quiet"]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"linecad: another linecad edit writes {folder / name} (process {os.getpid()}); ")
+    assert sorted(path.name for path in folder.iterdir()) == ["room.jpg", "room.json"]
