@@ -11,16 +11,18 @@ from linecad.errors import LinecadError, PhotoError
 from linecad.photo import Photo
 from linecad.scene import Scene
 
+OUT_OF_MEMORY = ("std::bad_alloc", "Insufficient memory")  # as OpenCV says it, from C++ and from its own allocator
+
 
 def do(job: Job) -> Outcome:
     """Convert the photo of a job. Never raises: a photo that breaks something is a row, not the end of the batch."""
     try:
         return _do(job)
-    except MemoryError:
-        return Outcome("memory limit", f"more than {job.limits.memory_mb} MiB were needed; raise --memory-limit")
     except LinecadError as error:
         return Outcome("failed", str(error))
     except Exception as error:
+        if isinstance(error, MemoryError) or any(words in str(error) for words in OUT_OF_MEMORY):
+            return Outcome("memory limit", f"more than {job.limits.memory_mb} MiB were needed; raise --memory-limit")
         return Outcome("failed", _unexpected(error))
 
 
