@@ -7,6 +7,8 @@ READY := $(VENV)/.ready
 DEMO := demo/street
 FORMATS := step dxf glb usdz usda json png
 ARGS :=
+# A file of tests goes to one process, in the order of names, by which no long one comes last.
+PROCESSES := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
 DATASETS := data/test data/test4k
 WORKERS := 2
 SECONDS := 10
@@ -16,7 +18,7 @@ SECONDS := 10
 
 help:
 	@echo 'make demo    reconstruct the sample photo of a street: CAD files and a picture in demo/'
-	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap")'
+	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap"; in one process: PROCESSES=)'
 	@echo 'make lint    ruff and mypy'
 	@echo 'make check   lint and test, what every change must pass'
 	@echo 'make results measure datasets (DATASETS="folders", WORKERS=2): docs/tables/, and more in results/'
@@ -30,7 +32,7 @@ demo: $(READY)
 	@echo 'Made:' && ls -lh $(FORMATS:%=$(DEMO).%)
 
 test: $(READY)
-	$(BIN)/python -m pytest $(ARGS)
+	$(BIN)/python -m pytest $(PROCESSES) $(ARGS)
 
 lint: $(READY)
 	$(BIN)/ruff check

@@ -18,7 +18,7 @@ SKIPPING = {
 }
 
 
-def run(folder: Path, text: str, no_skips: str) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, text: str, no_skips: str, *options: str) -> subprocess.CompletedProcess[str]:
     (folder / "conftest.py").write_text(CONFTEST.read_text())
     (folder / "test_it.py").write_text(text)
     environment = os.environ | {"LINECAD_NO_SKIPS": no_skips}
@@ -31,6 +31,7 @@ def run(folder: Path, text: str, no_skips: str) -> subprocess.CompletedProcess[s
         "no:cacheprovider",
         "-p",
         "no:hypothesispytest",
+        *options,
         "test_it.py",
     ]
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
@@ -41,6 +42,13 @@ def test_skip_is_a_failure_when_no_skip_is_allowed(tmp_path: Path, text: str) ->
     result = run(tmp_path, text, "1")
     assert result.returncode != 0
     assert "too cold" in result.stdout
+    assert "allows no skip" in result.stdout
+
+
+@pytest.mark.parametrize("where", ["in the test", "the whole module"])
+def test_so_it_is_where_tests_run_in_several_processes(tmp_path: Path, where: str) -> None:
+    result = run(tmp_path, SKIPPING[where], "1", "--numprocesses", "1")
+    assert result.returncode != 0
     assert "allows no skip" in result.stdout
 
 

@@ -25,14 +25,15 @@ from solver.problem import SolveOptions
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT / "samples"
-TIME_LIMIT = 20.0  # s
+TIME_LIMIT = 100.0  # s, far more than it takes: what is found by then says how fast the machine is
+GAP = 0.01  # at which the solver may stop; to prove the rest takes ten times as long and changes nothing here
 
 # The graph and the program of the paper, and what a user gets who says nothing.
 OPTIONS = {
     "paper": ReconstructOptions(
         collinear=False, solve=SolveOptions(formulation="paper", mu_boundary=10.0, time_limit_s=TIME_LIMIT)
     ),
-    "default": ReconstructOptions(solve=SolveOptions(mu_boundary=1.0, time_limit_s=TIME_LIMIT)),
+    "default": ReconstructOptions(solve=SolveOptions(mu_boundary=1.0, time_limit_s=TIME_LIMIT, gap=GAP)),
 }
 
 # What is asked of component 0: how many of 200 points on true edges its lines must reach, and the share of these that
@@ -119,12 +120,13 @@ def test_the_command_turns_a_photo_into_every_kind_of_file(tmp_path):
     outputs = ["scene.json", "model.step", "model.dxf", "model.glb", "model.usdz", "model.obj", "model.png"]
     command = [
         sys.executable, "-m", "linecad", "convert", str(SAMPLES / "courtyard.jpg"), "--camera",
-        str(SAMPLES / "courtyard.json"), "--time-limit", str(TIME_LIMIT), "--quiet", "--largest-component",
+        str(SAMPLES / "courtyard.json"), "--time-limit", str(TIME_LIMIT), "--gap", str(GAP), "--quiet",
+        "--largest-component",
         *[word for output in outputs for word in ("-o", output)],
     ]  # fmt: skip
     ended = subprocess.run(
         command, cwd=tmp_path, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True,
-        timeout=100, check=False,
+        timeout=300, check=False,
     )  # fmt: skip
     assert (ended.returncode, ended.stderr) == (0, "")
     beside = ["model.obj.mtl", "model.obj.textures"]
