@@ -32,7 +32,7 @@ FLAGS = [
 ]
 SIZE = {"width": 1280, "height": 800}
 PATIENCE_MS = 60_000  # far more than it takes, since other programs may need the processor
-START_S = 60.0
+START_S = 100.0
 
 
 @dataclass
@@ -58,7 +58,7 @@ class Served:
     def end(self, how: signal.Signals = signal.SIGINT) -> None:
         if self.process.poll() is None:
             self.process.send_signal(how)
-        self.process.wait(20)
+        self.process.wait(START_S)
         self.process.stdout.close()
 
 
@@ -114,7 +114,7 @@ def start(photo_folder, tmp_path_factory) -> Iterator[Callable[..., Served]]:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
     for process in running:
-        process.wait(20)
+        process.wait(START_S)
         process.stdout.close()
 
 
