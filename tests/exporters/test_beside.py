@@ -204,7 +204,7 @@ def kill_at_forty_moments(folder):
     began = time.perf_counter()
     for number in range(10):
         put(path, number)
-    longest = 4 * (time.perf_counter() - began)
+    longest = 2 * (time.perf_counter() - began)
     for number in range(1, 41):
         child = fork(lambda number=number: [put(path, each) for each in itertools.islice(itertools.count(number), 60)])
         time.sleep(chance.uniform(0.0, longest))

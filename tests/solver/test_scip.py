@@ -175,12 +175,12 @@ def test_ctrl_c_keeps_the_best_solution_and_prints_nothing():
     assert seconds < 90
 
 
-def test_freeing_a_stopped_search_proves_nothing(street):
+def test_freeing_a_stopped_search_proves_nothing(alley):
     """SCIP sends events while it frees its tree; the bound of the emptied tree once ended in "optimal"."""
     options = SolveOptions(formulation="paper", without=HARD, node_limit=1)
-    ratios, families = end_ratios(street), find_families(street, HARD)
+    ratios, families = end_ratios(alley), find_families(alley, HARD)
     reporter = Reporter(time.monotonic(), 0.0, 1e6, None)
-    model = build_model(street, families, options, ratios).model
+    model = build_model(alley, families, options, ratios).model
     run(model, options, Watch(model, reporter), threading.Event())
     bound = reporter.bound
     model.freeTransform()
