@@ -231,12 +231,6 @@ def test_alpha_note_reaches_the_photo(tmp_path: Path) -> None:
     assert any("transparent" in note for note in read_photo(tmp_path / "glass.png", focal=100.0).notes)
 
 
-GROUND_TRUTH = Path(__file__).resolve().parents[3] / "shared" / "data"
-
-
-@pytest.mark.skipif(
-    not GROUND_TRUTH.is_dir(), reason="the real photographs with ground truth are not beside this clone"
-)
 @pytest.mark.parametrize(
     ("name", "notes"),
     [
@@ -245,9 +239,9 @@ GROUND_TRUTH = Path(__file__).resolve().parents[3] / "shared" / "data"
         ("york_urban/P1020177", ()),
     ],
 )
-def test_ground_truth_files_serve_as_camera_files(name: str, notes: tuple[str, ...]) -> None:
-    photo = read_photo(GROUND_TRUTH / f"{name}.jpg", GROUND_TRUTH / f"{name}.json")
-    truth = json.loads((GROUND_TRUTH / f"{name}.json").read_text())
+def test_ground_truth_files_serve_as_camera_files(shared_data: Path, name: str, notes: tuple[str, ...]) -> None:
+    photo = read_photo(shared_data / f"{name}.jpg", shared_data / f"{name}.json")
+    truth = json.loads((shared_data / f"{name}.json").read_text())
     assert photo.camera is not None
     assert photo.camera.focal == truth["K"][0][0]
     assert photo.notes == notes
