@@ -494,14 +494,14 @@ def _convert(parsed: argparse.Namespace) -> int:
     from linecad.cameratext import summary
     from linecad.correctionsfile import check_belongs, read_corrections
     from linecad.outputs import write_outputs
-    from linecad.photo import read_photo
     from linecad.pipeline import reconstruct
+    from linecad.straightening import open_photo
 
     options = _reconstruct_options(parsed)
     corrections = None if parsed.corrections is None else read_corrections(parsed.corrections)
     with _Shown(parsed) as show:
         show.stage("reading the photo")
-        photo = read_photo(parsed.photo, parsed.camera, parsed.focal)
+        photo = open_photo(parsed.photo, parsed.camera, parsed.focal)
         if corrections is not None:
             check_belongs(corrections, str(parsed.corrections), photo.width, photo.height)
         scene = _measured(reconstruct(photo, options, show.progress, show.stage, corrections), parsed.known)
@@ -603,12 +603,12 @@ def _edit(parsed: argparse.Namespace) -> int:
 
 def _photo_to_edit(parsed: argparse.Namespace) -> "tuple[Photo, Path]":
     """The photo that is named, or that of the scene that is named, and where it lies."""
-    from linecad.photo import read_photo
+    from linecad.straightening import open_photo
 
     if parsed.input.suffix.lower() != SCENE_SUFFIX:
         if parsed.photo is not None:
             raise LinecadError("--photo is for scene files; the photo is named already")
-        return read_photo(parsed.input, parsed.camera, parsed.focal), parsed.input
+        return open_photo(parsed.input, parsed.camera, parsed.focal), parsed.input
     from linecad.scenefile import read_scene
 
     scene = read_scene(parsed.input)
@@ -738,12 +738,14 @@ def _photo_for_outputs(
 
 def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     """The photo of a scene: as named, else beside the scene file, else none (the picture then says so)."""
-    from linecad.photo import read_photo
+    from linecad.photo import read_photo, read_photo_of
 
     beside = parsed.scene.parent / Path(scene.photo).name  # a scene file does not send us to other folders
     path = parsed.photo if parsed.photo is not None else beside if beside.is_file() else None
     if path is None:
         return None
+    if parsed.camera is None and scene.camera.distortion and scene.camera.source != "file":
+        return read_photo_of(path, scene.camera)  # the photo's own lines told the distortion, all of it is in the scene
     # Only the camera file can say how its pixels were made square; that it did is told by a note alone.
     resampled = bool(scene.camera.distortion) or any("pixels made square" in note for note in scene.notes)
     if resampled and parsed.camera is None:

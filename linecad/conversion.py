@@ -10,9 +10,10 @@ from linecad.calibration import read_calibration
 from linecad.finding import ReconstructOptions, StageReport
 from linecad.metric import Known, set_scale
 from linecad.outputs import write_outputs
-from linecad.photo import Photo, read_photo
+from linecad.photo import Photo
 from linecad.pipeline import reconstruct
 from linecad.scene import Scene
+from linecad.straightening import open_photo
 from solver.problem import Progress
 
 
@@ -34,7 +35,7 @@ class Conversion:
 
     def read(self, photo: Path) -> Photo:
         """The photo with its camera. Raises PhotoError or CameraError."""
-        return read_photo(photo, self.camera, self.focal)
+        return open_photo(photo, self.camera, self.focal)
 
     def reconstruct(self, photo: Photo, on_progress: Callable[[Progress], None] | None, on_stage: StageReport) -> Scene:
         """The scene of the photo. Raises ReconstructionError, SolverError, or LinecadError for an unknown length."""

@@ -23,6 +23,16 @@ OUTSIDE_NOTED = 0.005  # share of the undistorted photo that lies outside the ol
 OUTSIDE_REFUSED = 0.5
 
 
+@dataclass(frozen=True)
+class Bend:
+    """A radial distortion about a point: r (1 + radial (r / half)^2) for r, with half of the diagonal, px."""
+
+    radial: float  # share of half the diagonal by which a point that far out was moved out; negative is a barrel
+    radial_error: float  # standard error
+    center: tuple[float, float]  # px, also the principal point
+    center_error: float  # px, standard error of each coordinate
+
+
 @dataclass(frozen=True, eq=False)
 class Photo:
     """A photo in which everything can be measured."""
@@ -33,6 +43,7 @@ class Photo:
     notes: tuple[str, ...] = ()  # doubts that did not stop the work
     hint: FocalHint | None = None  # of EXIF; None where it tells nothing or the camera was given
     framing: Framing = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
+    bend: Bend | None = None  # the distortion that was taken out because the photo's own lines showed it
 
     def __post_init__(self) -> None:
         if self.pixels.dtype != np.uint8 or self.pixels.ndim != 3 or self.pixels.shape[2] != 3:
@@ -85,6 +96,18 @@ def read_photo(path: Path, camera_file: Path | None = None, focal: float | None 
     camera = None if hint is None else _centred_camera(width, height, hint.focal, "exif")
     notes = decoded.notes + told + _doubts(history, hint)
     return Photo(path.name, decoded.pixels, camera, notes, hint, history.framing)
+
+
+def read_photo_of(path: Path, camera: Camera) -> Photo:
+    """Read a photo again with the camera that a scene has, as `linecad.straightening.open_photo` made it at first.
+
+    Raises PhotoError when the file is no photo that linecad takes, and CameraError when it has another size.
+    """
+    path = Path(path)
+    decoded = decode_image(path)
+    calibration = Calibration(camera.width, camera.height, camera.matrix, camera.distortion)
+    _check_belongs(calibration, "the scene", decoded, f"{path}")
+    return _calibrated(path.name, decoded, calibration, "the scene", "unknown")
 
 
 def _doubts(history: History, hint: FocalHint | None = None) -> tuple[str, ...]:

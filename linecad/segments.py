@@ -67,26 +67,40 @@ def group_segments(
     whose gaps along the line are at most `largest_gap`, in px at REFERENCE_WIDTH. The joined segment runs through the
     length-weighted mean.
     """
-    scale = camera.width / REFERENCE_WIDTH
-    across = max(GROUP_ACROSS * scale, GROUP_ACROSS_FLOOR)
-    along = max(largest_gap * scale, GROUP_ALONG_FLOOR)
+    across, along = _reach(camera.width, largest_gap)
     points = vanishing_points(camera.matrix, frame.rotation)
     ends: list[Float] = []
     axes: list[int] = []
     for axis in range(3):
-        grouped = _group_axis(segments.ends[segments.axis == axis], points[axis], across, along)
+        own = segments.ends[segments.axis == axis]
+        grouped = [_join(own[m], points[axis]) for m in _gathered(own, points[axis], across, along)]
         ends += grouped
         axes += [axis] * len(grouped)
     return Segments(np.array(ends), np.array(axes, np.int64))
 
 
-def _group_axis(ends: Float, vanishing: Float, across: float, along: float) -> list[Float]:
-    """Fragments (N, 2, 2) of one axis as a list of joined segments (2, 2), the longest leader first."""
+def fit_whole(ends: Float, vanishing: Float, width: int) -> Float:
+    """Fragments (N, 2, 2) px that point to one vanishing point (3,), as whole segments (M, 2, 2).
+
+    They are gathered as by `group_segments` but not turned to the vanishing point, so that they can tell where it is.
+    """
+    whole = [_fit(ends[members]) for members in _gathered(ends, vanishing, *_reach(width, GROUP_ALONG))]
+    return np.array(whole).reshape(-1, 2, 2)
+
+
+def _reach(width: int, largest_gap: float) -> tuple[float, float]:
+    """How far, px, fragments of one line may lie apart across it and along it."""
+    scale = width / REFERENCE_WIDTH
+    return max(GROUP_ACROSS * scale, GROUP_ACROSS_FLOOR), max(largest_gap * scale, GROUP_ALONG_FLOOR)
+
+
+def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> list[Int]:
+    """The fragments of each line, as indices of fragments (N, 2, 2) of one axis, the longest leader first."""
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     middle = ends.mean(axis=1)
     direction = directions_to(middle, vanishing)
     free = np.ones(len(ends), bool)
-    joined: list[Float] = []
+    lines: list[Int] = []
     for leader in np.argsort(-length, kind="stable"):
         if not free[leader]:
             continue
@@ -97,8 +111,8 @@ def _group_axis(ends: Float, vanishing: Float, across: float, along: float) -> l
         reach = (ends[near] - middle[leader]) @ direction[leader]
         members = near[_touching(reach.min(axis=1), reach.max(axis=1), along, int(np.flatnonzero(near == leader)[0]))]
         free[members] = False
-        joined.append(_join(ends[members], length[members], vanishing))
-    return joined
+        lines.append(members)
+    return lines
 
 
 def _touching(low: Float, high: Float, gap: float, leader: int) -> Int:
@@ -111,9 +125,22 @@ def _touching(low: Float, high: Float, gap: float, leader: int) -> Int:
     return together
 
 
-def _join(ends: Float, length: Float, vanishing: Float) -> Float:
+def _fit(ends: Float) -> Float:
+    """One segment (2, 2) through fragments (M, 2, 2): the line with the least squares of distance along all of them."""
+    along, middle = ends[:, 1] - ends[:, 0], ends.mean(axis=1)
+    length = np.linalg.norm(along, axis=1)
+    centre = np.average(middle, axis=0, weights=length)
+    off = middle - centre
+    spread = (off * length[:, None]).T @ off + (along * length[:, None]).T @ along / 12
+    direction = np.linalg.eigh(spread)[1][:, 1]
+    reach = (ends.reshape(-1, 2) - centre) @ direction
+    segment: Float = centre + np.array([[reach.min()], [reach.max()]]) * direction
+    return segment
+
+
+def _join(ends: Float, vanishing: Float) -> Float:
     """One segment (2, 2) through fragments (M, 2, 2), turned to pass exactly through the vanishing point."""
-    centre = np.average(ends.mean(axis=1), axis=0, weights=length)
+    centre = np.average(ends.mean(axis=1), axis=0, weights=np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
     direction = directions_to(centre, vanishing)
     reach = (ends.reshape(-1, 2) - centre) @ direction
     segment: Float = centre + np.array([[reach.min()], [reach.max()]]) * direction

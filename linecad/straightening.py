@@ -1,8 +1,31 @@
-"""Photos as they are measured: read, and freed from the lens distortion that their own segments show."""
+"""Photos as they are measured: read, and freed from the lens distortion that their own segments show.
 
+Lines of a Manhattan scene are straight and run to three vanishing points; a lens that bends them turns their pieces by
+angles that grow towards the corners. One radial coefficient is fitted together with the camera and the frame
+(`linecad.camerafit`), so no line has to be followed from end to end.
+"""
+
+from dataclasses import replace
 from pathlib import Path
 
-from linecad.photo import Photo, read_photo
+import cv2
+import numpy as np
+
+from linecad.calibrating import best_fit, decisive, gathered, prior_of
+from linecad.calibration import Calibration, undistort_photo
+from linecad.camerafit import CENTER_X, RADIAL, undistorted
+from linecad.certainty import whole_lines, widening
+from linecad.geometry import central_camera
+from linecad.photo import Bend, Photo, read_photo
+from linecad.scene import Segments
+from linecad.segments import find_segments
+from linecad.vanishing import MIN_SEGMENTS
+
+LARGEST_WIDTH = 1600  # px, of the photo in which the bend is measured: enough for a few px at the corners
+RADIAL_ERROR = 0.05  # usual size of the distortion at half the diagonal, a share
+LEAST_SIGNIFICANCE = 4.0  # standard errors
+LEAST_RADIAL = 0.01  # what bends less is left alone: real photos of lenses without distortion show up to 0.007
+LARGEST_RADIAL = 0.25  # beyond it the lens is a fisheye, which one coefficient does not describe
 
 
 def open_photo(path: Path, camera_file: Path | None = None, focal: float | None = None) -> Photo:
@@ -11,5 +34,58 @@ def open_photo(path: Path, camera_file: Path | None = None, focal: float | None 
 
 
 def straighten(photo: Photo) -> Photo:
-    """The photo without the radial distortion that bends its straight lines; the same photo where they are straight."""
-    return photo
+    """The photo without the radial distortion that bends its straight lines; the same photo where they are straight.
+
+    A photo whose camera comes from a file is left alone: the file tells its distortion.
+    """
+    if photo.camera is not None and photo.camera.source == "file":
+        return photo
+    bend = find_bend(photo)
+    if bend is None or abs(bend.radial) < max(LEAST_SIGNIFICANCE * bend.radial_error, LEAST_RADIAL):
+        return photo
+    amount = f"{abs(bend.radial):.1%} (standard error {bend.radial_error:.1%}) at the corners"
+    if abs(bend.radial) > LARGEST_RADIAL:
+        note = f"straight lines are bent by about {amount}: too much for one coefficient, so nothing was done about it"
+        return replace(photo, notes=(*photo.notes, f"{note}; give --camera with the lens's distortion"))
+    half = float(np.hypot(photo.width, photo.height)) / 2
+    # Any focal length does, as the coefficient is scaled with it.
+    matrix = central_camera(half, photo.width, photo.height)
+    matrix[:2, 2] = bend.center
+    calibration = Calibration(photo.width, photo.height, matrix, (bend.radial, 0.0, 0.0, 0.0))
+    pixels, _ = undistort_photo(photo.pixels, calibration)
+    kind = "barrel" if bend.radial < 0 else "pincushion"
+    note = f"straight lines were bent by a {kind} distortion of {amount}, which was taken out"
+    camera = photo.camera
+    if camera is not None:
+        matrix = camera.matrix.copy()
+        matrix[:2, 2] = bend.center
+        camera = replace(camera, matrix=matrix)
+    return replace(photo, pixels=pixels, camera=camera, notes=(*photo.notes, note), bend=bend)
+
+
+def find_bend(photo: Photo) -> Bend | None:
+    """The radial distortion that makes the segments of a photo most likely; None where they are too few."""
+    scale = min(LARGEST_WIDTH / photo.width, 1.0)
+    grey = photo.grey
+    if scale < 1:
+        size = (round(photo.width * scale), round(photo.height * scale))
+        grey = np.asarray(cv2.resize(photo.grey, size, interpolation=cv2.INTER_AREA), np.uint8)
+    height, width = grey.shape
+    raw = find_segments(grey)
+    if len(raw) < MIN_SEGMENTS:
+        return None
+    prior = replace(prior_of(photo).scaled(width / photo.width), radial_error=RADIAL_ERROR)
+    fit = best_fit(decisive(raw, width), width, height, prior)
+    straight = undistorted(raw.ends, fit.view.radial, fit.view.center, width, height)
+    points = fit.view.axes @ fit.view.matrix.T
+    lines = whole_lines(gathered(Segments(straight, raw.axis), fit, width), points, max(width, height))
+    # A bend shows on the lines of any two axes, so the second counts, not the one with the fewest.
+    wider = widening(np.sort(lines)[1:])
+    error = wider * np.sqrt(np.diag(fit.covariance))
+    x, y = (fit.view.center + 0.5) * photo.width / width - 0.5
+    return Bend(
+        fit.view.radial,
+        float(error[RADIAL]),
+        (float(x), float(y)),
+        float(error[CENTER_X] * max(photo.width, photo.height)),
+    )

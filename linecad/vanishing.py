@@ -1,55 +1,41 @@
-"""Segments to the Manhattan frame: rotation of the camera and, where it is not known, its focal length."""
-
-from dataclasses import dataclass
+"""Segments to the Manhattan frame: the search for three orthogonal vanishing points, and the names of the axes."""
 
 import numpy as np
 
+from linecad.camerafit import View, fit_view, known
 from linecad.errors import ReconstructionError
-from linecad.geometry import DIAGONAL_35MM, angles_to, central_camera, plane_normals, rotation_about
+from linecad.geometry import DIAGONAL_35MM, angles_to, plane_normals, rotation_about
 from linecad.scene import Float, Int, ManhattanFrame, Segments
 
 MIN_SEGMENTS = 12
 SEARCH_ANGLE = np.radians(1.25)  # the residual beyond which a segment has no say in the search
-INLIER_ANGLE = np.radians(2.0)  # the same in the refinement
+INLIER_ANGLE = np.radians(2.0)  # the residual up to which a segment counts as explained
 DRAWS = 3000  # random triples of segments
 BATCH = 200  # triples scored at once: bounds the memory
 MIN_LENGTH = 12.0  # px; the direction of shorter segments is mostly noise
 MAX_SCORED = 1500  # the longest segments decide; more cost time and change nothing
 REFINEMENTS = 30
 STEP_END = 1e-9  # rad; smaller steps end the refinement
-ERROR_FLOOR = 1e-4  # rad; no axis is known better than that
 LEAST_SPREAD = 1e-3  # rad between the planes of lines that are to give a vanishing point
 SECOND_DIRECTION_SHARE = 0.02  # of the explained length that the second and third axis must add
 
-FOCAL_RANGE = (0.4, 4.0)  # of the larger side of the photo
-FOCAL_CANDIDATES = 24
-FOCAL_DRAWS = 600
 DEFAULT_FOCAL_DIAGONALS = 28.0 / DIAGONAL_35MM  # 28 mm equivalent: a phone's or compact's main lens
-FOCAL_STEP = 1e-5  # relative, for the derivative
-LARGEST_FOCAL_STEP = 0.1  # relative, in one iteration
-FOCAL_SIGMA = 0.10  # relative standard error above which the vanishing points do not tell the focal length
-
-
-@dataclass(frozen=True)
-class FocalGuess:
-    """A focal length from the vanishing points, px, and its relative standard error (inf where it cannot be told)."""
-
-    focal: float
-    relative_error: float
 
 
 def find_frame(segments: Segments, K: Float, seed: int = 0) -> ManhattanFrame:
     """The rotation whose three orthogonal vanishing points explain the most segment length.
 
     Two segments give one vanishing point (the cross product of the normals of their interpretation planes), a third
-    one gives the second, their cross product the third; the best triple is refined by Gauss-Newton on the rotation.
-    Raises ReconstructionError with fewer than MIN_SEGMENTS segments or when all run in one direction.
+    one gives the second, their cross product the third; the best triple is refined to the most likely one
+    (`linecad.camerafit`). Raises ReconstructionError with fewer than MIN_SEGMENTS segments or when all run in one
+    direction.
     """
-    _need_segments(segments)
-    ends, weight = _longest(segments)
-    axes, _ = _search(ends, weight, K, DRAWS, np.random.default_rng(seed))
-    axes = _refine(ends, weight, K, axes)
-    return _named_frame(segments, K, axes)
+    need_segments(segments)
+    ends = longest(segments)
+    axes = search_axes(ends, K, DRAWS, np.random.default_rng(seed))
+    width, height = (max(round(2 * middle + 1), 1) for middle in K[:2, 2])
+    view = View(axes, K[0, 0], K[:2, 2])
+    return name_frame(segments, K, fit_view(ends, width, height, view, known(K)).view.axes)
 
 
 def fit_frame(ends: Float, label: Int, K: Float, segments: Segments) -> ManhattanFrame:
@@ -87,24 +73,7 @@ def fit_frame(ends: Float, label: Int, K: Float, segments: Segments) -> Manhatta
         axes = axes @ rotation_about(step).T
         if np.linalg.norm(step) < STEP_END:
             break
-    return _named_frame(segments, K, axes)
-
-
-def find_focal(segments: Segments, width: int, height: int, seed: int = 0) -> FocalGuess:
-    """The focal length whose best Manhattan frame explains the most, the principal point in the photo's middle."""
-    _need_segments(segments)
-    ends, weight = _longest(segments)
-    rng = np.random.default_rng(seed)
-    larger = max(width, height)
-    best = (-1.0, float(larger), np.eye(3))
-    for focal in np.geomspace(FOCAL_RANGE[0] * larger, FOCAL_RANGE[1] * larger, FOCAL_CANDIDATES):
-        K = central_camera(focal, width, height)
-        axes, _ = _search(ends, weight, K, FOCAL_DRAWS, rng)
-        axes = _refine(ends, weight, K, axes)
-        score = float(_score(ends, weight, K, axes[None])[0])
-        if score > best[0]:
-            best = (score, float(focal), axes)
-    return _refine_focal(ends, weight, best[1], best[2], width, height)
+    return name_frame(segments, K, axes)
 
 
 def default_focal(width: int, height: int) -> float:
@@ -112,7 +81,8 @@ def default_focal(width: int, height: int) -> float:
     return float(DEFAULT_FOCAL_DIAGONALS * np.hypot(width, height))
 
 
-def _need_segments(segments: Segments) -> None:
+def need_segments(segments: Segments) -> None:
+    """ReconstructionError with fewer than MIN_SEGMENTS segments."""
     if len(segments) < MIN_SEGMENTS:
         raise ReconstructionError(
             f"{len(segments)} straight segments found, at least {MIN_SEGMENTS} are needed; "
@@ -120,13 +90,13 @@ def _need_segments(segments: Segments) -> None:
         )
 
 
-def _longest(segments: Segments) -> tuple[Float, Float]:
-    """Ends and lengths of the segments that decide about the frame."""
-    order = np.argsort(-segments.length, kind="stable")[:MAX_SCORED]
+def longest(segments: Segments, most: int = MAX_SCORED) -> Float:
+    """Ends (N, 2, 2) of the segments that decide about the frame, the longest first."""
+    order = np.argsort(-segments.length, kind="stable")[:most]
     decisive = order[segments.length[order] >= MIN_LENGTH]
     if len(decisive) < MIN_SEGMENTS:
         decisive = order
-    return segments.ends[decisive], segments.length[decisive]
+    return segments.ends[decisive]
 
 
 def _score(ends: Float, weight: Float, K: Float, triples: Float) -> Float:
@@ -142,8 +112,9 @@ def _score(ends: Float, weight: Float, K: Float, triples: Float) -> Float:
     return np.asarray(np.sqrt(by_axis).sum(axis=0))
 
 
-def _search(ends: Float, weight: Float, K: Float, draws: int, rng: np.random.Generator) -> tuple[Float, float]:
-    """The best of many random axis triples (3, 3), rows in the camera frame, and its score."""
+def search_axes(ends: Float, K: Float, draws: int, rng: np.random.Generator) -> Float:
+    """The best of many random axis triples (3, 3), rows in the camera frame, for segments (N, 2, 2) px."""
+    weight = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     normals = plane_normals(ends, K)
     best, best_score = np.eye(3), -1.0
     for _ in range(max(draws // BATCH, 1)):
@@ -161,72 +132,10 @@ def _search(ends: Float, weight: Float, K: Float, draws: int, rng: np.random.Gen
         scores = _score(ends, weight, K, triples)
         if scores.max() > best_score:
             best, best_score = triples[scores.argmax()], float(scores.max())
-    return best, best_score
+    return best
 
 
-def _say(weight: Float, label: Int, residual: Float, error: Float) -> Float:
-    """Weight (N,) of each segment in the least squares: its length, less towards INLIER_ANGLE, per axis scaled by
-    the noise of that axis (effective number of segments over their mean square error)."""
-    say = weight * np.clip(1 - (residual / np.sin(INLIER_ANGLE)) ** 2, 0, None)
-    for axis in range(3):
-        own = label == axis
-        total = say[own].sum()
-        if total > 0:
-            noise = say[own] @ error[own] ** 2 / total + ERROR_FLOOR**2
-            say[own] *= total / (say[own] ** 2).sum() / noise
-    return np.asarray(say)
-
-
-def _refine(ends: Float, weight: Float, K: Float, axes: Float) -> Float:
-    """Gauss-Newton on the rotation: each interpretation plane should contain the axis of its segment."""
-    normals = plane_normals(ends, K)
-    for _ in range(REFINEMENTS):
-        sines = angles_to(ends, axes @ K.T)
-        label = sines.argmin(axis=0)
-        own = axes[label]
-        error = (normals * own).sum(axis=1)
-        say = _say(weight, label, sines.min(axis=0), error)
-        jacobian = np.cross(own, normals)
-        system = (jacobian * say[:, None]).T @ jacobian + 1e-9 * np.eye(3)
-        step = np.linalg.solve(system, -(jacobian * say[:, None]).T @ error)
-        axes = axes @ rotation_about(step).T
-        if np.linalg.norm(step) < STEP_END:
-            break
-    return axes
-
-
-def _refine_focal(ends: Float, weight: Float, focal: float, axes: Float, width: int, height: int) -> FocalGuess:
-    """Gauss-Newton on rotation and log focal length together; the curvature gives the standard error.
-
-    The weights of `_say` are inverse variances, so the inverse of the system is the covariance.
-    """
-    relative_error = np.inf
-    for _ in range(REFINEMENTS):
-        K = central_camera(focal, width, height)
-        sines = angles_to(ends, axes @ K.T)
-        label = sines.argmin(axis=0)
-        own = axes[label]
-        errors = [
-            (plane_normals(ends, central_camera(focal * np.exp(change), width, height)) * own).sum(axis=1)
-            for change in (-FOCAL_STEP, 0.0, FOCAL_STEP)
-        ]
-        say = _say(weight, label, sines.min(axis=0), errors[1])
-        by_focal = (errors[2] - errors[0]) / (2 * FOCAL_STEP)
-        jacobian = np.column_stack([np.cross(own, plane_normals(ends, K)), by_focal])
-        system = (jacobian * say[:, None]).T @ jacobian
-        step = -np.linalg.pinv(system, rcond=1e-9) @ ((jacobian * say[:, None]).T @ errors[1])
-        known = system[3, 3] - system[3, :3] @ np.linalg.pinv(system[:3, :3]) @ system[:3, 3]
-        relative_error = float(1 / np.sqrt(known)) if known > 0 else np.inf
-        axes = axes @ rotation_about(step[:3]).T
-        focal *= float(np.exp(np.clip(step[3], -LARGEST_FOCAL_STEP, LARGEST_FOCAL_STEP)))
-        if not FOCAL_RANGE[0] < focal / max(width, height) < FOCAL_RANGE[1]:
-            return FocalGuess(focal, np.inf)
-        if np.linalg.norm(step) < STEP_END:
-            break
-    return FocalGuess(focal, relative_error)
-
-
-def _named_frame(segments: Segments, K: Float, axes: Float) -> ManhattanFrame:
+def name_frame(segments: Segments, K: Float, axes: Float) -> ManhattanFrame:
     """Axes (3, 3), rows, as a frame with deterministic names: z up, x most left to right, y away (see scene.py)."""
     up = int(np.abs(axes[:, 1]).argmax())
     z = axes[up] * -np.sign(axes[up, 1])

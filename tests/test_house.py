@@ -44,6 +44,7 @@ FLOORS = [
     # Parts of stages: of photo, of graph, of lifting, of faces.
     [
         "linecad.calibration",
+        "linecad.camerafit",
         "linecad.decoding",
         "linecad.exif",
         "linecad.sensors",
@@ -73,7 +74,9 @@ FLOORS = [
         "linecad.correcting",
     ],
     ["linecad.support"],  # of hinges
-    ["linecad.calibrating", "linecad.straightening"],
+    ["linecad.certainty"],
+    ["linecad.calibrating"],
+    ["linecad.straightening"],
     ["linecad.finding"],
     ["linecad.placing", "linecad.outputs", "linecad.camerareport"],
     ["linecad.cameratext"],

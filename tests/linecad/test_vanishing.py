@@ -1,4 +1,4 @@
-"""Frame and focal length from segments of the made scene."""
+"""The frame from segments of the made scene."""
 
 import numpy as np
 import pytest
@@ -9,8 +9,8 @@ from linecad.scene import Segments
 from linecad.vanishing import (
     MIN_SEGMENTS,
     default_focal,
-    find_focal,
     find_frame,
+    need_segments,
 )
 
 
@@ -21,8 +21,8 @@ def angle_between(first, second):
 
 def test_frame_of_exact_segments_is_the_true_one(made):
     frame = find_frame(made.unlabelled, made.camera.matrix)
-    np.testing.assert_allclose(frame.rotation, made.frame.rotation, atol=1e-9)
-    assert frame.residual < 1e-9
+    np.testing.assert_allclose(frame.rotation, made.frame.rotation, atol=1e-7)
+    assert frame.residual < 1e-7
     assert frame.explained == pytest.approx(1)
 
 
@@ -87,7 +87,7 @@ def test_too_few_segments_are_refused(made):
     with pytest.raises(ReconstructionError, match=f"^{MIN_SEGMENTS - 1} straight segments found, at least 12"):
         find_frame(few, made.camera.matrix)
     with pytest.raises(ReconstructionError, match="straight segments found"):
-        find_focal(few, 1600, 1200)
+        need_segments(few)
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -96,29 +96,6 @@ def test_one_direction_alone_is_refused(made, axis):
     ends = np.concatenate([only.ends, only.ends.mean(axis=1, keepdims=True) * 0.2 + only.ends * 0.8])
     with pytest.raises(ReconstructionError, match="run in one direction"):
         find_frame(Segments(ends, np.full(len(ends), -1)), made.camera.matrix)
-
-
-def test_focal_length_of_exact_segments_is_the_true_one(made):
-    guess = find_focal(made.unlabelled, made.camera.width, made.camera.height)
-    assert guess.focal == pytest.approx(made.camera.focal, rel=1e-6)
-
-
-@pytest.mark.parametrize("seed", range(3))
-def test_focal_length_is_right_within_its_standard_error(made, seed):
-    guess = find_focal(made.noisy(0.5, seed), made.camera.width, made.camera.height)
-    off = abs(guess.focal / made.camera.focal - 1)
-    assert off < 4 * guess.relative_error
-    assert guess.relative_error < 0.02
-
-
-def test_focal_length_of_a_frontal_photo_cannot_be_told(made):
-    # x and z at infinity, y in the middle: any focal length explains it.
-    rng = np.random.default_rng(1)
-    start = rng.uniform(200, 1000, (40, 2))
-    along = np.where((np.arange(40) % 2 == 0)[:, None], [100.0, 0.0], [0.0, 100.0])
-    ends = np.stack([start, start + along], axis=1) + rng.normal(0, 0.2, (40, 2, 2))
-    guess = find_focal(Segments(ends, np.full(40, -1)), made.camera.width, made.camera.height)
-    assert guess.relative_error > 0.1
 
 
 def test_default_focal_is_that_of_a_28_mm_lens():

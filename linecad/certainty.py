@@ -1,0 +1,153 @@
+"""How sure a camera and its Manhattan frame are, in standard errors and in plain words."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linecad.camerafit import CENTER_X, CENTER_Y, FOCAL, TURNS, Fit
+from linecad.geometry import angles_to, plane_normals
+from linecad.photo import Bend
+from linecad.scene import Camera, Certainty, Float, Int, ManhattanFrame, Quality, Segments
+
+GOOD_FOCAL_ERROR = 0.05  # relative standard error up to which a focal length is good
+POOR_FOCAL_ERROR = 0.25
+GOOD_TURN = np.radians(1.0)  # standard error of the rotation about an axis of the camera
+POOR_TURN = np.radians(3.0)
+GOOD_SHARE = 0.5  # of the segment length that runs along the axes; below it other lines may have made the frame
+POOR_SHARE = 0.3
+# Whole lines along the axis that has fewest: with less, one cable or joint in the paving may have made that axis. The
+# figures are from 300 made photos (CONTRIBUTING, 2026-11-21).
+ENOUGH_LINES = 20
+ENOUGH_LINES_KNOWN = 12  # along the second axis, where the camera was given: the third follows from two
+FEW_LINES = 20.0  # standard errors grow as the root of 1 + this over the lines of that axis
+LINE_ANGLE = np.radians(1.0)  # between a whole line and its axis
+LINE_LENGTH = 0.02  # of the larger side, of a line that counts
+LARGEST_OWN_TURN = np.radians(1.0)  # by which the axes may lie off an orthogonal frame
+EVEN_ROLL = np.radians(40.0)  # beyond it two axes are almost equally upright
+SECOND_FRAME_SHARE = 0.08  # of the segment length that a second frame must explain
+SECOND_FRAME_PEAK = 3.0  # times what lines of all directions would give
+SECOND_FRAME_WIDTH = np.radians(1.5)  # of the directions that belong to one frame
+LEVEL = np.radians(10.0)  # a plane that holds the upright within this tells no level direction
+
+
+@dataclass
+class Doubts:
+    """What was noticed while a camera was fitted."""
+
+    is_cropped: bool = False  # or may be: the principal point was searched far from the middle
+    is_contradicted: bool = False  # EXIF and vanishing points do not agree
+    notes: list[str] = field(default_factory=list)
+
+
+def whole_lines(ends: Float, points: Float, size: float) -> Int:
+    """How many whole segments (N, 2, 2) px run to each vanishing point (3, 3); `size` is the larger side, px."""
+    sines = angles_to(ends, points)
+    counts = (sines.min(axis=0) < np.sin(LINE_ANGLE)) & (
+        np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > LINE_LENGTH * size
+    )
+    return np.bincount(sines.argmin(axis=0)[counts], minlength=3)
+
+
+def widening(lines: Int) -> float:
+    """The factor on standard errors for whole lines along each axis (3,) px, where the focal length was estimated."""
+    return float(np.sqrt(1 + FEW_LINES / max(float(lines.min()), 0.5)))
+
+
+def certainty_of(
+    camera: Camera, frame: ManhattanFrame, fit: Fit, lines: Int, raw: Segments, doubts: Doubts, bend: Bend | None
+) -> tuple[Certainty, list[str]]:
+    """The standard errors of `fit` and what they mean, and notes on what else a user should know.
+
+    `lines` (3,) are the whole lines along each axis, `raw` all segments, `bend` is the distortion that was taken out.
+    """
+    size = max(camera.width, camera.height)
+    error = np.sqrt(np.diag(fit.covariance))
+    is_given = camera.source in ("file", "focal option")
+    focal = None if is_given else float(error[FOCAL])
+    center = None if is_given else (float(error[CENTER_X] * size), float(error[CENTER_Y] * size))
+    half = np.hypot(camera.width, camera.height) / 2
+    second = second_frame(raw, camera, frame)
+    quality, reason = _quality(camera, frame, fit, lines, focal, doubts, second)
+    certainty = Certainty(
+        rotation=error[TURNS],
+        focal=None if focal is None else focal * camera.focal,
+        center=center,
+        radial=None if bend is None else float(bend.radial_error * (camera.focal / half) ** 2),
+        quality=quality,
+        reason=reason,
+    )
+    notes = []
+    if second is not None:
+        turn, share = second
+        notes.append(
+            f"a second Manhattan frame, turned by {np.degrees(turn):.0f} degrees about the upright, explains "
+            f"{share:.0%} of the segment length, the first {frame.explained:.0%}: lines along it are left out"
+        )
+    return certainty, notes
+
+
+def second_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> tuple[float, float] | None:
+    """A second frame with the same upright, as its turn, rad in (0, pi / 2), and its share of the segment length.
+
+    A segment that no axis explains and that is level in space has one direction: across the upright, in its plane.
+    Directions a right angle apart are one frame's. None where no turn gathers many.
+    """
+    sines = angles_to(raw.ends, (camera.matrix @ frame.rotation).T)
+    free = (sines > np.sin(2 * SECOND_FRAME_WIDTH)).all(axis=0)
+    normals = plane_normals(raw.ends[free], camera.matrix) @ frame.rotation  # in the world
+    length = raw.length[free]
+    tells = np.hypot(normals[:, 0], normals[:, 1]) > np.sin(LEVEL)
+    direction = np.arctan2(-normals[tells, 0], normals[tells, 1]) % (np.pi / 2)
+    length = length[tells]
+    if length.sum() == 0:
+        return None
+    turns = np.linspace(0, np.pi / 2, 180, endpoint=False)
+    apart = np.abs(turns[:, None] - direction)
+    apart = np.minimum(apart, np.pi / 2 - apart)
+    gathered = np.where(apart < SECOND_FRAME_WIDTH, length, 0.0).sum(axis=1)
+    best = int(gathered.argmax())
+    share = float(gathered[best] / raw.length.sum())
+    by_chance = length.sum() * 2 * SECOND_FRAME_WIDTH / (np.pi / 2)
+    if share < SECOND_FRAME_SHARE or gathered[best] < SECOND_FRAME_PEAK * by_chance:
+        return None
+    return float(turns[best]), share
+
+
+def _quality(
+    camera: Camera,
+    frame: ManhattanFrame,
+    fit: Fit,
+    lines: Int,
+    focal: float | None,
+    doubts: Doubts,
+    second: tuple[float, float] | None,
+) -> tuple[Quality, str]:
+    """The word, and the weightiest reason for it."""
+    turn = float(np.sqrt(np.diag(fit.covariance)[TURNS]).max())
+    fewest, middle = np.sort(lines)[:2]
+    upright = np.abs(frame.rotation[1])
+    tilt = float(np.arctan2(upright[:2].max(), upright[2]))
+    poor = [
+        (frame.explained < POOR_SHARE, f"only {frame.explained:.0%} of the segment length runs along the three axes"),
+        (turn > POOR_TURN, f"the axes are known to {np.degrees(turn):.0f} degrees only"),
+        (focal is not None and focal > POOR_FOCAL_ERROR, "the photo does not tell its focal length, which is assumed"),
+    ]
+    doubtful = [
+        (doubts.is_contradicted, "EXIF and the vanishing points contradict each other about the focal length"),
+        (doubts.is_cropped, "the photo may be cropped, so that its principal point lies off the middle"),
+        (camera.source == "default", "the focal length is assumed"),
+        (focal is not None and focal > GOOD_FOCAL_ERROR, f"the focal length is known to {focal or 0:.0%} only"),
+        (focal is not None and camera.source != "exif" and fewest < ENOUGH_LINES,
+         f"few lines ({fewest}) run along one of the three axes, from which the focal length follows"),
+        (middle < ENOUGH_LINES_KNOWN, f"few lines ({middle}) run along the second of the three axes"),
+        (frame.explained < GOOD_SHARE, f"only {frame.explained:.0%} of the segment length runs along the three axes"),
+        (turn > GOOD_TURN, f"the axes are known to {np.degrees(turn):.1f} degrees only"),
+        (fit.turn > LARGEST_OWN_TURN, f"the axes are not square: they lie {np.degrees(fit.turn):.1f} degrees off"),
+        (tilt > EVEN_ROLL, "the photo is turned so far that another axis may be the upright one"),
+        (second is not None and second[1] > frame.explained / 2, "a second Manhattan frame explains almost as much"),
+    ]  # fmt: skip
+    for word, reasons in (("poor", poor), ("doubtful", doubtful)):
+        for holds, reason in reasons:
+            if holds:
+                return word, reason  # type: ignore[return-value]
+    return "good", f"{lines.sum()} whole lines agree, {frame.explained:.0%} of the segment length runs along the axes"
