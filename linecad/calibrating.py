@@ -15,6 +15,7 @@ from linecad.scene import Camera, CameraSource, Certainty, Float, Int, Manhattan
 from linecad.segments import fit_whole
 from linecad.vanishing import (
     MIN_SEGMENTS,
+    best_axes,
     default_focal,
     fit_frame,
     longest,
@@ -71,7 +72,10 @@ def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Cal
         camera = replace(camera, distortion=(float(k1), 0.0, 0.0, 0.0))
     notes = [*photo.notes, *found.doubts.notes]
     if drawn is None:
-        frame = name_frame(raw, camera.matrix, found.fit.view.axes)
+        # The lines of one scene share one frame, so that of the least squares is theirs; that each axis may have a turn
+        # of its own is for the camera and for the errors.
+        K = camera.matrix
+        frame = name_frame(raw, K, best_axes(raw, K, found.fit.view.axes, *found.searched))
     else:
         ends = np.array([line.ends for line in drawn.lines])
         frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
@@ -113,6 +117,7 @@ class _Found:
     lines: Int  # (3,) whole lines along each axis
     source: CameraSource
     doubts: Doubts
+    searched: tuple[Float, ...] = ()  # axes (3, 3) at which the search for the frame ended
 
 
 class _Finder:
@@ -129,8 +134,10 @@ class _Finder:
         camera = self.photo.camera
         if camera is not None and _is_given(camera):
             prior = known(camera.matrix)
-            fit, lines = self._whole(self._at(camera.matrix, prior), prior)
-            return _Found(fit, lines, camera.source, Doubts())
+            axes = search_axes(self.ends[:SEARCHED], camera.matrix, DRAWS)
+            start = View(axes, camera.focal, camera.matrix[:2, 2])
+            fit, lines = self._whole(fit_view(self.ends, self.width, self.height, start, prior), prior)
+            return _Found(fit, lines, camera.source, Doubts(), (axes,))
         doubts = Doubts()
         best, prior = self._best(doubts)
         alone, lines = self._whole(best, prior)
@@ -195,7 +202,7 @@ class _Finder:
 
     def _at(self, K: Float, prior: Prior) -> Fit:
         """The most likely view near a camera matrix."""
-        axes = search_axes(self.ends[:SEARCHED], K, DRAWS, np.random.default_rng(0))
+        axes = search_axes(self.ends[:SEARCHED], K, DRAWS)
         return fit_view(self.ends, self.width, self.height, View(axes, K[0, 0], K[:2, 2]), prior)
 
     def _whole(self, fit: Fit, prior: Prior) -> tuple[Fit, Int]:
@@ -237,12 +244,12 @@ def decisive(raw: Segments, width: int) -> Float:
 
 def best_fit(ends: Float, width: int, height: int, prior: Prior) -> Fit:
     """The most likely view of segments (N, 2, 2) px, the longest first, whose focal length may be anything usual."""
-    rng = np.random.default_rng(0)
     larger = max(width, height)
     fixed = replace(prior, radial_error=0.0)
     found = []
-    for focal in np.geomspace(FOCAL_RANGE[0] * larger, FOCAL_RANGE[1] * larger, FOCAL_CANDIDATES):
-        axes = search_axes(ends[:SEARCHED], central_camera(focal, width, height), FOCAL_DRAWS, rng)
+    focals = np.geomspace(FOCAL_RANGE[0] * larger, FOCAL_RANGE[1] * larger, FOCAL_CANDIDATES)
+    for number, focal in enumerate(focals):
+        axes = search_axes(ends[:SEARCHED], central_camera(focal, width, height), FOCAL_DRAWS, seed=number)
         start = View(axes, float(focal), prior.center)
         found.append(fit_view(ends[:SEARCHED], width, height, start, fixed, iterations=FIRST_ITERATIONS))
     found.sort(key=lambda fit: -fit.log_posterior)

@@ -2,14 +2,14 @@
 
 import numpy as np
 
-from linecad.camerafit import View, fit_view, known
 from linecad.errors import ReconstructionError
 from linecad.geometry import DIAGONAL_35MM, angles_to, plane_normals, rotation_about
 from linecad.scene import Float, Int, ManhattanFrame, Segments
 
 MIN_SEGMENTS = 12
 SEARCH_ANGLE = np.radians(1.25)  # the residual beyond which a segment has no say in the search
-INLIER_ANGLE = np.radians(2.0)  # the residual up to which a segment counts as explained
+INLIER_ANGLE = np.radians(2.0)  # the residual up to which a segment counts as explained and has a say
+ERROR_FLOOR = 1e-4  # rad; no axis is known better than that
 DRAWS = 3000  # random triples of segments
 BATCH = 200  # triples scored at once: bounds the memory
 MIN_LENGTH = 12.0  # px; the direction of shorter segments is mostly noise
@@ -26,16 +26,11 @@ def find_frame(segments: Segments, K: Float, seed: int = 0) -> ManhattanFrame:
     """The rotation whose three orthogonal vanishing points explain the most segment length.
 
     Two segments give one vanishing point (the cross product of the normals of their interpretation planes), a third
-    one gives the second, their cross product the third; the best triple is refined to the most likely one
-    (`linecad.camerafit`). Raises ReconstructionError with fewer than MIN_SEGMENTS segments or when all run in one
-    direction.
+    one gives the second, their cross product the third; the best triple is refined by Gauss-Newton on the rotation.
+    Raises ReconstructionError with fewer than MIN_SEGMENTS segments or when all run in one direction.
     """
     need_segments(segments)
-    ends = longest(segments)
-    axes = search_axes(ends, K, DRAWS, np.random.default_rng(seed))
-    width, height = (max(round(2 * middle + 1), 1) for middle in K[:2, 2])
-    view = View(axes, K[0, 0], K[:2, 2])
-    return name_frame(segments, K, fit_view(ends, width, height, view, known(K)).view.axes)
+    return name_frame(segments, K, best_axes(segments, K, search_axes(longest(segments), K, DRAWS, seed)))
 
 
 def fit_frame(ends: Float, label: Int, K: Float, segments: Segments) -> ManhattanFrame:
@@ -112,8 +107,9 @@ def _score(ends: Float, weight: Float, K: Float, triples: Float) -> Float:
     return np.asarray(np.sqrt(by_axis).sum(axis=0))
 
 
-def search_axes(ends: Float, K: Float, draws: int, rng: np.random.Generator) -> Float:
+def search_axes(ends: Float, K: Float, draws: int, seed: int = 0) -> Float:
     """The best of many random axis triples (3, 3), rows in the camera frame, for segments (N, 2, 2) px."""
+    rng = np.random.default_rng(seed)
     weight = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     normals = plane_normals(ends, K)
     best, best_score = np.eye(3), -1.0
@@ -133,6 +129,50 @@ def search_axes(ends: Float, K: Float, draws: int, rng: np.random.Generator) -> 
         if scores.max() > best_score:
             best, best_score = triples[scores.argmax()], float(scores.max())
     return best
+
+
+def best_axes(segments: Segments, K: Float, *starts: Float) -> Float:
+    """The axes (3, 3), rows in the camera frame, that explain most of the segments after refinement from each start."""
+    ends = longest(segments)
+    refined = np.array([_refine(ends, K, start) for start in starts])
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    best: Float = refined[_score(ends, length, K, refined).argmax()]
+    return best
+
+
+def _refine(ends: Float, K: Float, axes: Float) -> Float:
+    """Gauss-Newton on the rotation: each interpretation plane should contain the axis of its segment.
+
+    Takes segments (N, 2, 2) px and axes (3, 3), rows in the camera frame, near their place.
+    """
+    normals = plane_normals(ends, K)
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    for _ in range(REFINEMENTS):
+        sines = angles_to(ends, axes @ K.T)
+        label = sines.argmin(axis=0)
+        own = axes[label]
+        error = (normals * own).sum(axis=1)
+        say = _say(length, label, sines.min(axis=0), error)
+        jacobian = np.cross(own, normals)
+        system = (jacobian * say[:, None]).T @ jacobian + 1e-9 * np.eye(3)
+        step = np.linalg.solve(system, -(jacobian * say[:, None]).T @ error)
+        axes = axes @ rotation_about(step).T
+        if np.linalg.norm(step) < STEP_END:
+            break
+    return axes
+
+
+def _say(weight: Float, label: Int, residual: Float, error: Float) -> Float:
+    """Weight (N,) of each segment in the least squares: its length, less towards INLIER_ANGLE, per axis scaled by
+    the noise of that axis (effective number of segments over their mean square error)."""
+    say = weight * np.clip(1 - (residual / np.sin(INLIER_ANGLE)) ** 2, 0, None)
+    for axis in range(3):
+        own = label == axis
+        total = say[own].sum()
+        if total > 0:
+            noise = say[own] @ error[own] ** 2 / total + ERROR_FLOOR**2
+            say[own] *= total / (say[own] ** 2).sum() / noise
+    return np.asarray(say)
 
 
 def name_frame(segments: Segments, K: Float, axes: Float) -> ManhattanFrame:
