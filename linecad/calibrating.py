@@ -1,6 +1,6 @@
 """The camera of a photo and its Manhattan frame, from what is known of the camera and from the segments; how sure."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -8,10 +8,10 @@ from linecad.camerafit import FOCAL, Fit, Prior, View, fit_view, known
 from linecad.certainty import ENOUGH_LINES, Doubts, certainty_of, whole_lines, widening
 from linecad.corrections import SetFrame
 from linecad.framing import usual_aspect
-from linecad.geometry import angles_to, central_camera
+from linecad.geometry import REFERENCE_WIDTH, angles_to, central_camera
 from linecad.hints import FocalHint
 from linecad.photo import Photo
-from linecad.scene import Camera, CameraSource, Certainty, Float, Int, ManhattanFrame, Segments
+from linecad.scene import Bool, Camera, CameraSource, Certainty, Float, Int, ManhattanFrame, Segments
 from linecad.segments import fit_whole
 from linecad.vanishing import (
     MIN_SEGMENTS,
@@ -42,6 +42,9 @@ MIN_LENGTH = 10.0  # px at up to SCALE_WIDTH; shorter segments have no say about
 MIN_WHOLE_LENGTH = 15.0  # px, the same of whole segments
 SCALE_WIDTH = 1500.0  # px; the lengths grow with larger photos
 LABEL_ANGLE = np.radians(3.0)  # between fragments and the axis along which they are gathered
+NEAR_LINE = 3.0  # px at REFERENCE_WIDTH: across a line, what lies within it is a piece of it
+LEAST_SCALE = 0.3  # of NEAR_LINE, for small photos
+MATCHED_AT_ONCE = 500  # segments; bounds the memory
 CONTRADICTION = 3.0  # standard errors between EXIF and vanishing points
 
 
@@ -53,6 +56,8 @@ class Calibrated:
     frame: ManhattanFrame
     certainty: Certainty
     notes: tuple[str, ...]  # those of the photo among them
+    prior: Prior | None = None  # what the camera was estimated from besides the segments; None where it was not
+    doubts: Doubts = field(default_factory=Doubts)
 
 
 def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Calibrated:
@@ -62,7 +67,49 @@ def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Cal
     when the photo has no Manhattan frame.
     """
     need_segments(raw)
-    found = _Finder(photo, raw).find()
+    return _calibrated(photo, raw, raw, _Finder(photo, raw).find(), drawn)
+
+
+def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segments) -> Calibrated:
+    """The same from those segments alone that lie on `lines`, which a first calibration let meet in space.
+
+    What meets nothing is mostly no line of the scene. For a camera that was estimated: for one that was given, the
+    frame gets no better by it (CONTRIBUTING, 2026-11-21).
+    """
+    if first.prior is None:
+        return first
+    chosen = raw.subset(_lies_on(raw.ends, lines.ends, NEAR_LINE * max(photo.width / REFERENCE_WIDTH, LEAST_SCALE)))
+    if len(chosen) < MIN_SEGMENTS:
+        return first
+    finder = _Finder(photo, chosen)
+    focal, K = first.camera.focal, first.camera.matrix
+    start = fit_view(finder.ends, photo.width, photo.height, View(first.frame.rotation.T, focal, K[:2, 2]), first.prior)
+    fit, counts = finder.whole(start, first.prior)
+    wider = widening(counts)
+    if wider * _focal_error(fit) > FOCAL_SIGMA:
+        return first
+    doubts = Doubts(notes=list(first.doubts.notes), is_cropped=first.doubts.is_cropped)
+    doubts.is_contradicted = first.doubts.is_contradicted
+    found = _Found(_widened(fit, wider), counts, first.camera.source, doubts, prior=first.prior)
+    return _calibrated(photo, raw, chosen, found, None)
+
+
+def _lies_on(ends: Float, lines: Float, reach: float) -> Bool:
+    """Which segments (N, 2, 2) have their middle within `reach` px of one of the lines (M, 2, 2)."""
+    along = lines[:, 1] - lines[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    along = along / length[:, None]
+    near = []
+    for some in np.array_split(ends.mean(axis=1), max(len(ends) // MATCHED_AT_ONCE, 1)):
+        off = some[:, None] - lines[:, 0]
+        place = (off * along).sum(axis=-1)
+        across = np.abs(off[..., 0] * along[:, 1] - off[..., 1] * along[:, 0])
+        near.append(((across < reach) & (place > -reach) & (place < length + reach)).any(axis=1))
+    return np.concatenate(near)
+
+
+def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", drawn: SetFrame | None) -> Calibrated:
+    """Camera and frame of a view; of the segments `raw` those that are `chosen` say where the axes are."""
     camera = photo.camera
     if camera is None or not _is_given(camera):
         camera = Camera(photo.width, photo.height, found.fit.view.matrix, found.source)
@@ -75,13 +122,13 @@ def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Cal
         # The lines of one scene share one frame, so that of the least squares is theirs; that each axis may have a turn
         # of its own is for the camera and for the errors.
         K = camera.matrix
-        frame = name_frame(raw, K, best_axes(raw, K, found.fit.view.axes, *found.searched))
+        frame = name_frame(raw, K, best_axes(chosen, K, found.fit.view.axes, *found.searched))
     else:
         ends = np.array([line.ends for line in drawn.lines])
         frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
         notes.append("the Manhattan frame is that of lines drawn by hand")
     certainty, more = certainty_of(camera, frame, found.fit, found.lines, raw, found.doubts, photo.bend)
-    return Calibrated(camera, frame, certainty, (*notes, *more))
+    return Calibrated(camera, frame, certainty, (*notes, *more), found.prior, found.doubts)
 
 
 def _is_given(camera: Camera) -> bool:
@@ -118,6 +165,7 @@ class _Found:
     source: CameraSource
     doubts: Doubts
     searched: tuple[Float, ...] = ()  # axes (3, 3) at which the search for the frame ended
+    prior: Prior | None = None
 
 
 class _Finder:
@@ -136,11 +184,11 @@ class _Finder:
             prior = known(camera.matrix)
             axes = search_axes(self.ends[:SEARCHED], camera.matrix, DRAWS)
             start = View(axes, camera.focal, camera.matrix[:2, 2])
-            fit, lines = self._whole(fit_view(self.ends, self.width, self.height, start, prior), prior)
+            fit, lines = self.whole(fit_view(self.ends, self.width, self.height, start, prior), prior)
             return _Found(fit, lines, camera.source, Doubts(), (axes,))
         doubts = Doubts()
         best, prior = self._best(doubts)
-        alone, lines = self._whole(best, prior)
+        alone, lines = self.whole(best, prior)
         wider = widening(lines)
         error = wider * _focal_error(alone)
         if self.photo.hint is not None:
@@ -149,9 +197,9 @@ class _Finder:
             doubts.notes.append(
                 f"focal length guessed from the vanishing points: {alone.view.focal:.0f} px, standard error {error:.1%}"
             )
-            return _Found(_widened(alone, wider), lines, "vanishing points", doubts)
+            return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
         assumed = replace(prior, focal_error=0.0)
-        fit, lines = self._whole(self._at(central_camera(prior.focal, self.width, self.height), assumed), assumed)
+        fit, lines = self.whole(self._at(central_camera(prior.focal, self.width, self.height), assumed), assumed)
         doubts.notes.append(
             f"focal length not known and not to be told from the vanishing points; {prior.focal:.0f} px assumed "
             "(28 mm equivalent), so depths may be stretched; give --focal or --camera"
@@ -191,21 +239,21 @@ class _Finder:
             told = f"EXIF says a focal length of {hint.focal:.0f} px, the vanishing points {alone.view.focal:.0f} px"
             if error < hint.relative_error / 2 and lines.min() >= ENOUGH_LINES:
                 doubts.notes.append(f"{told}; the vanishing points are better supported and are believed")
-                return _Found(_widened(alone, wider), lines, "vanishing points", doubts)
+                return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
             doubts.notes.append(f"{told}; EXIF is believed, since few lines speak against it")
         # Errors of the segments are `wider` than the fit knows, so what EXIF says weighs by so much more.
         trusted = replace(prior, focal=hint.focal, focal_error=hint.relative_error / wider)
         at_hint = self._at(central_camera(hint.focal, self.width, self.height), trusted)
         near = fit_view(self.ends, self.width, self.height, alone.view, trusted)
-        fit, lines = self._whole(max(at_hint, near, key=lambda one: one.log_posterior), trusted)
-        return _Found(_widened(fit, wider), lines, "exif", doubts)
+        fit, lines = self.whole(max(at_hint, near, key=lambda one: one.log_posterior), trusted)
+        return _Found(_widened(fit, wider), lines, "exif", doubts, prior=trusted)
 
     def _at(self, K: Float, prior: Prior) -> Fit:
         """The most likely view near a camera matrix."""
         axes = search_axes(self.ends[:SEARCHED], K, DRAWS)
         return fit_view(self.ends, self.width, self.height, View(axes, K[0, 0], K[:2, 2]), prior)
 
-    def _whole(self, fit: Fit, prior: Prior) -> tuple[Fit, Int]:
+    def whole(self, fit: Fit, prior: Prior) -> tuple[Fit, Int]:
         """The fit again on whole segments, and how many of these run along each axis.
 
         What the detector broke into several fragments says more about its direction when it is whole.

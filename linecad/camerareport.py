@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from linecad.calibrating import calibrate
 from linecad.calibration import Calibration, read_calibration
-from linecad.finding import StageReport, silent
+from linecad.finding import StageReport, find_calibration, silent
 from linecad.geometry import DIAGONAL_35MM, angles_to, vanishing_points
 from linecad.photo import Photo
 from linecad.scene import Camera, Certainty, Float, ManhattanFrame, Segments
@@ -142,7 +141,7 @@ def find_camera(
     on_stage("finding segments")
     raw = find_segments(photo.grey)
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
-    calibrated = calibrate(photo, raw)
+    calibrated = find_calibration(photo, raw, on_stage)
     camera = calibrated.camera
     taken = Calibration(camera.width, camera.height, camera.matrix, camera.distortion)
     if camera_file is not None:

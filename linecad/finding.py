@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from linecad.calibrating import calibrate
+from linecad.calibrating import Calibrated, calibrate, calibrate_again
 from linecad.corrections import SetFrame
 from linecad.errors import ReconstructionError
 from linecad.graph import EXTENSION, MIN_LENGTH, MIN_TOLERANCE, Weights, build_line_graph, components
@@ -155,7 +155,7 @@ def name_lines(
 ) -> FoundLines:
     """The same from raw segments, as `linecad.segments.find_segments` gives them."""
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
-    calibrated = calibrate(photo, raw, drawn)
+    calibrated = find_calibration(photo, raw, on_stage, drawn)
     camera, frame = calibrated.camera, calibrated.frame
     if faint and photo.width >= SMALL_WIDTH:
         on_stage("finding faint segments")
@@ -163,6 +163,28 @@ def name_lines(
     on_stage("following lines along their vanishing points")
     pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
     return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty)
+
+
+def find_calibration(
+    photo: Photo, raw: Segments, on_stage: StageReport = silent, drawn: SetFrame | None = None
+) -> Calibrated:
+    """Camera and frame of a photo with segments `raw`; an estimated camera is fitted again to lines that meet in space.
+
+    Raises ReconstructionError when the photo has no Manhattan frame.
+    """
+    first = calibrate(photo, raw, drawn)
+    if first.prior is None or drawn is not None:
+        return first
+    on_stage("fitting the camera again to the lines that meet in space")
+    pieces = label_segments(raw, first.camera, first.frame)
+    graph = FoundLines(first.camera, first.frame, pieces, ()).widest_graph
+    depth = RobustFit(graph).depths()
+    first_line, second_line = graph.edges.T
+    agrees = graph.informative & (np.abs(depth[first_line] - depth[second_line] - graph.log_ratio) <= graph.tolerance)
+    met = [part for part in components(graph, agrees) if len(part) >= MIN_COMPONENT]
+    if not met:
+        return first
+    return calibrate_again(photo, raw, first, graph.segments.subset(np.concatenate(met)))
 
 
 def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
