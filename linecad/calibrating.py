@@ -5,7 +5,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linecad.camerafit import FOCAL, Fit, Prior, View, fit_view, known
-from linecad.certainty import ENOUGH_LINES, Doubts, certainty_of, whole_lines, widening
+from linecad.certainty import ENOUGH_LINES, Doubts, certainty_of, other_camera, whole_lines, widening
 from linecad.corrections import SetFrame
 from linecad.framing import usual_aspect
 from linecad.geometry import REFERENCE_WIDTH, angles_to, central_camera
@@ -29,7 +29,7 @@ USUAL_FOCAL_ERROR = 0.4  # of the focal lengths of photos about `default_focal`,
 USUAL_CENTER_ERROR = 0.015  # of the principal points of whole photos about the middle, of the larger side
 CROPPED_CENTER_ERROR = 0.15  # the same of photos from which parts were cut off
 LARGEST_TURN_UNKNOWN = np.radians(0.4)  # of axes off the frame: less than else, as the focal length may bend as well
-CENTER_GAIN = 15.0  # in log posterior, by which a principal point off the middle must explain more
+CENTER_GAIN = 3.0  # in log posterior, by which a principal point off the middle must explain more
 FOCAL_RANGE = (0.45, 3.0)  # of the larger side: where an unknown focal length is searched
 FOCAL_CANDIDATES = 8
 STARTS = 3  # the best of them that are followed to their end
@@ -45,6 +45,7 @@ LABEL_ANGLE = np.radians(3.0)  # between fragments and the axis along which they
 NEAR_LINE = 3.0  # px at REFERENCE_WIDTH: across a line, what lies within it is a piece of it
 LEAST_SCALE = 0.3  # of NEAR_LINE, for small photos
 MATCHED_AT_ONCE = 500  # segments; bounds the memory
+REAL_SCENES = 1.5  # by which the focal lengths of York Urban's photos err more than standard errors say
 CONTRADICTION = 3.0  # standard errors between EXIF and vanishing points
 
 
@@ -88,9 +89,7 @@ def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segme
     wider = widening(counts)
     if wider * _focal_error(fit) > FOCAL_SIGMA:
         return first
-    doubts = Doubts(notes=list(first.doubts.notes), is_cropped=first.doubts.is_cropped)
-    doubts.is_contradicted = first.doubts.is_contradicted
-    found = _Found(_widened(fit, wider), counts, first.camera.source, doubts, prior=first.prior)
+    found = _Found(_widened(fit, wider), counts, first.camera.source, first.doubts, prior=first.prior)
     return _calibrated(photo, raw, chosen, found, None)
 
 
@@ -128,6 +127,11 @@ def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", 
         frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
         notes.append("the Manhattan frame is that of lines drawn by hand")
     certainty, more = certainty_of(camera, frame, found.fit, found.lines, raw, found.doubts, photo.bend)
+    if camera.source == "vanishing points" and certainty.focal is not None:
+        notes.append(
+            f"focal length guessed from the vanishing points: {camera.focal:.0f} px, standard error "
+            f"{certainty.focal / camera.focal:.1%}"
+        )
     return Calibrated(camera, frame, certainty, (*notes, *more), found.prior, found.doubts)
 
 
@@ -194,9 +198,6 @@ class _Finder:
         if self.photo.hint is not None:
             return self._with_hint(self.photo.hint, alone, lines, prior, doubts)
         if error <= FOCAL_SIGMA:
-            doubts.notes.append(
-                f"focal length guessed from the vanishing points: {alone.view.focal:.0f} px, standard error {error:.1%}"
-            )
             return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
         assumed = replace(prior, focal_error=0.0)
         fit, lines = self.whole(self._at(central_camera(prior.focal, self.width, self.height), assumed), assumed)
@@ -205,7 +206,7 @@ class _Finder:
             "(28 mm equivalent), so depths may be stretched; give --focal or --camera"
         )
         covariance = alone.covariance * wider**2
-        covariance[FOCAL, FOCAL] = max(error, USUAL_FOCAL_ERROR / 2) ** 2
+        covariance[FOCAL, FOCAL] = max(error, USUAL_FOCAL_ERROR) ** 2
         return _Found(replace(fit, covariance=covariance), lines, "default", doubts)
 
     def _best(self, doubts: Doubts) -> tuple[Fit, Prior]:
@@ -214,12 +215,16 @@ class _Finder:
             prior_of(self.photo), focal=default_focal(self.width, self.height), focal_error=USUAL_FOCAL_ERROR
         )
         doubts.is_cropped = usual.center_error == CROPPED_CENTER_ERROR
+        fits = likely_fits(self.ends, self.width, self.height, usual)
+        best = fits[0]
+        doubts.other = other_camera(best, fits, len(self.ends))
         if doubts.is_cropped or self.photo.bend is not None:
-            return best_fit(self.ends, self.width, self.height, usual), usual
+            return best, usual
         free = replace(usual, center_error=CROPPED_CENTER_ERROR)
-        best = best_fit(self.ends, self.width, self.height, usual)
         wide = fit_view(self.ends, self.width, self.height, best.view, free)
-        if wide.log_posterior - best.log_posterior <= CENTER_GAIN:
+        # Where an axis has few lines, they move the principal point to wherever suits them.
+        lines = self._lines(best)
+        if wide.log_posterior - best.log_posterior <= CENTER_GAIN or lines.min() < ENOUGH_LINES:
             return best, usual
         doubts.is_cropped = True
         off = wide.view.center - self.middle
@@ -237,12 +242,25 @@ class _Finder:
         if apart > CONTRADICTION:
             doubts.is_contradicted = True
             told = f"EXIF says a focal length of {hint.focal:.0f} px, the vanishing points {alone.view.focal:.0f} px"
-            if error < hint.relative_error / 2 and lines.min() >= ENOUGH_LINES:
+            is_sure = error < hint.relative_error / 2 and lines.min() >= ENOUGH_LINES and doubts.other is None
+            if is_sure and self.photo.framing != "whole":
                 doubts.notes.append(f"{told}; the vanishing points are better supported and are believed")
                 return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
-            doubts.notes.append(f"{told}; EXIF is believed, since few lines speak against it")
-        # Errors of the segments are `wider` than the fit knows, so what EXIF says weighs by so much more.
-        trusted = replace(prior, focal=hint.focal, focal_error=hint.relative_error / wider)
+            # EXIF of a photo that is as it was taken is seldom far off; lines that are not square are common.
+            doubts.notes.append(f"{told}; EXIF is believed")
+            doubts.other = None
+            given = replace(prior, focal=hint.focal, focal_error=0.0)
+            at_hint = self._at(central_camera(hint.focal, self.width, self.height), given)
+            turned = replace(alone.view, focal=hint.focal)
+            near = fit_view(self.ends, self.width, self.height, turned, given)
+            fit, lines = self.whole(max(at_hint, near, key=lambda one: one.log_posterior), given)
+            fit = _widened(fit, wider)
+            fit.covariance[FOCAL, FOCAL] = hint.relative_error**2
+            return _Found(fit, lines, "exif", doubts)
+        doubts.other = None
+        # Errors of the segments are `wider` than the fit knows, and those of real scenes wider still, so what EXIF says
+        # weighs by so much more.
+        trusted = replace(prior, focal=hint.focal, focal_error=hint.relative_error / wider / REAL_SCENES)
         at_hint = self._at(central_camera(hint.focal, self.width, self.height), trusted)
         near = fit_view(self.ends, self.width, self.height, alone.view, trusted)
         fit, lines = self.whole(max(at_hint, near, key=lambda one: one.log_posterior), trusted)
@@ -270,8 +288,12 @@ class _Finder:
             start = replace(fit.view, center=center)
             there = fit_view(chosen, self.width, self.height, start, pinned)
             fit = replace(there, covariance=fit.covariance)
+        return fit, self._lines(fit)
+
+    def _lines(self, fit: Fit) -> Int:
+        """How many whole segments run along each axis (3,)."""
         points = fit.view.axes @ fit.view.matrix.T
-        return fit, whole_lines(gathered(self.raw, fit, self.width), points, max(self.width, self.height))
+        return whole_lines(gathered(self.raw, fit, self.width), points, max(self.width, self.height))
 
 
 def _focal_error(fit: Fit) -> float:
@@ -292,6 +314,11 @@ def decisive(raw: Segments, width: int) -> Float:
 
 def best_fit(ends: Float, width: int, height: int, prior: Prior) -> Fit:
     """The most likely view of segments (N, 2, 2) px, the longest first, whose focal length may be anything usual."""
+    return likely_fits(ends, width, height, prior)[0]
+
+
+def likely_fits(ends: Float, width: int, height: int, prior: Prior) -> list[Fit]:
+    """Views to which fits of these segments came from different starts, the most likely first."""
     larger = max(width, height)
     fixed = replace(prior, radial_error=0.0)
     found = []
@@ -305,8 +332,8 @@ def best_fit(ends: Float, width: int, height: int, prior: Prior) -> Fit:
     best = max(fits, key=lambda fit: fit.log_posterior)
     # The likelihood of many segments has optima close to each other: look beside the best.
     beside = [replace(best.view, focal=best.view.focal * factor) for factor in BESIDE]
-    fits = [best, *(fit_view(ends, width, height, view, prior) for view in beside)]
-    return max(fits, key=lambda fit: fit.log_posterior)
+    fits += [fit_view(ends, width, height, view, prior) for view in beside]
+    return sorted(fits, key=lambda fit: -fit.log_posterior)
 
 
 def gathered(raw: Segments, fit: Fit, width: int) -> Float:

@@ -1,6 +1,7 @@
 """How sure a camera and its Manhattan frame are, in standard errors and in plain words."""
 
 from dataclasses import dataclass, field
+from itertools import permutations
 
 import numpy as np
 
@@ -18,8 +19,17 @@ POOR_SHARE = 0.3
 # Whole lines along the axis that has fewest: with less, one cable or joint in the paving may have made that axis. The
 # figures are from 300 made photos (CONTRIBUTING, 2026-11-21).
 ENOUGH_LINES = 20
+ENOUGH_TOGETHER = 120  # along all three: a few kerbs that are not parallel to the house outweigh it else
 ENOUGH_LINES_KNOWN = 12  # along the second axis, where the camera was given: the third follows from two
 FEW_LINES = 20.0  # standard errors grow as the root of 1 + this over the lines of that axis
+# An axis held by few lines may be another direction altogether. How far wrong the camera then is, times a chance that
+# falls with the lines, is part of its standard error; figures from the same photos.
+WRONG_AXIS_FOCAL = 0.5  # relative
+WRONG_AXIS_TURN = np.radians(12.0)
+WRONG_AXIS_LINES = 5.0  # whole lines that make the chance e times smaller
+OTHER_GAIN = 0.08  # of the segments: by so much less log posterior, another camera explains them almost as well
+OTHER_FOCAL = 0.1  # relative; cameras nearer than this and OTHER_TURN are one
+OTHER_TURN = np.radians(3.0)
 LINE_ANGLE = np.radians(1.0)  # between a whole line and its axis
 LINE_LENGTH = 0.02  # of the larger side, of a line that counts
 LARGEST_OWN_TURN = np.radians(1.0)  # by which the axes may lie off an orthogonal frame
@@ -30,12 +40,21 @@ SECOND_FRAME_WIDTH = np.radians(1.5)  # of the directions that belong to one fra
 LEVEL = np.radians(10.0)  # a plane that holds the upright within this tells no level direction
 
 
+@dataclass(frozen=True)
+class Other:
+    """How far another camera, which explains the segments almost as well, lies from the one that was taken."""
+
+    focal: float  # relative, its logarithm
+    turn: float  # rad
+
+
 @dataclass
 class Doubts:
     """What was noticed while a camera was fitted."""
 
     is_cropped: bool = False  # or may be: the principal point was searched far from the middle
     is_contradicted: bool = False  # EXIF and vanishing points do not agree
+    other: "Other | None" = None  # camera that explains the segments almost as well
     notes: list[str] = field(default_factory=list)
 
 
@@ -53,6 +72,35 @@ def widening(lines: Int) -> float:
     return float(np.sqrt(1 + FEW_LINES / max(float(lines.min()), 0.5)))
 
 
+def wrong_axis(lines: int) -> float:
+    """By how much the chance of a wrong axis counts, from 1, where it has so many whole lines."""
+    return float(np.exp(-lines / WRONG_AXIS_LINES))
+
+
+def other_camera(best: Fit, fits: list[Fit], segments: int) -> Other | None:
+    """The most likely of `fits` that is another camera or frame than `best` and explains the segments almost as well.
+
+    `segments` is the number of segments that were fitted: as they are not independent, what counts is the log
+    posterior for each of them. Axes have no names here.
+    """
+    for fit in sorted(fits, key=lambda one: -one.log_posterior):
+        if best.log_posterior - fit.log_posterior > OTHER_GAIN * segments:
+            return None
+        focal = float(abs(np.log(fit.view.focal / best.view.focal)))
+        turn = _turn_between(best.view.axes, fit.view.axes)
+        if focal > OTHER_FOCAL or turn > OTHER_TURN:
+            return Other(focal, turn)
+    return None
+
+
+def _turn_between(first: Float, second: Float) -> float:
+    """The angle, rad, between two frames (3, 3), rows, whose axes may have other names and signs."""
+    cosines = np.abs(first @ second.T)
+    # For each way to name the axes: |trace| with the best signs is that of the smallest turn, or of its mirror.
+    best = max(float(sum(cosines[axis, name] for axis, name in enumerate(names))) for names in permutations(range(3)))
+    return float(np.arccos(np.clip((best - 1) / 2, -1, 1)))
+
+
 def certainty_of(
     camera: Camera, frame: ManhattanFrame, fit: Fit, lines: Int, raw: Segments, doubts: Doubts, bend: Bend | None
 ) -> tuple[Certainty, list[str]]:
@@ -61,13 +109,13 @@ def certainty_of(
     `lines` (3,) are the whole lines along each axis, `raw` all segments, `bend` is the distortion that was taken out.
     """
     size = max(camera.width, camera.height)
-    error = np.sqrt(np.diag(fit.covariance))
     is_given = camera.source in ("file", "focal option")
+    error = _whole_errors(fit, lines, is_told=camera.source not in ("vanishing points", "default"), other=doubts.other)
     focal = None if is_given else float(error[FOCAL])
     center = None if is_given else (float(error[CENTER_X] * size), float(error[CENTER_Y] * size))
     half = np.hypot(camera.width, camera.height) / 2
     second = second_frame(raw, camera, frame)
-    quality, reason = _quality(camera, frame, fit, lines, focal, doubts, second)
+    quality, reason = _quality(camera, frame, fit, error, lines, focal, doubts, second)
     certainty = Certainty(
         rotation=error[TURNS],
         focal=None if focal is None else focal * camera.focal,
@@ -113,17 +161,35 @@ def second_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> tuple[
     return float(turns[best]), share
 
 
+def _whole_errors(fit: Fit, lines: Int, is_told: bool, other: Other | None) -> Float:
+    """Standard errors (7,) of the parameters of a fit, with the chance that an axis, or the whole camera, is wrong.
+
+    `is_told` says that the focal length is known from elsewhere: then two axes give the third.
+    """
+    variance = np.diag(fit.covariance).copy()
+    chance = wrong_axis(int(np.sort(lines)[1 if is_told else 0]))
+    variance[TURNS] += (WRONG_AXIS_TURN * chance) ** 2
+    if not is_told:
+        variance[FOCAL] += (WRONG_AXIS_FOCAL * chance) ** 2
+    if other is not None:  # either is right by an even chance
+        variance[TURNS] += (other.turn / 2) ** 2
+        variance[FOCAL] += (other.focal / 2) ** 2
+    errors: Float = np.sqrt(variance)
+    return errors
+
+
 def _quality(
     camera: Camera,
     frame: ManhattanFrame,
     fit: Fit,
+    error: Float,
     lines: Int,
     focal: float | None,
     doubts: Doubts,
     second: tuple[float, float] | None,
 ) -> tuple[Quality, str]:
     """The word, and the weightiest reason for it."""
-    turn = float(np.sqrt(np.diag(fit.covariance)[TURNS]).max())
+    turn = float(error[TURNS].max())
     fewest, middle = np.sort(lines)[:2]
     upright = np.abs(frame.rotation[1])
     tilt = float(np.arctan2(upright[:2].max(), upright[2]))
@@ -136,9 +202,12 @@ def _quality(
         (doubts.is_contradicted, "EXIF and the vanishing points contradict each other about the focal length"),
         (doubts.is_cropped, "the photo may be cropped, so that its principal point lies off the middle"),
         (camera.source == "default", "the focal length is assumed"),
+        (doubts.other is not None, "another camera explains the segments almost as well"),
         (focal is not None and focal > GOOD_FOCAL_ERROR, f"the focal length is known to {focal or 0:.0%} only"),
         (focal is not None and camera.source != "exif" and fewest < ENOUGH_LINES,
          f"few lines ({fewest}) run along one of the three axes, from which the focal length follows"),
+        (focal is not None and camera.source != "exif" and lines.sum() < ENOUGH_TOGETHER,
+         f"few lines ({lines.sum()}) run along the three axes together, from which the focal length follows"),
         (middle < ENOUGH_LINES_KNOWN, f"few lines ({middle}) run along the second of the three axes"),
         (frame.explained < GOOD_SHARE, f"only {frame.explained:.0%} of the segment length runs along the three axes"),
         (turn > GOOD_TURN, f"the axes are known to {np.degrees(turn):.1f} degrees only"),

@@ -25,6 +25,8 @@ LARGEST_WIDTH = 1600  # px, of the photo in which the bend is measured: enough f
 RADIAL_ERROR = 0.05  # usual size of the distortion at half the diagonal, a share
 LEAST_SIGNIFICANCE = 4.0  # standard errors
 LEAST_RADIAL = 0.01  # what bends less is left alone: real photos of lenses without distortion show up to 0.007
+LEAST_LINES = 8  # whole ones along the second axis; with less, a wrong frame may be bent to fit
+HIGHER_ORDERS = 0.02  # of the distortion: what one coefficient cannot tell of a real lens
 LARGEST_RADIAL = 0.25  # beyond it the lens is a fisheye, which one coefficient does not describe
 
 
@@ -80,12 +82,14 @@ def find_bend(photo: Photo) -> Bend | None:
     points = fit.view.axes @ fit.view.matrix.T
     lines = whole_lines(gathered(Segments(straight, raw.axis), fit, width), points, max(width, height))
     # A bend shows on the lines of any two axes, so the second counts, not the one with the fewest.
+    if np.sort(lines)[1] < LEAST_LINES:
+        return None
     wider = widening(np.sort(lines)[1:])
     error = wider * np.sqrt(np.diag(fit.covariance))
     x, y = (fit.view.center + 0.5) * photo.width / width - 0.5
     return Bend(
         fit.view.radial,
-        float(error[RADIAL]),
+        float(np.hypot(error[RADIAL], HIGHER_ORDERS * fit.view.radial)),
         (float(x), float(y)),
         float(error[CENTER_X] * max(photo.width, photo.height)),
     )
