@@ -24,6 +24,7 @@ from solver.problem import BACKENDS, FORMULATIONS
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 ROOM = SAMPLES / "room.jpg"
+COURTYARD = SAMPLES / "courtyard.jpg"
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
 
 
@@ -419,6 +420,26 @@ def test_textures_find_the_photo_beside_the_scene_or_by_its_name(folder, scene_f
     pictures = [sorted(path.name for path in (folder / f"{name}.obj.textures").iterdir()) for name in "ab"]
     assert pictures[0] == pictures[1]
     assert len(pictures[0]) == 1
+
+
+def test_a_photo_that_its_own_lines_straightened_is_straightened_again_for_its_textures(folder, capsys):
+    """The courtyard without its camera file: the scene alone says by how much."""
+    shutil.copy(COURTYARD, folder / "courtyard.jpg")
+    assert main(["convert", "courtyard.jpg", "-o", "a.json", "-o", "at-once.obj", "--fast", "--quiet"]) == 0
+    assert main(["export", "a.json", "-o", "later.obj", "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+    scene = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert scene["camera"]["source"] == "vanishing points"
+    assert len(scene["camera"]["distortion"]) == 4
+    scene["camera"]["distortion"] = []
+    (folder / "unbent.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert main(["export", "unbent.json", "-o", "bent.obj", "--quiet"]) == 0
+    at_once, later, bent = (
+        np.asarray(Image.open(next((folder / f"{name}.obj.textures").iterdir())), int)
+        for name in ("at-once", "later", "bent")
+    )
+    assert np.abs(at_once - later).max() <= 2
+    assert np.abs(at_once - bent).mean() > 2
 
 
 @pytest.mark.usefixtures("folder")
