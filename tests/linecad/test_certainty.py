@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from linecad import certainty
-from linecad.camerafit import CENTER_X, CENTER_Y, FOCAL, PARAMETERS, RADIAL, TURNS, Fit, View
+from linecad.camerafit import CENTER_X, CENTER_Y, FOCAL, PARAMETERS, TURNS, Fit, View
 from linecad.certainty import Doubts, certainty_of, second_frame, whole_lines, widening
 from linecad.geometry import central_camera, directions_to, rotation_about, vanishing_points
 from linecad.photo import Bend
