@@ -164,6 +164,18 @@ def test_outliers_of_two_in_five_do_not_move_the_view(seed):
     assert (found.belongs[3, : len(own)] < 0.5).mean() > 0.95
 
 
+def test_a_quarter_of_the_segments_a_degree_off_does_not_move_their_axis():
+    """Detectors err far more often than by their usual error, and not to both sides alike."""
+    ends = along_axes(CORNER, (80, 80, 80), 11, 0.05, length=(60, 200))
+    turn = np.radians(1.2)
+    matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    middle = ends[::4].mean(axis=1, keepdims=True)
+    ends[::4] = middle + (ends[::4] - middle) @ matrix
+    found = fit(ends, known(CORNER.matrix), CORNER)
+    off = np.degrees(np.arccos(np.clip((found.own_axes * CORNER.axes).sum(axis=1), -1, 1)))
+    assert (off < 0.1).all()
+
+
 def test_an_axis_with_a_thousand_segments_does_not_outvote_one_with_ten():
     """Of a photo that is bent a little, so that the axes of all segments are not orthogonal.
 

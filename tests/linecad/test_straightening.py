@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from linecad import straightening
 from linecad.camerafile import write_camera
 from linecad.camerareport import find_camera
-from linecad.photo import read_photo, read_photo_of
+from linecad.photo import Bend, Photo, read_photo, read_photo_of
 from linecad.scene import Camera
 from linecad.straightening import find_bend, open_photo, straighten
 
@@ -100,6 +101,20 @@ def test_what_was_done_is_said(barrel):
 def test_a_straight_photo_is_left_as_it_is(folder):
     photo = read_photo(folder / "straight.png")
     assert straighten(photo) is photo
+
+
+@pytest.mark.parametrize(
+    ("radial", "error", "is_straightened"),
+    [(0.006, 0.0005, False), (0.012, 0.0005, True), (0.03, 0.008, False), (-0.03, 0.007, True), (-0.26, 0.001, False)],
+    ids=["too little", "enough", "not sure", "sure", "too much"],
+)
+def test_what_is_worth_straightening(monkeypatch, radial, error, is_straightened):
+    bend = Bend(radial, error, (99.5, 74.5), 1.0)
+    monkeypatch.setattr(straightening, "find_bend", lambda _: bend)
+    photo = Photo("made.png", np.random.default_rng(0).integers(0, 255, (150, 200, 3), np.uint8), None)
+    found = straighten(photo)
+    assert (found.bend is bend) == is_straightened
+    assert np.shares_memory(found.pixels, photo.pixels) != is_straightened
 
 
 def test_a_photo_without_segments_is_left_as_it_is(tmp_path):
