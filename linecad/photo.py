@@ -89,8 +89,8 @@ def read_photo(path: Path, camera_file: Path | None = None, focal: float | None 
     if calibration is not None:
         _check_belongs(calibration, f"{camera_file}", decoded, f"{path}")
         photo = _calibrated(path.name, decoded, calibration, f"{camera_file}", "as the camera file says")
-        told = (TURNED_NOTE,) if decoded.turned else ()
-        return replace(photo, framing=history.framing, notes=told + photo.notes)
+        notes = (TURNED_NOTE, *photo.notes) if decoded.turned else photo.notes
+        return replace(photo, framing=history.framing, notes=notes)
     if focal is not None:
         check_focal(focal, width, height, "the focal length")
         given = _centred_camera(width, height, focal, "focal option")
