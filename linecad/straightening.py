@@ -25,7 +25,9 @@ LARGEST_WIDTH = 1600  # px, of the photo in which the bend is measured: enough f
 RADIAL_ERROR = 0.05  # usual size of the distortion at half the diagonal, a share
 LEAST_SIGNIFICANCE = 4.0  # standard errors
 LEAST_RADIAL = 0.01  # what bends less is left alone: real photos of lenses without distortion show up to 0.007
-LARGEST_RADIAL = 0.25  # beyond it the lens is a fisheye, which one coefficient does not describe
+# Beyond these the lens is a fisheye, which one coefficient does not describe. A barrel brings points in by 15 % of half
+# the diagonal at most, so stronger ones leave the border of the photo without a place; of one of 0.3, 0.22 is found.
+LARGEST_BARREL, LARGEST_PINCUSHION = 0.2, 0.25
 
 
 def open_photo(path: Path, camera_file: Path | None = None, focal: float | None = None) -> Photo:
@@ -44,7 +46,7 @@ def straighten(photo: Photo) -> Photo:
     if bend is None or abs(bend.radial) < max(LEAST_SIGNIFICANCE * bend.radial_error, LEAST_RADIAL):
         return photo
     amount = f"{abs(bend.radial):.1%} (standard error {bend.radial_error:.1%}) at the corners"
-    if abs(bend.radial) > LARGEST_RADIAL:
+    if not -LARGEST_BARREL <= bend.radial <= LARGEST_PINCUSHION:
         note = f"straight lines are bent by about {amount}: too much for one coefficient, so nothing was done about it"
         return replace(photo, notes=(*photo.notes, f"{note}; give --camera with the lens's distortion"))
     half = float(np.hypot(photo.width, photo.height)) / 2

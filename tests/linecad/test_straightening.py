@@ -105,8 +105,17 @@ def test_a_straight_photo_is_left_as_it_is(folder):
 
 @pytest.mark.parametrize(
     ("radial", "error", "is_straightened"),
-    [(0.006, 0.0005, False), (0.012, 0.0005, True), (0.03, 0.008, False), (-0.03, 0.007, True), (-0.26, 0.001, False)],
-    ids=["too little", "enough", "not sure", "sure", "too much"],
+    [
+        (0.006, 0.0005, False),
+        (0.012, 0.0005, True),
+        (0.03, 0.008, False),
+        (-0.03, 0.007, True),
+        (-0.19, 0.001, True),
+        (-0.21, 0.001, False),
+        (0.24, 0.001, True),
+        (0.26, 0.001, False),
+    ],  # fmt: skip
+    ids=["too little", "enough", "not sure", "sure", "wide", "fisheye", "large", "too large"],
 )
 def test_what_is_worth_straightening(monkeypatch, radial, error, is_straightened):
     bend = Bend(radial, error, (99.5, 74.5), 1.0)
