@@ -114,7 +114,7 @@ def test_a_straight_photo_is_left_as_it_is(folder):
         (-0.21, 0.001, False),
         (0.24, 0.001, True),
         (0.26, 0.001, False),
-    ],  # fmt: skip
+    ],
     ids=["too little", "enough", "not sure", "sure", "wide", "fisheye", "large", "too large"],
 )
 def test_what_is_worth_straightening(monkeypatch, radial, error, is_straightened):
