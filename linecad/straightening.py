@@ -25,8 +25,8 @@ LARGEST_WIDTH = 1600  # px, of the photo in which the bend is measured: enough f
 RADIAL_ERROR = 0.05  # usual size of the distortion at half the diagonal, a share
 LEAST_SIGNIFICANCE = 4.0  # standard errors
 LEAST_RADIAL = 0.01  # what bends less is left alone: real photos of lenses without distortion show up to 0.007
-# Beyond these the lens is a fisheye, which one coefficient does not describe. With a barrel of 0.15 and more the corners
-# of the photo have no place in a straight one; one of 0.2 is still found as it is, of 0.3 only 0.22 (CONTRIBUTING).
+# Beyond these the lens is a fisheye, which one coefficient does not describe. With a barrel from 0.15 on the corners of
+# the photo have no place in a straight one; one of 0.2 is still found as it is, of 0.3 only 0.22 (CONTRIBUTING).
 LARGEST_BARREL, LARGEST_PINCUSHION = 0.2, 0.25
 
 
