@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from linecad.geometry import central_camera, directions_to, rotation_about, vani
 from linecad.photo import Bend
 from linecad.scene import Camera, ManhattanFrame, Segments
 
+ROOT = Path(__file__).resolve().parents[2]
 WIDTH, HEIGHT, FOCAL_PX = 1200, 800, 1000.0
 LEVEL = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # world to camera, looking along y
 ROTATION = rotation_about(np.array([0.1, 0, 0])) @ LEVEL @ rotation_about(np.array([0, 0, 0.6]))
@@ -173,3 +175,24 @@ def test_a_few_lines_are_no_second_frame():
 
 def test_a_photo_all_of_whose_segments_run_along_the_axes_has_no_second_frame():
     assert second_frame(segments(along(ROTATION, (60, 60, 80))), CAMERA, ManhattanFrame(ROTATION, 0.001, 1.0)) is None
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        f"standard error of the focal length | above {100 * certainty.GOOD_FOCAL_ERROR:.0f} %, or the value is assumed "
+        f"| above {100 * certainty.POOR_FOCAL_ERROR:.0f} %",
+        f"the largest of the three | above {np.degrees(certainty.GOOD_TURN):.0f} degree "
+        f"| above {np.degrees(certainty.POOR_TURN):.0f} degrees",
+        f"segment length that runs along the axes | below {100 * certainty.GOOD_SHARE:.0f} % "
+        f"| below {100 * certainty.POOR_SHARE:.0f} %",
+        f"where vanishing points tell the focal length | below {certainty.ENOUGH_LINES} ",
+        f"whole lines along the second axis | below {certainty.ENOUGH_LINES_KNOWN} ",
+        f"turns of the axes off a right angle | above {np.degrees(certainty.LARGEST_OWN_TURN):.0f} degree",
+        f"roll | above {np.degrees(certainty.EVEN_ROLL):.0f} degrees",
+        f"the root of 1 + {certainty.FEW_LINES:.0f} / n for n whole lines",
+        f"if that is {100 * certainty.SECOND_FRAME_SHARE:.0f} % or more",
+    ],
+)
+def test_the_page_about_the_camera_tells_the_limits(row):
+    assert row in (ROOT / "docs" / "camera.md").read_text(encoding="utf-8")
