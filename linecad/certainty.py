@@ -193,9 +193,12 @@ def _quality(
     fewest, middle = np.sort(lines)[:2]
     upright = np.abs(frame.rotation[1])
     tilt = float(np.arctan2(upright[:2].max(), upright[2]))
+    of_focal = focal is not None and camera.source != "exif" and fewest < ENOUGH_LINES
+    of_axes = middle < ENOUGH_LINES_KNOWN
+    why = f", as few lines ({middle if of_axes else fewest}) run along one of them" if of_focal or of_axes else ""
     poor = [
         (frame.explained < POOR_SHARE, f"only {frame.explained:.0%} of the segment length runs along the three axes"),
-        (turn > POOR_TURN, f"the axes are known to {np.degrees(turn):.0f} degrees only"),
+        (turn > POOR_TURN, f"the axes are known to {np.degrees(turn):.0f} degrees only{why}"),
         (focal is not None and focal > POOR_FOCAL_ERROR, "the photo does not tell its focal length, which is assumed"),
     ]
     doubtful = [
@@ -203,12 +206,11 @@ def _quality(
         (doubts.is_cropped, "the photo may be cropped, so that its principal point lies off the middle"),
         (camera.source == "default", "the focal length is assumed"),
         (doubts.other is not None, "another camera explains the segments almost as well"),
+        (of_focal, f"few lines ({fewest}) run along one of the three axes, from which the focal length follows"),
+        (of_axes, f"few lines ({middle}) run along the second of the three axes"),
         (focal is not None and focal > GOOD_FOCAL_ERROR, f"the focal length is known to {focal or 0:.0%} only"),
-        (focal is not None and camera.source != "exif" and fewest < ENOUGH_LINES,
-         f"few lines ({fewest}) run along one of the three axes, from which the focal length follows"),
         (focal is not None and camera.source != "exif" and lines.sum() < ENOUGH_TOGETHER,
          f"few lines ({lines.sum()}) run along the three axes together, from which the focal length follows"),
-        (middle < ENOUGH_LINES_KNOWN, f"few lines ({middle}) run along the second of the three axes"),
         (frame.explained < GOOD_SHARE, f"only {frame.explained:.0%} of the segment length runs along the three axes"),
         (turn > GOOD_TURN, f"the axes are known to {np.degrees(turn):.1f} degrees only"),
         (fit.turn > LARGEST_OWN_TURN, f"the axes are not square: they lie {np.degrees(fit.turn):.1f} degrees off"),

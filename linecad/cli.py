@@ -613,12 +613,19 @@ def _photo_to_edit(parsed: argparse.Namespace) -> "tuple[Photo, Path]":
 
     scene = read_scene(parsed.input)
     parsed.scene = parsed.input
-    photo = _photo_of(scene, parsed)
     path = parsed.photo or parsed.input.parent / Path(scene.photo).name
-    if photo is None:
+    if parsed.focal or (parsed.camera is None and scene.camera.source not in ("file", "focal option")):
+        # What was estimated from the photo is estimated again, so that its standard errors are known.
+        if not path.is_file():
+            raise LinecadError(f"{path} is not there, the photo of {parsed.input}; name it with --photo")
+        photo = open_photo(path, None, parsed.focal)
+        _check_size_of(photo, path, scene)
+        return photo, path
+    found = _photo_of(scene, parsed)
+    if found is None:
         raise LinecadError(f"{path} is not there, the photo of {parsed.input}; name it with --photo")
     # Without a calibration the pixels are those of the file, so the scene's own camera is theirs.
-    return (photo if parsed.camera else replace(photo, camera=scene.camera)), path
+    return (found if parsed.camera else replace(found, camera=scene.camera)), path
 
 
 def _evaluate(parsed: argparse.Namespace) -> int:
@@ -751,16 +758,20 @@ def _photo_of(scene: "Scene", parsed: argparse.Namespace) -> "Photo | None":
     if resampled and parsed.camera is None:
         raise LinecadError(f"{scene.photo} was straightened by its calibration; give that with --camera")
     photo = read_photo(path, parsed.camera, None if parsed.camera else scene.camera.focal)
-    if (photo.width, photo.height) != (scene.camera.width, scene.camera.height):
-        raise LinecadError(
-            f"{path} has {photo.width} x {photo.height} px, the scene's photo {scene.camera.width} x "
-            f"{scene.camera.height}; name the right one with --photo"
-        )
+    _check_size_of(photo, path, scene)
     if photo.camera is not None and parsed.camera is not None:
         same = abs(photo.camera.matrix - scene.camera.matrix).max() <= SAME_CAMERA * scene.camera.focal
         if not same or photo.camera.distortion != scene.camera.distortion:
             raise LinecadError(f"{parsed.camera} is not the calibration that the scene was made with; give that one")
     return photo
+
+
+def _check_size_of(photo: "Photo", path: Path, scene: "Scene") -> None:
+    if (photo.width, photo.height) != (scene.camera.width, scene.camera.height):
+        raise LinecadError(
+            f"{path} has {photo.width} x {photo.height} px, the scene's photo {scene.camera.width} x "
+            f"{scene.camera.height}; name the right one with --photo"
+        )
 
 
 def _check_outputs(outputs: list[Path], inputs: list[Path | None], options: list[str]) -> "dict[str, Value]":

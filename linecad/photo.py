@@ -1,6 +1,6 @@
 """A photo read from a file: upright, straightened pixels and what is known of the camera that took it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.calibration import Calibration, check_focal, read_calibration, undistort_photo
+from linecad.calibration import DISTORTION_LENGTHS, Calibration, check_focal, read_calibration, undistort_photo
 from linecad.decoding import Decoded, decode_image
 from linecad.errors import CameraError
 from linecad.exif import read_tags
@@ -21,6 +21,7 @@ from linecad.scene import Camera, CameraSource
 
 OUTSIDE_NOTED = 0.005  # share of the undistorted photo that lies outside the old one; less is not worth a note
 OUTSIDE_REFUSED = 0.5
+TURNED_NOTE = "the photo was turned by its EXIF orientation; the camera file is taken to be for the turned photo"
 
 
 @dataclass(frozen=True)
@@ -87,7 +88,9 @@ def read_photo(path: Path, camera_file: Path | None = None, focal: float | None 
     history = find_history(tags, width, height, decoded.turned)
     if calibration is not None:
         _check_belongs(calibration, f"{camera_file}", decoded, f"{path}")
-        return _calibrated(path.name, decoded, calibration, f"{camera_file}", history.framing)
+        photo = _calibrated(path.name, decoded, calibration, f"{camera_file}", "as the camera file says")
+        notes = (TURNED_NOTE, *photo.notes) if decoded.turned else photo.notes
+        return replace(photo, framing=history.framing, notes=notes)
     if focal is not None:
         check_focal(focal, width, height, "the focal length")
         given = _centred_camera(width, height, focal, "focal option")
@@ -101,13 +104,19 @@ def read_photo(path: Path, camera_file: Path | None = None, focal: float | None 
 def read_photo_of(path: Path, camera: Camera) -> Photo:
     """Read a photo again with the camera that a scene has, as `linecad.straightening.open_photo` made it at first.
 
-    Raises PhotoError when the file is no photo that linecad takes, and CameraError when it has another size.
+    The camera stays as it is, with its source and its distortion. Raises PhotoError when the file is no photo that
+    linecad takes, and CameraError when it has another size or the distortion is not OpenCV's.
     """
     path = Path(path)
+    if len(camera.distortion) not in DISTORTION_LENGTHS:
+        raise CameraError(
+            f"the camera of the scene has {len(camera.distortion)} coefficients of distortion, expected "
+            f"{', '.join(map(str, DISTORTION_LENGTHS))}; make the scene again, or give the calibration with --camera"
+        )
     decoded = decode_image(path)
     calibration = Calibration(camera.width, camera.height, camera.matrix, camera.distortion)
     _check_belongs(calibration, "the scene", decoded, f"{path}")
-    return _calibrated(path.name, decoded, calibration, "the scene", "unknown")
+    return replace(_calibrated(path.name, decoded, calibration, "the scene", "as in the scene"), camera=camera)
 
 
 def _doubts(history: History, hint: FocalHint | None = None) -> tuple[str, ...]:
@@ -137,18 +146,14 @@ def _check_belongs(calibration: Calibration, camera_name: str, decoded: Decoded,
     raise CameraError(f"{found}; give the calibration of this photo at this size")
 
 
-def _calibrated(name: str, decoded: Decoded, calibration: Calibration, camera_name: str, framing: Framing) -> Photo:
+def _calibrated(name: str, decoded: Decoded, calibration: Calibration, camera_name: str, why: str) -> Photo:
     """The photo with the distortion of its calibration removed and its pixels made square."""
     pixels, notes = decoded.pixels, list(decoded.notes)
-    if decoded.turned:
-        notes.append(
-            "the photo was turned by its EXIF orientation; the camera file is taken to be for the turned photo"
-        )
     if not calibration.is_pinhole:
         pixels, outside = undistort_photo(pixels, calibration)
         done = ["lens distortion removed"] if calibration.distortion else []
         done += [] if calibration.has_square_pixels else ["pixels made square"]
-        notes.append(" and ".join(done) + ", as the camera file says")
+        notes.append(" and ".join(done) + f", {why}")
         if outside > OUTSIDE_REFUSED:
             raise CameraError(
                 f"after the distortion in {camera_name} is removed, {outside:.0%} of the picture lies outside {name}; "
@@ -161,4 +166,4 @@ def _calibrated(name: str, decoded: Decoded, calibration: Calibration, camera_na
     camera = Camera(
         calibration.width, calibration.height, calibration.square_matrix, "file", distortion=calibration.distortion
     )
-    return Photo(name, pixels, camera, tuple(notes), framing=framing)
+    return Photo(name, pixels, camera, tuple(notes))

@@ -27,7 +27,9 @@ LEAST_SIGNIFICANCE = 4.0  # standard errors
 LEAST_RADIAL = 0.01  # what bends less is left alone: real photos of lenses without distortion show up to 0.007
 LEAST_LINES = 8  # whole ones along the second axis; with less, a wrong frame may be bent to fit
 HIGHER_ORDERS = 0.02  # of the distortion: what one coefficient cannot tell of a real lens
-LARGEST_RADIAL = 0.25  # beyond it the lens is a fisheye, which one coefficient does not describe
+# Beyond these the lens is a fisheye, which one coefficient does not describe. With a barrel from 0.15 on the corners of
+# the photo have no place in a straight one; one of 0.2 is still found as it is, of 0.3 only 0.22 (CONTRIBUTING).
+LARGEST_BARREL, LARGEST_PINCUSHION = 0.2, 0.25
 
 
 def open_photo(path: Path, camera_file: Path | None = None, focal: float | None = None) -> Photo:
@@ -46,7 +48,7 @@ def straighten(photo: Photo) -> Photo:
     if bend is None or abs(bend.radial) < max(LEAST_SIGNIFICANCE * bend.radial_error, LEAST_RADIAL):
         return photo
     amount = f"{abs(bend.radial):.1%} (standard error {bend.radial_error:.1%}) at the corners"
-    if abs(bend.radial) > LARGEST_RADIAL:
+    if not -LARGEST_BARREL <= bend.radial <= LARGEST_PINCUSHION:
         note = f"straight lines are bent by about {amount}: too much for one coefficient, so nothing was done about it"
         return replace(photo, notes=(*photo.notes, f"{note}; give --camera with the lens's distortion"))
     half = float(np.hypot(photo.width, photo.height)) / 2

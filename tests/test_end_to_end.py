@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import trimesh
 
+from linecad.calibrating import calibrate
 from linecad.calibration import undistort_points
 from linecad.cameratext import summary
 from linecad.evaluation.depth import score_depth
@@ -20,7 +21,6 @@ from linecad.photo import read_photo
 from linecad.pipeline import reconstruct
 from linecad.scenefile import read_scene
 from linecad.segments import find_segments
-from linecad.vanishing import find_frame
 from solver.problem import SolveOptions
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -162,7 +162,8 @@ def test_frames_of_york_urban(shared_data, name):
     file = shared_data / "york_urban" / f"{name}.json"
     truth = json.loads(file.read_text())
     K = np.array(truth["K"])
-    frame = find_frame(find_segments(read_photo(file.with_suffix(".jpg"), file).grey), K)
+    photo = read_photo(file.with_suffix(".jpg"), file)
+    frame = calibrate(photo, find_segments(photo.grey)).frame
     error, _ = rotation_error(frame.rotation, np.array(truth["R_cam_from_manhattan"]))
     assert np.degrees(error) < YORK_URBAN[name]
     ends = np.array([[line["p"], line["q"]] for line in truth["lines"]])

@@ -18,12 +18,16 @@ from PIL import Image
 
 from exporters.formats import FORMATS
 from linecad import __version__
+from linecad.calibrating import calibrate
 from linecad.cli import main
+from linecad.scenefile import read_scene
+from linecad.segments import find_segments
 from solver.problem import BACKENDS, FORMULATIONS
 
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 ROOM = SAMPLES / "room.jpg"
+COURTYARD = SAMPLES / "courtyard.jpg"
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
 
 
@@ -421,6 +425,70 @@ def test_textures_find_the_photo_beside_the_scene_or_by_its_name(folder, scene_f
     assert len(pictures[0]) == 1
 
 
+@pytest.fixture
+def edited(monkeypatch):
+    """A function that gives the camera and the quality with which `linecad edit` would begin."""
+
+    def begin(*arguments):
+        seen = []
+        monkeypatch.setattr("linecad.editing.run.edit", lambda photo, *_: seen.append(photo))
+        assert main(["edit", *arguments, "--no-browser", "--quiet"]) == 0
+        found = calibrate(seen[0], find_segments(seen[0].grey))
+        return found.camera, found.certainty
+
+    return begin
+
+
+@pytest.mark.parametrize(
+    ("photo", "options", "source"),
+    [(ROOM, [], "exif"), (COURTYARD, [], "vanishing points"), (COURTYARD, ["--focal", "1040"], "focal option")],
+)
+def test_the_page_of_a_scene_begins_with_the_camera_of_the_scene(folder, edited, photo, options, source):
+    """It once forgot what EXIF had said, and by how much the photo had been straightened."""
+    shutil.copy(photo, folder)
+    assert main(["convert", photo.name, "-o", "scene.json", "--fast", "--quiet", *options]) == 0
+    scene = read_scene(folder / "scene.json")
+    camera, certainty = edited("scene.json")
+    assert camera.source == scene.camera.source == source
+    assert camera.matrix == pytest.approx(scene.camera.matrix)
+    assert camera.distortion == pytest.approx(scene.camera.distortion)
+    assert bool(camera.distortion) == (photo is COURTYARD)
+    assert certainty.quality == scene.certainty.quality
+    assert certainty.focal == pytest.approx(scene.certainty.focal)
+
+
+def test_the_page_of_a_scene_takes_another_focal_length(folder, edited, scene_file):
+    shutil.copy(scene_file, folder / "scene.json")
+    camera, _ = edited("scene.json", "--photo", str(ROOM), "--focal", "950")
+    assert (camera.source, camera.focal) == ("focal option", 950.0)
+
+
+def test_the_page_of_a_scene_refuses_a_photo_of_another_size(fails, folder, scene_file):
+    shutil.copy(scene_file, folder / "scene.json")
+    Image.new("RGB", (400, 300)).save(folder / "other.png")
+    assert "has 400 x 300 px, the scene's photo 1600 x 1067" in fails("edit", "scene.json", "--photo", "other.png")
+
+
+def test_a_photo_that_its_own_lines_straightened_is_straightened_again_for_its_textures(folder, capsys):
+    """The courtyard without its camera file: the scene alone says by how much."""
+    shutil.copy(COURTYARD, folder / "courtyard.jpg")
+    assert main(["convert", "courtyard.jpg", "-o", "a.json", "-o", "at-once.obj", "--fast", "--quiet"]) == 0
+    assert main(["export", "a.json", "-o", "later.obj", "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+    scene = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert scene["camera"]["source"] == "vanishing points"
+    assert len(scene["camera"]["distortion"]) == 4
+    scene["camera"]["distortion"] = []
+    (folder / "unbent.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert main(["export", "unbent.json", "-o", "bent.obj", "--quiet"]) == 0
+    at_once, later, bent = (
+        np.asarray(Image.open(next((folder / f"{name}.obj.textures").iterdir())), int)
+        for name in ("at-once", "later", "bent")
+    )
+    assert np.abs(at_once - later).max() <= 2
+    assert np.abs(at_once - bent).mean() > 2
+
+
 @pytest.mark.usefixtures("folder")
 def test_a_wrong_photo_is_an_error_where_it_was_named_and_a_line_where_it_was_found(scene_file, folder, capsys):
     Image.new("RGB", (400, 300)).save(folder / "other.png")
@@ -471,7 +539,10 @@ WITH_A_SMALL_DISK = """
 import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+from linecad.calibrating import calibrate
 from linecad.cli import main
+from linecad.scenefile import read_scene
+from linecad.segments import find_segments
 from solver.problem import BACKENDS, FORMULATIONS
 sys.exit(main(sys.argv[1:]))
 """

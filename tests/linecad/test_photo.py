@@ -11,7 +11,8 @@ from PIL.ExifTags import IFD, Base
 from PIL.TiffImagePlugin import IFDRational
 
 from linecad.errors import CameraError, PhotoError
-from linecad.photo import Photo, read_photo
+from linecad.photo import Photo, read_photo, read_photo_of
+from linecad.scene import Camera
 
 WIDTH, HEIGHT = 120, 80
 DIAGONAL = float(np.hypot(WIDTH, HEIGHT))
@@ -245,3 +246,34 @@ def test_ground_truth_files_serve_as_camera_files(shared_data: Path, name: str, 
     assert photo.camera is not None
     assert photo.camera.focal == truth["K"][0][0]
     assert photo.notes == notes
+
+
+def scene_camera(width: int = WIDTH, height: int = HEIGHT, distortion: tuple[float, ...] = (-0.1, 0, 0, 0)) -> Camera:
+    """As a scene has it whose photo was straightened by its own lines."""
+    matrix = np.array([[150.0, 0, 61], [0, 150, 37], [0, 0, 1]])
+    return Camera(width, height, matrix, "vanishing points", distortion)
+
+
+def test_a_photo_read_again_for_its_scene_has_the_camera_of_the_scene(tmp_path: Path) -> None:
+    camera = scene_camera()
+    again = read_photo_of(save(tmp_path, FocalLengthIn35mmFilm=50), camera)
+    told = read_photo(save(tmp_path), camera_file(tmp_path, distortion=[-0.1, 0, 0, 0]))
+    np.testing.assert_array_equal(again.pixels, told.pixels)
+    assert again.camera is camera
+    assert again.notes == ("lens distortion removed, as in the scene",)
+
+
+def test_a_turned_photo_read_again_is_no_doubt(tmp_path: Path) -> None:
+    again = read_photo_of(save(tmp_path, orientation=6), scene_camera(HEIGHT, WIDTH))
+    assert again.pixels.shape == (WIDTH, HEIGHT, 3)
+    assert not any("turned" in note for note in again.notes)
+
+
+def test_a_photo_of_another_size_is_not_that_of_the_scene(tmp_path: Path) -> None:
+    with pytest.raises(CameraError, match=r"the scene is for 240 x 160 px.*120 x 80 px"):
+        read_photo_of(save(tmp_path), scene_camera(240, 160))
+
+
+def test_distortion_of_a_scene_that_nobody_can_undo_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(CameraError, match="3 coefficients"):
+        read_photo_of(save(tmp_path), scene_camera(distortion=(0.1, 0.2, 0.3)))

@@ -12,6 +12,7 @@ from linecad.segments import (
     detector_scale,
     find_faint_segments,
     find_segments,
+    fit_whole,
     group_segments,
     label_angle,
     label_segments,
@@ -164,3 +165,59 @@ def test_fragments_on_both_sides_of_their_vanishing_point_stay_apart():
     ends = [[[1700.0, 1080], [1900, 1080]], [[1940.0, 1080], [2100, 1080]]]
     grouped = group_segments(Segments(ends, [1, 1]), camera, frame, 125.0)
     assert len(grouped) == 2
+
+
+def pieces_of(ends, count, gap, noise, seed=0):
+    """A segment (2, 2) in so many pieces, with gaps in px, whose ends are off by `noise` px."""
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    at = ends[0] + np.linspace(0, 1, count + 1)[:, None] * (ends[1] - ends[0])
+    pieces = np.stack([at[:-1], at[1:] - gap * along], axis=1)
+    return pieces + np.random.default_rng(seed).normal(0, noise, pieces.shape)
+
+
+def test_a_whole_segment_keeps_its_own_direction(made):
+    """It is not turned to the vanishing point by which its fragments were gathered."""
+    point = vanishing_points(made.camera.matrix, made.frame.rotation)[0]
+    own = np.array([[200.0, 300.0], [700.0, 300.0 + 500 * np.tan(np.radians(0.4))]])
+    towards = point[:2] - own.mean(axis=0) * point[2]
+    angle = np.arctan2(towards[1], towards[0])
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    own = own.mean(axis=0) + 0.3 * (own - own.mean(axis=0)) @ turn  # not quite in the direction to the point
+    whole = fit_whole(pieces_of(own, 4, 2.0, 0.0), point, made.camera.width)
+    assert len(whole) == 1
+    assert np.degrees(np.arcsin(angles_to(whole, point[None])[0, 0])) == pytest.approx(0.4, abs=0.02)
+    assert min(np.abs(whole[0] - one).max() for one in (own, own[::-1])) < 2.1
+
+
+def test_a_whole_segment_is_better_than_its_fragments(made):
+    """Its direction is off by less than half of what theirs are off by."""
+    point = vanishing_points(made.camera.matrix, made.frame.rotation)[0]
+    ends = made.pixels[np.flatnonzero(made.axis == 0)[0]]
+    fragments, together = [], []
+    for seed in range(20):
+        pieces = pieces_of(ends, 4, 2.0, 0.3, seed)
+        whole = fit_whole(pieces, point, made.camera.width)
+        assert len(whole) == 1
+        fragments.append(angles_to(pieces, point[None])[0])
+        together.append(angles_to(whole, point[None])[0])
+    assert np.sqrt(np.mean(np.square(together))) < 0.5 * np.sqrt(np.mean(np.square(fragments)))
+
+
+def test_a_single_fragment_is_whole(made):
+    points = vanishing_points(made.camera.matrix, made.frame.rotation)
+    for axis in range(3):
+        own = made.noisy(0.3).ends[np.flatnonzero(made.axis == axis)[:1]]
+        whole = fit_whole(own, points[axis], made.camera.width)
+        assert min(np.abs(whole[0] - one).max() for one in (own[0], own[0, ::-1])) < 1e-9
+
+
+def test_no_fragments_are_no_segments(made):
+    point = vanishing_points(made.camera.matrix, made.frame.rotation)[0]
+    assert fit_whole(np.zeros((0, 2, 2)), point, made.camera.width).shape == (0, 2, 2)
+
+
+@pytest.mark.parametrize(("share", "whole"), [(0.8, 1), (1.3, 2)])
+def test_whole_segments_end_at_long_gaps(made, fragments, share, whole):
+    gap = share * GROUP_ALONG * made.camera.width / REFERENCE_WIDTH
+    point = vanishing_points(made.camera.matrix, made.frame.rotation)[0]
+    assert len(fit_whole(fragments(gap).ends, point, made.camera.width)) == whole
