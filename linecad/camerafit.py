@@ -198,8 +198,11 @@ def _angles(ends: Float, view: View, width: int, height: int, free: "np.ndarray"
 
     changes = [by(np.cross(turn, view.axes) @ K.T) for turn in np.eye(3)]
     for parameter in free[3:]:
-        if parameter == RADIAL:
-            there = _against(ends, replace(view, radial=view.radial + RADIAL_STEP), width, height)[0]
+        if parameter == RADIAL or (parameter != FOCAL and RADIAL in free):
+            # The center of the distortion moves with the principal point.
+            step = np.zeros(PARAMETERS)
+            step[parameter] = RADIAL_STEP
+            there = _against(ends, view.moved(step, size), width, height)[0]
             changes.append((there - sine) / RADIAL_STEP)
             continue
         change = np.zeros((3, 3))
