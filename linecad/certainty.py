@@ -53,6 +53,7 @@ class Doubts:
     """What was noticed while a camera was fitted."""
 
     is_cropped: bool = False  # or may be: the principal point was searched far from the middle
+    is_fisheye: bool = False  # lines are bent by more than could be taken out
     is_contradicted: bool = False  # EXIF and vanishing points do not agree
     other: "Other | None" = None  # camera that explains the segments almost as well
     notes: list[str] = field(default_factory=list)
@@ -202,6 +203,7 @@ def _quality(
         (focal is not None and focal > POOR_FOCAL_ERROR, "the photo does not tell its focal length, which is assumed"),
     ]
     doubtful = [
+        (doubts.is_fisheye, "the lens bends straight lines by more than could be taken out"),
         (doubts.is_contradicted, "EXIF and the vanishing points contradict each other about the focal length"),
         (doubts.is_cropped, "the photo may be cropped, so that its principal point lies off the middle"),
         (camera.source == "default", "the focal length is assumed"),

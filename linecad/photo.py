@@ -45,6 +45,7 @@ class Photo:
     hint: FocalHint | None = None  # of EXIF; None where it tells nothing or the camera was given
     framing: Framing = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
     bend: Bend | None = None  # the distortion that was taken out because the photo's own lines showed it
+    is_fisheye: bool = False  # its own lines showed more distortion than one coefficient can take out
 
     def __post_init__(self) -> None:
         if self.pixels.dtype != np.uint8 or self.pixels.ndim != 3 or self.pixels.shape[2] != 3:

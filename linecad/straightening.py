@@ -50,7 +50,8 @@ def straighten(photo: Photo) -> Photo:
     amount = f"{abs(bend.radial):.1%} (standard error {bend.radial_error:.1%}) at the corners"
     if not -LARGEST_BARREL <= bend.radial <= LARGEST_PINCUSHION:
         note = f"straight lines are bent by about {amount}: too much for one coefficient, so nothing was done about it"
-        return replace(photo, notes=(*photo.notes, f"{note}; give --camera with the lens's distortion"))
+        notes = (*photo.notes, f"{note}; give --camera with the lens's distortion")
+        return replace(photo, notes=notes, is_fisheye=True)
     half = float(np.hypot(photo.width, photo.height)) / 2
     # Any focal length does, as the coefficient is scaled with it.
     matrix = central_camera(half, photo.width, photo.height)

@@ -78,6 +78,7 @@ def test_what_speaks_against_nothing_is_good():
         ("poor", "the axes are known to 5 degrees only", {"turn": 5.0}),
         ("poor", "does not tell its focal length", {"focal": 0.5}),
         ("doubtful", "EXIF and the vanishing points contradict", {"doubts": Doubts(is_contradicted=True)}),
+        ("doubtful", "bends straight lines by more than", {"doubts": Doubts(is_fisheye=True)}),
         ("doubtful", "may be cropped", {"doubts": Doubts(is_cropped=True)}),
         ("doubtful", "the focal length is assumed", {"source": "default"}),
         ("doubtful", "the focal length is known to 12% only", {"focal": 0.12}),

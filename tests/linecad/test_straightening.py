@@ -9,10 +9,12 @@ import pytest
 from PIL import Image
 
 from linecad import straightening
+from linecad.calibrating import calibrate
 from linecad.camerafile import write_camera
 from linecad.camerareport import find_camera
 from linecad.photo import Bend, Photo, read_photo, read_photo_of
 from linecad.scene import Camera
+from linecad.segments import find_segments
 from linecad.straightening import find_bend, open_photo, straighten
 
 RADIAL = {"barrel": -0.05, "pincushion": 0.03}  # at half the diagonal
@@ -151,6 +153,8 @@ def test_a_fisheye_is_left_as_it_is_with_a_word(folder):
     found = straighten(photo)
     assert np.shares_memory(found.pixels, photo.pixels)
     assert found.bend is None
+    assert found.is_fisheye
+    assert calibrate(found, find_segments(found.grey)).certainty.quality != "good"
     assert "too much for one coefficient" in found.notes[-1]
     assert "--camera" in found.notes[-1]
 
