@@ -5,9 +5,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from linecad.calibrating import Calibrated, calibrate
+from linecad.calibrating import Calibrated
 from linecad.errors import LinecadError
 from linecad.evaluation.frames import rotation_error
+from linecad.finding import find_calibration
 from linecad.geometry import angles_to, vanishing_points
 from linecad.photo import Photo
 from linecad.scene import Float, Segments
@@ -93,7 +94,7 @@ def judge(
         straight = straighten(photo)
         raw: Segments = find_segments(straight.grey)
         began = time.perf_counter()
-        found = calibrate(straight, raw)
+        found = find_calibration(straight, raw)
         seconds = time.perf_counter() - began
     except LinecadError as error:
         return replace(verdict, error=str(error), seconds=seconds)

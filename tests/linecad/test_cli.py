@@ -18,8 +18,8 @@ from PIL import Image
 
 from exporters.formats import FORMATS
 from linecad import __version__
-from linecad.calibrating import calibrate
 from linecad.cli import main
+from linecad.finding import find_calibration
 from linecad.scenefile import read_scene
 from linecad.segments import find_segments
 from solver.problem import BACKENDS, FORMULATIONS
@@ -433,7 +433,7 @@ def edited(monkeypatch):
         seen = []
         monkeypatch.setattr("linecad.editing.run.edit", lambda photo, *_: seen.append(photo))
         assert main(["edit", *arguments, "--no-browser", "--quiet"]) == 0
-        found = calibrate(seen[0], find_segments(seen[0].grey))
+        found = find_calibration(seen[0], find_segments(seen[0].grey))
         return found.camera, found.certainty
 
     return begin
@@ -539,10 +539,7 @@ WITH_A_SMALL_DISK = """
 import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
-from linecad.calibrating import calibrate
 from linecad.cli import main
-from linecad.scenefile import read_scene
-from linecad.segments import find_segments
 from solver.problem import BACKENDS, FORMULATIONS
 sys.exit(main(sys.argv[1:]))
 """
