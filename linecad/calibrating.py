@@ -57,7 +57,7 @@ class Calibrated:
     frame: ManhattanFrame
     certainty: Certainty
     notes: tuple[str, ...]  # those of the photo among them
-    prior: Prior | None = None  # what the camera was estimated from besides the segments; None where it was not
+    prior: Prior | None = None  # of a focal length from the vanishing points alone
     doubts: Doubts = field(default_factory=Doubts)
 
 
@@ -74,8 +74,8 @@ def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Cal
 def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segments) -> Calibrated:
     """The same from those segments alone that lie on `lines`, which a first calibration let meet in space.
 
-    What meets nothing is mostly no line of the scene. For a camera that was estimated: for one that was given, the
-    frame gets no better by it (CONTRIBUTING, 2026-11-21).
+    What meets nothing is mostly no line of the scene. For a focal length from the vanishing points alone: cameras that
+    were given, or that EXIF tells of, get no better by it (CONTRIBUTING, 2026-11-21).
     """
     if first.prior is None:
         return first
@@ -264,7 +264,7 @@ class _Finder:
         at_hint = self._at(central_camera(hint.focal, self.width, self.height), trusted)
         near = fit_view(self.ends, self.width, self.height, alone.view, trusted)
         fit, lines = self.whole(max(at_hint, near, key=lambda one: one.log_posterior), trusted)
-        return _Found(_widened(fit, wider), lines, "exif", doubts, prior=trusted)
+        return _Found(_widened(fit, wider), lines, "exif", doubts)
 
     def _at(self, K: Float, prior: Prior) -> Fit:
         """The most likely view near a camera matrix."""
