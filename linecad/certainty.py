@@ -10,10 +10,10 @@ from linecad.geometry import angles_to, plane_normals
 from linecad.photo import Bend
 from linecad.scene import Camera, Certainty, Float, Int, ManhattanFrame, Quality, Segments
 
-GOOD_FOCAL_ERROR = 0.05  # relative standard error up to which a focal length is good
+GOOD_FOCAL_ERROR = 0.03  # relative standard error up to which a focal length is good: real photos err twice as much
 POOR_FOCAL_ERROR = 0.25
 GOOD_TURN = np.radians(1.0)  # standard error of the rotation about an axis of the camera
-POOR_TURN = np.radians(3.0)
+POOR_TURN = np.radians(5.0)
 GOOD_SHARE = 0.5  # of the segment length that runs along the axes; below it other lines may have made the frame
 POOR_SHARE = 0.3
 # Whole lines along the axis that has fewest: with less, one cable or joint in the paving may have made that axis. The
@@ -32,6 +32,7 @@ OTHER_FOCAL = 0.1  # relative; cameras nearer than this and OTHER_TURN are one
 OTHER_TURN = np.radians(3.0)
 LINE_ANGLE = np.radians(1.0)  # between a whole line and its axis
 LINE_LENGTH = 0.02  # of the larger side, of a line that counts
+STRONG_BEND = 0.1  # of the radius at the corners; one coefficient describes more than this only roughly
 LARGEST_OWN_TURN = np.radians(1.0)  # by which the axes may lie off an orthogonal frame
 EVEN_ROLL = np.radians(40.0)  # beyond it two axes are almost equally upright
 SECOND_FRAME_SHARE = 0.08  # of the segment length that a second frame must explain
@@ -115,7 +116,7 @@ def certainty_of(
     center = None if is_given else (float(error[CENTER_X] * size), float(error[CENTER_Y] * size))
     half = np.hypot(camera.width, camera.height) / 2
     second = second_frame(raw, camera, frame)
-    quality, reason = _quality(camera, frame, fit, error, lines, focal, doubts, second)
+    quality, reason = _quality(camera, frame, fit, error, lines, focal, doubts, second, bend)
     certainty = Certainty(
         rotation=error[TURNS],
         focal=None if focal is None else focal * camera.focal,
@@ -187,6 +188,7 @@ def _quality(
     focal: float | None,
     doubts: Doubts,
     second: tuple[float, float] | None,
+    bend: Bend | None,
 ) -> tuple[Quality, str]:
     """The word, and the weightiest reason for it."""
     turn = float(error[TURNS].max())
@@ -210,6 +212,8 @@ def _quality(
          f"few lines ({lines.sum()}) run along the three axes together, from which the focal length follows"),
         (middle < ENOUGH_LINES_KNOWN, f"few lines ({middle}) run along the second of the three axes"),
         (frame.explained < GOOD_SHARE, f"only {frame.explained:.0%} of the segment length runs along the three axes"),
+        (bend is not None and abs(bend.radial) > STRONG_BEND,
+         "the lens bends lines by so much that one coefficient describes it only roughly"),
         (turn > GOOD_TURN, f"the axes are known to {np.degrees(turn):.1f} degrees only"),
         (fit.turn > LARGEST_OWN_TURN, f"the axes are not square: they lie {np.degrees(fit.turn):.1f} degrees off"),
         (tilt > EVEN_ROLL, "the photo is turned so far that another axis may be the upright one"),
