@@ -10,7 +10,8 @@ from linecad.geometry import angles_to, plane_normals
 from linecad.photo import Bend
 from linecad.scene import Camera, Certainty, Float, Int, ManhattanFrame, Quality, Segments
 
-GOOD_FOCAL_ERROR = 0.03  # relative standard error up to which a focal length is good: real photos err twice as much
+GOOD_FOCAL_ERROR = 0.05  # relative standard error up to which a focal length is good
+GOOD_FOCAL_ERROR_ALONE = 0.03  # the same from vanishing points alone: on real photos they err twice as much
 POOR_FOCAL_ERROR = 0.25
 GOOD_TURN = np.radians(1.0)  # standard error of the rotation about an axis of the camera
 POOR_TURN = np.radians(5.0)
@@ -73,6 +74,11 @@ def widening(lines: Int) -> float:
     return float(np.sqrt(1 + FEW_LINES / max(float(lines.min()), 0.5)))
 
 
+def _k1_error(bend: Bend, focal: float, focal_error: float) -> float:
+    """Standard error of OpenCV's k1, for a focal length over half the diagonal with its relative error."""
+    return float(np.hypot(bend.radial_error, 2 * bend.radial * focal_error) * focal**2)
+
+
 def wrong_axis(lines: int) -> float:
     """By how much the chance of a wrong axis counts, from 1, where it has so many whole lines."""
     return float(np.exp(-lines / WRONG_AXIS_LINES))
@@ -121,7 +127,7 @@ def certainty_of(
         rotation=error[TURNS],
         focal=None if focal is None else focal * camera.focal,
         center=center,
-        radial=None if bend is None else float(bend.radial_error * (camera.focal / half) ** 2),
+        radial=None if bend is None else _k1_error(bend, camera.focal / half, focal or 0.0),
         quality=quality,
         reason=reason,
     )
@@ -193,6 +199,7 @@ def _quality(
     """The word, and the weightiest reason for it."""
     turn = float(error[TURNS].max())
     fewest, middle = np.sort(lines)[:2]
+    largest = GOOD_FOCAL_ERROR if camera.source == "exif" else GOOD_FOCAL_ERROR_ALONE
     upright = np.abs(frame.rotation[1])
     tilt = float(np.arctan2(upright[:2].max(), upright[2]))
     poor = [
@@ -205,7 +212,7 @@ def _quality(
         (doubts.is_cropped, "the photo may be cropped, so that its principal point lies off the middle"),
         (camera.source == "default", "the focal length is assumed"),
         (doubts.other is not None, "another camera explains the segments almost as well"),
-        (focal is not None and focal > GOOD_FOCAL_ERROR, f"the focal length is known to {focal or 0:.0%} only"),
+        (focal is not None and focal > largest, f"the focal length is known to {focal or 0:.0%} only"),
         (focal is not None and camera.source != "exif" and fewest < ENOUGH_LINES,
          f"few lines ({fewest}) run along one of the three axes, from which the focal length follows"),
         (focal is not None and camera.source != "exif" and lines.sum() < ENOUGH_TOGETHER,

@@ -60,6 +60,20 @@ def test_a_strong_bend_is_not_called_good(radial, word):
     assert found.radial is not None
 
 
+def test_k1_is_no_surer_than_the_focal_length_allows():
+    bend = Bend(-0.05, 0.001, (799.5, 599.5), 5.0)
+    k1 = bend.radial * (900 / 1000) ** 2
+    assert certainty(bend=bend).radial > abs(k1) * 2 * 0.01
+    assert certainty(bend=bend, source="focal option").radial == pytest.approx(0.001 * 0.9**2)
+
+
+def test_vanishing_points_alone_need_a_smaller_error_than_exif():
+    fit = fit_of()
+    fit.covariance[FOCAL, FOCAL] = 0.04**2
+    assert certainty(fit=fit).quality == "doubtful"
+    assert certainty(fit=fit, source="exif").quality == "good"
+
+
 def test_few_lines_in_all_are_said():
     found = certainty([30, 30, 30])
     assert found.quality == "doubtful"
