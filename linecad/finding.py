@@ -168,7 +168,7 @@ def name_lines(
 def find_calibration(
     photo: Photo, raw: Segments, on_stage: StageReport = silent, drawn: SetFrame | None = None
 ) -> Calibrated:
-    """Camera and frame of a photo with segments `raw`, fitted again to lines that meet in space where nothing told them.
+    """Camera and frame of a photo with segments `raw`; from vanishing points alone, fitted again to lines that meet.
 
     Raises ReconstructionError when the photo has no Manhattan frame.
     """

@@ -10,7 +10,7 @@ from linecad.camerafit import CENTER_X, CENTER_Y, FOCAL, PARAMETERS, TURNS, Fit,
 from linecad.certainty import OTHER_GAIN, Doubts, Other, certainty_of, other_camera
 from linecad.geometry import rotation_about
 from linecad.hints import FocalHint
-from linecad.photo import Photo
+from linecad.photo import Bend, Photo
 from linecad.scene import Camera, ManhattanFrame, Segments
 
 MANY = np.array([60, 60, 60])
@@ -25,13 +25,13 @@ def fit_of(focal=900.0, turn=0.0, posterior=0.0):
     return Fit(view, covariance, posterior, np.full(4, 0.25), axes, 0.004, np.zeros((4, 0)))
 
 
-def certainty(lines=MANY, source="vanishing points", doubts=None, fit=None):
+def certainty(lines=MANY, source="vanishing points", doubts=None, fit=None, bend=None):
     """The certainty of a frame that explains nearly everything."""
     fit = fit or fit_of()
     camera = Camera(1600, 1200, fit.view.matrix, source)
     frame = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]]), 0.001, 0.9)
     raw = Segments(np.array([[[0.0, 0.0], [100.0, 0.0]]] * 12), np.full(12, -1))
-    return certainty_of(camera, frame, fit, np.asarray(lines), raw, doubts or Doubts(), None)[0]
+    return certainty_of(camera, frame, fit, np.asarray(lines), raw, doubts or Doubts(), bend)[0]
 
 
 def test_many_lines_along_each_axis_are_good():
@@ -51,6 +51,27 @@ def test_with_a_given_camera_two_axes_are_enough():
     assert certainty([60, 60, 0], "file").quality == "good"
     assert certainty([60, 60, 0], "exif").quality == "good"
     assert certainty([60, 3, 0], "file").quality == "poor"
+
+
+@pytest.mark.parametrize(("radial", "word"), [(-0.02, "good"), (-0.13, "doubtful"), (0.13, "doubtful")])
+def test_a_strong_bend_is_not_called_good(radial, word):
+    found = certainty(bend=Bend(radial, 0.002, (799.5, 599.5), 5.0))
+    assert found.quality == word
+    assert found.radial is not None
+
+
+def test_k1_is_no_surer_than_the_focal_length_allows():
+    bend = Bend(-0.05, 0.001, (799.5, 599.5), 5.0)
+    k1 = bend.radial * (900 / 1000) ** 2
+    assert certainty(bend=bend).radial > abs(k1) * 2 * 0.01
+    assert certainty(bend=bend, source="focal option").radial == pytest.approx(0.001 * 0.9**2)
+
+
+def test_vanishing_points_alone_need_a_smaller_error_than_exif():
+    fit = fit_of()
+    fit.covariance[FOCAL, FOCAL] = 0.04**2
+    assert certainty(fit=fit).quality == "doubtful"
+    assert certainty(fit=fit, source="exif").quality == "good"
 
 
 def test_few_lines_in_all_are_said():
