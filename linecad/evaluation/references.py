@@ -13,8 +13,9 @@ from linecad.errors import DatasetError
 from linecad.evaluation.datasets import Case, read_json
 from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings
 from linecad.evaluation.marks import UNKNOWN_AXIS, MarkedCrossings, label_by_marks
-from linecad.photo import Photo, read_photo
+from linecad.photo import Photo, read_photo, read_photo_of
 from linecad.scene import AXES, Bool, Camera, Float, Int, LineGraph
+from linecad.straightening import open_photo
 from linecad.strictjson import JsonError, Node
 
 POINT_STEP = 40.0  # px between the points that are sampled on true edges
@@ -233,15 +234,18 @@ def _axes(node: Node) -> list[int]:
 def _labelled_photo(case: Case, camera: Node | None) -> Photo:
     """The photo with the camera that the labels name: a calibration beside them, a matrix, or none."""
     if camera is None or camera.value is None:
-        return read_photo(case.photo)
+        return open_photo(case.photo)
     if isinstance(camera.value, str):
         if Path(camera.value).name != camera.value:
             raise camera.wrong("the name of a file beside the labels")
         return read_photo(case.photo, case.truth.with_name(camera.value))
     matrix = camera["K"].array(3, 3)
     photo = read_photo(case.photo)
+    bent = camera.get("distortion")
+    distortion = () if bent is None else tuple(bent.array(None).tolist())
     try:
-        return replace(photo, camera=Camera(photo.width, photo.height, matrix, "file"), notes=())
+        given = Camera(photo.width, photo.height, matrix, "file", distortion)
+        return replace(read_photo_of(case.photo, given) if distortion else photo, camera=given, notes=())
     except ValueError as error:
         raise JsonError(f"camera.K is no camera matrix: {error}") from error
 

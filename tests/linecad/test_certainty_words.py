@@ -184,8 +184,9 @@ def test_a_photo_all_of_whose_segments_run_along_the_axes_has_no_second_frame():
 @pytest.mark.parametrize(
     "row",
     [
-        f"standard error of the focal length | above {100 * certainty.GOOD_FOCAL_ERROR:.0f} %, or the value is assumed; "
-        f"above {100 * certainty.GOOD_FOCAL_ERROR_ALONE:.0f} % where the vanishing points alone tell it | above {100 * certainty.POOR_FOCAL_ERROR:.0f} %",
+        f"standard error of the focal length | above {100 * certainty.GOOD_FOCAL_ERROR:.0f} %, or the value is "
+        f"assumed; above {100 * certainty.GOOD_FOCAL_ERROR_ALONE:.0f} % where the vanishing points alone tell it "
+        f"| above {100 * certainty.POOR_FOCAL_ERROR:.0f} %",
         f"the largest of the three | above {np.degrees(certainty.GOOD_TURN):.0f} degree "
         f"| above {np.degrees(certainty.POOR_TURN):.0f} degrees",
         f"segment length that runs along the axes | below {100 * certainty.GOOD_SHARE:.0f} % "

@@ -3,11 +3,13 @@
 import json
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.io import loadmat, savemat
 
+from linecad.editing.labelling import camera_of_labels
 from linecad.errors import DatasetError, LinecadError
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.frames import nearest_axes, rotation_error
@@ -15,6 +17,7 @@ from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings
 from linecad.evaluation.marks import UNKNOWN_AXIS, label_by_marks
 from linecad.evaluation.references import open_case, reference_of
 from linecad.geometry import project
+from linecad.straightening import open_photo
 
 K = [[500.0, 0, 160], [0, 510.0, 120], [0, 0, 1]]
 
@@ -294,3 +297,20 @@ def test_the_datasets_that_we_measure_on_are_recognised(shared_data):
     assert [len(dataset.cases) for dataset in kinds.values()] == [4, 51, 8]
     _, castle = open_case(kinds["castle"].cases[3])
     assert 0 < len(castle.edges.depth) < len(castle.dense.depth)
+
+
+@pytest.mark.parametrize("focal", [None, 1050.0])
+def test_labels_set_in_a_straightened_photo_are_read_in_one(tmp_path, focal):
+    """They were once judged on the bent photo, whose pixels are others."""
+    photo = Path(__file__).parents[3] / "samples" / "courtyard.jpg"  # without its camera file its lens bends it
+    shutil.copy(photo, tmp_path)
+    seen = open_photo(photo, None, focal)
+    assert seen.bend is not None
+    one = {"pixel": [100.0, 100.0], "segments": [[[90, 100], [100, 100]], [[100, 90], [100, 100]]],
+           "axes": ["x", "z"], "label": "real"}  # fmt: skip
+    labels = {"format": "linecad-labels", "version": 1, "photo": photo.name,
+              "camera": camera_of_labels(seen, None), "crossings": [one]}  # fmt: skip
+    (tmp_path / "courtyard.json").write_text(json.dumps(labels))
+    read, _ = only(tmp_path)
+    # The distortion goes through a file and another focal length: pixels may differ by rounding.
+    assert np.abs(read.pixels.astype(int) - seen.pixels).mean() < 0.05
