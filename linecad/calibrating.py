@@ -322,8 +322,9 @@ def likely_fits(ends: Float, width: int, height: int, prior: Prior) -> list[Fit]
     larger = max(width, height)
     fixed = replace(prior, radial_error=0.0)
     found = []
+    is_given = prior.focal_error == 0
     focals = np.geomspace(FOCAL_RANGE[0] * larger, FOCAL_RANGE[1] * larger, FOCAL_CANDIDATES)
-    for number, focal in enumerate(focals):
+    for number, focal in enumerate([prior.focal] if is_given else focals):
         axes = search_axes(ends[:SEARCHED], central_camera(focal, width, height), FOCAL_DRAWS, seed=number)
         start = View(axes, float(focal), prior.center)
         found.append(fit_view(ends[:SEARCHED], width, height, start, fixed, iterations=FIRST_ITERATIONS))
@@ -331,7 +332,7 @@ def likely_fits(ends: Float, width: int, height: int, prior: Prior) -> list[Fit]
     fits = [fit_view(ends, width, height, fit.view, prior) for fit in found[:STARTS]]
     best = max(fits, key=lambda fit: fit.log_posterior)
     # The likelihood of many segments has optima close to each other: look beside the best.
-    beside = [replace(best.view, focal=best.view.focal * factor) for factor in BESIDE]
+    beside = [] if is_given else [replace(best.view, focal=best.view.focal * factor) for factor in BESIDE]
     fits += [fit_view(ends, width, height, view, prior) for view in beside]
     return sorted(fits, key=lambda fit: -fit.log_posterior)
 

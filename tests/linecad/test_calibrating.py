@@ -1,9 +1,11 @@
 """Camera and frame of made segments, and how sure they are."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from linecad.calibrating import calibrate
+from linecad.calibrating import calibrate, likely_fits, prior_of
 from linecad.hints import FocalHint
 from linecad.photo import Photo
 from linecad.scene import Camera, Segments
@@ -85,3 +87,11 @@ def test_a_photo_that_may_be_cropped_is_not_called_good(made):
     found = calibrate(photo_of(made, framing="cropped"), made.noisy(0.5, 0))
     assert found.certainty.quality != "good"
     assert found.certainty.center[0] > calibrate(photo_of(made), made.noisy(0.5, 0)).certainty.center[0]
+
+
+def test_a_focal_length_that_is_given_is_kept_in_the_search(made):
+    """Each start of the search once kept its own."""
+    prior = replace(prior_of(photo_of(made)), focal=1000.0, focal_error=0.0)
+    ends = made.noisy(0.3, 0).ends
+    fits = likely_fits(ends, made.camera.width, made.camera.height, prior)
+    assert [fit.view.focal for fit in fits] == [1000.0]
