@@ -104,8 +104,8 @@ class SolvingProcess:
         """End the process."""
         with self._lock:
             self._closed = True
-            self._pipe.close()
             process = self._process
+        # Its end closes the pipe; closed from here, it would break under the thread that listens.
         process.terminate()
         process.join(PATIENCE_S)
         if process.is_alive():
@@ -123,7 +123,7 @@ class SolvingProcess:
     def _next(self) -> None:
         """Hand over what waits; the lock is held."""
         self._running, self._waiting = self._waiting, None
-        if self._running is None:
+        if self._running is None or self._closed:
             return
         try:
             self._pipe.send(self._running)
@@ -137,6 +137,7 @@ class SolvingProcess:
                 message = pipe.recv()
             except (EOFError, OSError):
                 self._lost(pipe)
+                pipe.close()
                 return
             if isinstance(message, Step):
                 self._on_step(message)
