@@ -110,12 +110,10 @@ def _lies_on(ends: Float, lines: Float, reach: float) -> Bool:
 def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", drawn: SetFrame | None) -> Calibrated:
     """Camera and frame of a view; of the segments `raw` those that are `chosen` say where the axes are."""
     camera = photo.camera
-    if camera is None or not _is_given(camera):
+    if camera is None or not camera.is_given:
         camera = Camera(photo.width, photo.height, found.fit.view.matrix, found.source)
     if photo.bend is not None:
-        half = np.hypot(photo.width, photo.height) / 2
-        k1 = photo.bend.radial * (camera.focal / half) ** 2
-        camera = replace(camera, distortion=(float(k1), 0.0, 0.0, 0.0))
+        camera = replace(camera, distortion=photo.removed_distortion(camera.focal))
     notes = [*photo.notes, *found.doubts.notes]
     if drawn is None:
         # The lines of one scene share one frame, so that of the least squares is theirs; that each axis may have a turn
@@ -135,11 +133,6 @@ def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", 
     return Calibrated(camera, frame, certainty, (*notes, *more), found.prior, found.doubts)
 
 
-def _is_given(camera: Camera) -> bool:
-    """Whether the user gave the camera, so that it is not to be estimated."""
-    return camera.source in ("file", "focal option")
-
-
 def prior_of(photo: Photo) -> Prior:
     """What is known of a photo's camera before its segments are looked at, with what EXIF says of it."""
     middle = np.array([(photo.width - 1) / 2, (photo.height - 1) / 2])
@@ -153,7 +146,7 @@ def prior_of(photo: Photo) -> Prior:
         default_focal(photo.width, photo.height), USUAL_FOCAL_ERROR, middle, center_error,
         largest_turn=LARGEST_TURN_UNKNOWN,
     )  # fmt: skip
-    if photo.camera is not None and _is_given(photo.camera):
+    if photo.camera is not None and photo.camera.is_given:
         return replace(prior, focal=photo.camera.focal, focal_error=0.0)
     if photo.hint is not None:
         return replace(prior, focal=photo.hint.focal, focal_error=photo.hint.relative_error)
@@ -184,7 +177,7 @@ class _Finder:
     def find(self) -> _Found:
         """With the camera that is known, else with what EXIF and the vanishing points say of it."""
         camera = self.photo.camera
-        if camera is not None and _is_given(camera):
+        if camera is not None and camera.is_given:
             prior = known(camera.matrix)
             axes = search_axes(self.ends[:SEARCHED], camera.matrix, DRAWS)
             start = View(axes, camera.focal, camera.matrix[:2, 2])
@@ -193,10 +186,10 @@ class _Finder:
         doubts = Doubts(is_fisheye=self.photo.is_fisheye)
         best, prior = self._best(doubts)
         alone, lines = self.whole(best, prior)
-        wider = widening(lines)
-        error = wider * _focal_error(alone)
         if self.photo.hint is not None:
             return self._with_hint(self.photo.hint, alone, lines, prior, doubts)
+        wider = widening(lines)
+        error = wider * _focal_error(alone)
         if error <= FOCAL_SIGMA:
             return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
         assumed = replace(prior, focal_error=0.0)
@@ -223,8 +216,8 @@ class _Finder:
         free = replace(usual, center_error=CROPPED_CENTER_ERROR)
         wide = fit_view(self.ends, self.width, self.height, best.view, free)
         # Where an axis has few lines, they move the principal point to wherever suits them.
-        lines = self._lines(best)
-        if wide.log_posterior - best.log_posterior <= CENTER_GAIN or lines.min() < ENOUGH_LINES:
+        gain = wide.log_posterior - best.log_posterior
+        if gain <= CENTER_GAIN or self._lines(best).min() < ENOUGH_LINES:
             return best, usual
         doubts.is_cropped = True
         off = wide.view.center - self.middle
@@ -250,10 +243,7 @@ class _Finder:
             doubts.notes.append(f"{told}; EXIF is believed")
             doubts.other = None
             given = replace(prior, focal=hint.focal, focal_error=0.0)
-            at_hint = self._at(central_camera(hint.focal, self.width, self.height), given)
-            turned = replace(alone.view, focal=hint.focal)
-            near = fit_view(self.ends, self.width, self.height, turned, given)
-            fit, lines = self.whole(max(at_hint, near, key=lambda one: one.log_posterior), given)
+            fit, lines = self._at_hint(hint, replace(alone.view, focal=hint.focal), given)
             fit = _widened(fit, wider)
             fit.covariance[FOCAL, FOCAL] = hint.relative_error**2
             return _Found(fit, lines, "exif", doubts)
@@ -261,10 +251,16 @@ class _Finder:
         # Errors of the segments are `wider` than the fit knows, and those of real scenes wider still, so what EXIF says
         # weighs by so much more.
         trusted = replace(prior, focal=hint.focal, focal_error=hint.relative_error / wider / REAL_SCENES)
-        at_hint = self._at(central_camera(hint.focal, self.width, self.height), trusted)
-        near = fit_view(self.ends, self.width, self.height, alone.view, trusted)
-        fit, lines = self.whole(max(at_hint, near, key=lambda one: one.log_posterior), trusted)
+        fit, lines = self._at_hint(hint, alone.view, trusted)
         return _Found(_widened(fit, wider), lines, "exif", doubts)
+
+    def _at_hint(self, hint: FocalHint, near: View, prior: Prior) -> tuple[Fit, Int]:
+        """The better of two fits, from a search at EXIF's focal length and from a view `near`, on whole segments."""
+        fits = [
+            self._at(central_camera(hint.focal, self.width, self.height), prior),
+            fit_view(self.ends, self.width, self.height, near, prior),
+        ]
+        return self.whole(max(fits, key=lambda one: one.log_posterior), prior)
 
     def _at(self, K: Float, prior: Prior) -> Fit:
         """The most likely view near a camera matrix."""

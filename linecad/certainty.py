@@ -117,10 +117,9 @@ def certainty_of(
     `lines` (3,) are the whole lines along each axis, `raw` all segments, `bend` is the distortion that was taken out.
     """
     size = max(camera.width, camera.height)
-    is_given = camera.source in ("file", "focal option")
     error = _whole_errors(fit, lines, is_told=camera.source not in ("vanishing points", "default"), other=doubts.other)
-    focal = None if is_given else float(error[FOCAL])
-    center = None if is_given else (float(error[CENTER_X] * size), float(error[CENTER_Y] * size))
+    focal = None if camera.is_given else float(error[FOCAL])
+    center = None if camera.is_given else (float(error[CENTER_X] * size), float(error[CENTER_Y] * size))
     half = np.hypot(camera.width, camera.height) / 2
     second = second_frame(raw, camera, frame)
     quality, reason = _quality(camera, frame, fit, error, lines, focal, doubts, second, bend)

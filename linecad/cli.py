@@ -614,7 +614,7 @@ def _photo_to_edit(parsed: argparse.Namespace) -> "tuple[Photo, Path]":
     scene = read_scene(parsed.input)
     parsed.scene = parsed.input
     path = parsed.photo or parsed.input.parent / Path(scene.photo).name
-    if parsed.focal or (parsed.camera is None and scene.camera.source not in ("file", "focal option")):
+    if parsed.focal or (parsed.camera is None and not scene.camera.is_given):
         # What was estimated from the photo is estimated again, so that its standard errors are known.
         if not path.is_file():
             raise LinecadError(f"{path} is not there, the photo of {parsed.input}; name it with --photo")

@@ -178,9 +178,7 @@ def find_calibration(
     on_stage("fitting the camera again to the lines that meet in space")
     pieces = label_segments(raw, first.camera, first.frame)
     graph = FoundLines(first.camera, first.frame, pieces, ()).widest_graph
-    depth = RobustFit(graph).depths()
-    first_line, second_line = graph.edges.T
-    agrees = graph.informative & (np.abs(depth[first_line] - depth[second_line] - graph.log_ratio) <= graph.tolerance)
+    agrees = graph.informative & (graph.misfit(RobustFit(graph).depths()) <= graph.tolerance)
     met = [part for part in components(graph, agrees) if len(part) >= MIN_COMPONENT]
     if not met:
         return first

@@ -54,7 +54,7 @@ def agreeing(graph: LineGraph, chosen: Bool, log_depth: Float) -> Bool:
     for number, part in enumerate(_components(net, list(net))):
         group[list(part)] = number
     first, second = graph.edges.T
-    apart = np.abs(log_depth[first] - log_depth[second] - graph.log_ratio)
+    apart = graph.misfit(log_depth)
     agrees: Bool = graph.informative & (group[first] == group[second]) & (apart <= graph.tolerance)
     return chosen | agrees
 

@@ -45,9 +45,7 @@ def lift(graph: LineGraph, solution: Solution) -> Lifted:
     offset = _offsets(graph, shared, np.exp(log_depth))
     ends, shift = _ends(graph, offset)
     ends = _end_at_junctions(graph, chosen, offset, ends)
-    i, j = graph.edges.T
-    residual = np.abs(log_depth[i] - log_depth[j] - graph.log_ratio)
-    return Lifted(ends, offset, shared, residual, shift)
+    return Lifted(ends, offset, shared, graph.misfit(log_depth), shift)
 
 
 def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float, merges: Merges | None = None) -> Float:

@@ -1,5 +1,6 @@
 """A photo read from a file: upright, straightened pixels and what is known of the camera that took it."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -63,6 +64,13 @@ class Photo:
     def height(self) -> int:
         """Height in px."""
         return int(self.pixels.shape[0])
+
+    def removed_distortion(self, focal: float) -> tuple[float, ...]:
+        """OpenCV's coefficients of the bend that was taken out, for a focal length in px; none where none was."""
+        if self.bend is None:
+            return ()
+        half = math.hypot(self.width, self.height) / 2
+        return (self.bend.radial * (focal / half) ** 2, 0.0, 0.0, 0.0)
 
     @cached_property
     def grey(self) -> NDArray[np.uint8]:

@@ -115,6 +115,11 @@ class Camera:
         """Focal length in px."""
         return float(self.matrix[0, 0])
 
+    @property
+    def is_given(self) -> bool:
+        """Whether the user gave the focal length, so that it is not estimated."""
+        return self.source in ("file", "focal option")
+
 
 @dataclass(frozen=True, eq=False)
 class Segments:
@@ -235,6 +240,12 @@ class LineGraph:
     def axis(self) -> Int:
         """(N,) axis of each line."""
         return self.segments.axis
+
+    def misfit(self, log_depth: Float) -> Float:
+        """By how much log depths (N,) miss the ratio that each crossing asks for (E,): |log s_i - log s_j - c_ij|."""
+        first, second = self.edges.T
+        misfit: Float = np.abs(log_depth[first] - log_depth[second] - self.log_ratio)
+        return misfit
 
     def subset(self, keep: Int) -> "LineGraph":
         """The graph on the nodes `keep` (ascending indices), renumbered, with the edges among them."""

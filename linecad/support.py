@@ -71,9 +71,8 @@ def draw(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Dra
         depth = np.array(list(pool.map(refit, present))).reshape(fits, count)
     group = np.zeros((fits, count), np.int64)
     for number in range(fits):
-        apart = np.abs(depth[number, first] - depth[number, second] - graph.log_ratio)
         ties = graph.informative & present[number, first] & present[number, second]
-        ties &= apart <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
+        ties &= graph.misfit(depth[number]) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
         group[number] = group_numbers(count, graph.edges[ties])
     return Draws(present, depth, group)
 
@@ -164,7 +163,7 @@ def _core(part: Bool, log_depth: Float, draws: Draws, asked: float) -> Bool:
 def doubt(graph: LineGraph, log_depth: Float, draws: Draws, width: int) -> float:
     """How little agreement is worth in a photo `width` px wide, from its largest part as fitted depths (N,) tie it."""
     first, second = graph.edges.T
-    off = np.abs(log_depth[first] - log_depth[second] - graph.log_ratio)
+    off = graph.misfit(log_depth)
     agrees = graph.informative & (off <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
     part = _largest_part(len(graph.segments), graph.edges[agrees], np.ones(len(graph.segments), bool))
     inside = graph.informative & part[first] & part[second]

@@ -99,8 +99,7 @@ def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice:
     ]
     if against:
         _fail(f"goes against what was said about edge {against[0]}")
-    i, j = graph.edges.T
-    off = np.abs(choice.log_depth[i] - choice.log_depth[j] - graph.log_ratio) - graph.tolerance
+    off = graph.misfit(choice.log_depth) - graph.tolerance
     off = np.where(connected & graph.informative, off, -np.inf)
     if (off > RECHECK_TOLERANCE).any():
         _fail(f"leaves edge {int(np.argmax(off))} outside its tolerance by {off.max():.3g} in log depth")

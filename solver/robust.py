@@ -128,8 +128,7 @@ def agreeing_with(graph: LineGraph, depth: Float) -> Bool:
 
     At least SLACK: a fit spreads what is left over, where a search keeps each crossing within its tolerance.
     """
-    i, j = graph.edges.T
-    agrees: Bool = np.abs(depth[i] - depth[j] - graph.log_ratio) <= np.maximum(graph.tolerance, SLACK)
+    agrees: Bool = graph.misfit(depth) <= np.maximum(graph.tolerance, SLACK)
     return graph.possible & (agrees | ~graph.informative)
 
 

@@ -6,8 +6,6 @@ Only what a person said is written: what the solver proposes is no label.
 import json
 from pathlib import Path
 
-import numpy as np
-
 from linecad.correcting import Said
 from linecad.errors import OutputError
 from linecad.files import check_output
@@ -22,11 +20,10 @@ def camera_of_labels(photo: Photo, camera_file: Path | None) -> object:
     """What a labels file says about the camera: its calibration's name, its matrix, or nothing."""
     if camera_file is not None:
         return camera_file.name
-    if photo.camera is not None and photo.camera.source in ("focal option", "file"):
+    if photo.camera is not None and photo.camera.is_given:
         named: dict[str, object] = {"K": photo.camera.matrix.tolist()}
         if photo.bend is not None:
-            half = float(np.hypot(photo.width, photo.height)) / 2
-            named["distortion"] = [photo.bend.radial * (photo.camera.focal / half) ** 2, 0.0, 0.0, 0.0]
+            named["distortion"] = list(photo.removed_distortion(photo.camera.focal))
         return named
     return None
 
