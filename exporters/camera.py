@@ -6,7 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from exporters.model import Model
-from linecad.scene import Camera, Float
+from linecad.arrays import Float
+from linecad.scene import Camera
 
 _MARGIN = 2.0  # the clipping planes lie this factor nearer and farther than anything in the model
 _WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of drawn lines over the middle depth of the model, by boundary

@@ -3,7 +3,9 @@
 import numpy as np
 
 from exporters.camera import principal_point
-from linecad.scene import Camera, Float, Segments
+from linecad.arrays import Float
+from linecad.line_graph import Segments
+from linecad.scene import Camera
 
 _CANDIDATES = 40  # the longest segments of an axis, of which a pair is chosen
 _LEAST_ANGLE = 0.02  # sine; lines that are more parallel say too little about where they meet

@@ -8,8 +8,8 @@ import numpy as np
 import shapely
 
 from exporters.model import FlatFace
+from linecad.arrays import Int
 from linecad.errors import OutputError
-from linecad.scene import Int
 
 
 def checked_polygon(face: FlatFace) -> shapely.Polygon:

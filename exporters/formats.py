@@ -14,16 +14,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from exporters.beside import folder_name, library_name, write_with_pictures
 from exporters.options import Option, Value, read_options
+from exporters.textures.beside import folder_name, library_name, write_with_pictures
 from linecad.errors import OutputError
-from linecad.files import check_output, write_atomically
+from linecad.io.files import check_output, write_atomically
 from linecad.scene import Camera, Scene
 
 if TYPE_CHECKING:
-    from exporters.textures import Textures
+    from exporters.textures.build import Textures
 
-SCENE_FILE = ".json"  # written by linecad.scenefile; named here only to tell the user
+SCENE_FILE = ".json"  # written by linecad.io.scene_file; named here only to tell the user
 
 
 # ezdxf and OCCT have settings for the whole process, which a second thread would change under the first.
@@ -78,7 +78,10 @@ FORMATS: dict[str, Format] = {
         "exporters.fspy", "the photo with its camera, to correct in fSpy", "metres", shows_photo=True, needs_photo=True
     ),
     ".png": Format(
-        "exporters.picture", "the photo with its lines, and three views of them in space", "pixels", shows_photo=True
+        "exporters.picture.scene",
+        "the photo with its lines, and three views of them in space",
+        "pixels",
+        shows_photo=True,
     ),
 }
 
@@ -172,7 +175,7 @@ def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> "Text
     for made in _last_made[:]:
         if made.scene is scene and made.photo is photo and made.size == size:
             return made.textures
-    from exporters.pages import build_textures  # OpenCV, which the formats do without where there is no photo
+    from exporters.textures.pages import build_textures
 
     textures = build_textures(scene, photo, size)
     _last_made[:] = [] if photo.flags.writeable else [_Made(scene, photo, size, textures)]  # that one may change

@@ -26,8 +26,10 @@ from PIL import Image
 from exporters.camera import camera_to_world, principal_point
 from exporters.control_lines import find_control_lines, vanishing_points
 from exporters.model import LineGroup, build_model
+from linecad.arrays import Float
 from linecad.errors import OutputError
-from linecad.scene import AXES, Camera, Float, Scene, Segments
+from linecad.line_graph import Segments
+from linecad.scene import AXES, Camera, Scene
 
 _MAGIC, _VERSION = b"fspy", 1
 _QUALITY = 95  # of the JPEG, out of 100

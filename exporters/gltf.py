@@ -29,9 +29,10 @@ from exporters.camera import camera_to_world, clipping_range, line_width, padded
 from exporters.faces import triangulate
 from exporters.gltf_materials import add_pictures, set_materials
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
-from exporters.textures import Textures
+from exporters.textures.build import Textures
 from exporters.tubes import build_tubes
-from linecad.scene import AXES, Float, Scene
+from linecad.arrays import Float
+from linecad.scene import AXES, Scene
 
 _ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
 _Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from linecad.scene import AXES, Face, Float, Int, Plane, Scene
+from linecad.arrays import Float, Int
+from linecad.scene import AXES, Face, Plane, Scene
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
 

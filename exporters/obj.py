@@ -11,8 +11,9 @@ import numpy as np
 
 from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, build_model
-from exporters.textures import Textures
-from linecad.scene import Float, Scene
+from exporters.textures.build import Textures
+from linecad.arrays import Float
+from linecad.scene import Scene
 
 
 def write(scene: Scene, path: Path, textures: Textures | None = None, library: str = "") -> None:

@@ -46,7 +46,8 @@ from exporters.colours import FACE, RGB, line_colour
 from exporters.faces import checked_polygon
 from exporters.model import FlatFace, LineGroup, Model, build_model
 from exporters.step_canonical import canonical
-from linecad.scene import Float, Scene
+from linecad.arrays import Float
+from linecad.scene import Scene
 
 _MILLIMETRES = 1000.0  # per metre
 _METRES_PER_DOCUMENT_UNIT = 0.001

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linecad.scene import Float, Int
+from linecad.arrays import Float, Int
 
 _SIDES = 6  # round enough for a tube of a few pixels
 

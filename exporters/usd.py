@@ -16,7 +16,7 @@ from exporters.camera import camera_to_world, clipping_range, line_width, princi
 from exporters.colours import FACE, RGB, line_colour, linear
 from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
-from exporters.textures import Textures
+from exporters.textures.build import Textures
 from exporters.usd_materials import add_material, add_photo_material, bind, set_coordinates
 from linecad.scene import AXES, Scene
 

@@ -7,7 +7,7 @@ import numpy as np
 from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, Vt
 
 from exporters.colours import RGB, linear
-from linecad.scene import Float
+from linecad.arrays import Float
 
 _COORDINATES = "st"  # the name by which every reader finds texture coordinates
 

@@ -5,8 +5,8 @@ Nothing is re-exported here: `solver` and `exporters` import `linecad.scene`, an
 
 import os
 
-# OpenCV reads this when it is loaded. A file whose header deceives linecad.decoding, which looks at it first, is then
-# refused before memory is taken for its pixels. The number is that of linecad.decoding.
+# OpenCV reads this when it is loaded. A file whose header deceives linecad.camera.decoding, which looks at it first, is
+# then refused before memory is taken for its pixels. The number is that of linecad.camera.decoding.
 os.environ.setdefault("OPENCV_IO_MAX_IMAGE_PIXELS", "200000000")
 
 __version__ = "0.1.0"

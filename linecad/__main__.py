@@ -2,6 +2,6 @@
 
 import sys
 
-from linecad.cli import main
+from linecad.cli.main import main
 
 sys.exit(main())

@@ -6,14 +6,15 @@ from functools import cached_property
 
 import numpy as np
 
-from linecad.calibrating import Calibrated, calibrate, calibrate_again
-from linecad.corrections import SetFrame
+from linecad.camera.estimate import Calibrated, calibrate, calibrate_again
+from linecad.camera.photo import Photo
+from linecad.corrections.edits import SetFrame
+from linecad.decide.resampling import FITS_FOR_DOUBT, MOST_DOUBT, doubt, draw
 from linecad.errors import ReconstructionError
-from linecad.graph import EXTENSION, MIN_LENGTH, MIN_TOLERANCE, Weights, build_line_graph, components
-from linecad.pencils import find_pencil_lines
-from linecad.photo import Photo
-from linecad.scene import Camera, Certainty, LineGraph, ManhattanFrame, Segments
-from linecad.segments import (
+from linecad.graph.build import EXTENSION, MIN_LENGTH, MIN_TOLERANCE, Weights, build_line_graph
+from linecad.graph.connectivity import components
+from linecad.line_graph import LineGraph, ManhattanFrame, Segments
+from linecad.lines.segments import (
     GROUP_ALONG,
     SMALL_WIDTH,
     find_faint_segments,
@@ -21,8 +22,9 @@ from linecad.segments import (
     group_segments,
     label_segments,
 )
-from linecad.support import FITS_FOR_DOUBT, MOST_DOUBT, doubt, draw
-from solver.problem import SolveOptions
+from linecad.lines.vanishing_point_lines import find_pencil_lines
+from linecad.scene import Camera, Certainty
+from solver.options import SolveOptions
 from solver.robust import RobustFit
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
@@ -55,8 +57,8 @@ class ReconstructOptions:
     weights: Weights | None = None  # None: odds with formulation gain, junctions with the paper's
     collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
     largest_component: bool = False  # only the largest connected component, as in the paper
-    # Lines by which two bodies must be tied to share a scale (linecad.hinges); 1 asks nothing. None: lines must keep
-    # their place in resampling (linecad.support) with formulation gain, 1 with the paper's.
+    # Lines by which two bodies must be tied to share a scale (linecad.decide.rigid_bodies); 1 asks nothing. None: lines
+    # must keep their place in resampling (linecad.decide.resampling) with formulation gain, 1 with the paper's.
     witnesses: int | None = None
     faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     solve: SolveOptions = field(default_factory=SolveOptions)
@@ -116,7 +118,7 @@ class FoundLines:
 
     @cached_property
     def doubt(self) -> float:
-        """How little agreement is worth in this photo (linecad.support), as a fit at long reach tells."""
+        """How little agreement is worth in this photo (linecad.decide.resampling), as a fit at long reach tells."""
         if self.known_doubt is not None:
             return self.known_doubt
         graph = self.widest_graph
@@ -153,7 +155,7 @@ def name_lines(
     faint: bool = False,
     drawn: SetFrame | None = None,
 ) -> FoundLines:
-    """The same from raw segments, as `linecad.segments.find_segments` gives them."""
+    """The same from raw segments, as `linecad.lines.segments.find_segments` gives them."""
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
     calibrated = find_calibration(photo, raw, on_stage, drawn)
     camera, frame = calibrated.camera, calibrated.frame

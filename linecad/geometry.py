@@ -6,7 +6,7 @@ Frames are those of `linecad.scene`. `K` is the camera matrix in px, `R` takes w
 
 import numpy as np
 
-from linecad.scene import Bool, Float
+from linecad.arrays import Bool, Float
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
 DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from exporters.formats import export
 from exporters.options import Value
+from linecad.io.scene_file import write_scene
 from linecad.scene import Scene
-from linecad.scenefile import write_scene
 
 SCENE_SUFFIX = ".json"
 

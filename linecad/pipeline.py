@@ -5,14 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.correcting import CorrectedLines, Said, correct, rows_of, said_of
-from linecad.corrections import Corrections
+from linecad.camera.photo import Photo
+from linecad.corrections.apply import CorrectedLines, Said, correct, rows_of, said_of
+from linecad.corrections.edits import Corrections
 from linecad.errors import ContradictionError
 from linecad.finding import FoundLines, ReconstructOptions, StageReport, connect, find_lines, silent
-from linecad.photo import Photo
-from linecad.placing import place
-from linecad.scene import LineGraph, Scene
-from solver.problem import Progress, solve
+from linecad.line_graph import LineGraph
+from linecad.model.build import place
+from linecad.scene import Scene
+from solver.options import Progress
+from solver.solve import solve
 
 SURE_FACTOR = 2.0  # by which the tolerance of a crossing grows that a person called real
 WIDEST_TOLERANCE = float(np.log(100.0))  # of a crossing that a person called real, in log depth

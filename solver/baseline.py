@@ -15,10 +15,11 @@ import numpy as np
 from scipy.optimize import linprog
 from scipy.sparse import csr_matrix, vstack
 
+from linecad.arrays import Float
 from linecad.errors import SolverError
-from linecad.scene import Float, LineGraph
+from linecad.line_graph import LineGraph
+from solver.check import check_graph
 from solver.depths import end_ratios
-from solver.problem import check_graph
 
 TIME_LIMIT = 4  # linprog's status when HiGHS ran out of time or met numbers that it could not handle
 

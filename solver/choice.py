@@ -5,11 +5,12 @@ from typing import NoReturn
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
 from linecad.errors import SolverError
-from linecad.scene import Bool, Float, Int, LineGraph
+from linecad.line_graph import LineGraph
 from solver.depths import end_ratios
 from solver.families import Families
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 MEASURES = (1.0, 0.5, 0.25, 0.1, 0.05, 0.02, 0.01)  # of weights and rewards
 MEASURE_ROUNDING = 1e-9  # relative to the measure, of a weight

@@ -20,7 +20,8 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra, minimum_spanning_tree
 
-from linecad.scene import Bool, Float, Int, LineGraph
+from linecad.arrays import Bool, Float, Int
+from linecad.line_graph import LineGraph
 from solver.families import find_three_cycles, four_cycle_table
 from solver.potentials import SLACK, fit_near_depths
 

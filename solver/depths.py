@@ -7,7 +7,8 @@ to 1 .. depth_range, so every line fits, however far it runs away from the camer
 
 import numpy as np
 
-from linecad.scene import Float, LineGraph
+from linecad.arrays import Float
+from linecad.line_graph import LineGraph
 
 VANISHING_TOLERANCE = 1e-6  # of the middle ray's length: how far a segment may miss the vanishing point of its axis
 

@@ -10,8 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.scene import Bool, Int, LineGraph
-from solver.problem import Family
+from linecad.arrays import Bool, Int
+from linecad.line_graph import LineGraph
+from solver.options import Family
 
 
 @dataclass(frozen=True)

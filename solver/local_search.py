@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.scene import Bool, Float, Int, LineGraph
+from linecad.arrays import Bool, Float, Int
+from linecad.line_graph import LineGraph
 from solver.families import Families
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 PASSES = 20  # a number, not a time, so that the result does not depend on the machine
 LEAST_GAIN = 1e-9  # of the objective, below which a move counts as none

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.scene import Bool, Float, Int, LineGraph
+from linecad.arrays import Bool, Float, Int
+from linecad.line_graph import LineGraph
 
 SLACK = 1e-7  # log depth, added to every tolerance; far below pixel noise, above what rounding sums up to
 LOOK_EVERY = 16  # rounds after which a contradiction is looked for; it shows long before the last round

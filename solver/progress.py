@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from solver.problem import Progress, relative_gap
+from solver.options import Progress, relative_gap
 
 
 @contextmanager

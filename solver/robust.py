@@ -14,11 +14,12 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
+from linecad.arrays import Bool, Float, Int
 from linecad.errors import SolverError
-from linecad.scene import Bool, Float, Int, LineGraph, Solution
+from linecad.line_graph import LineGraph, Solution
 from solver.choice import boundaries
 from solver.depths import end_ratios
-from solver.problem import Progress, SolveOptions
+from solver.options import Progress, SolveOptions
 
 WIDTH = 0.01  # log depth; a crossing this far off pulls no longer, whatever its tolerance: frame and lens are not exact
 SLACK = 0.005  # log depth, within which a crossing agrees with a fit whatever its tolerance

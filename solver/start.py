@@ -7,13 +7,14 @@ import time
 
 import numpy as np
 
-from linecad.scene import Bool, Float, LineGraph
+from linecad.arrays import Bool, Float
+from linecad.line_graph import LineGraph
 from solver.choice import Choice, boundaries, objective_of, planar_pairs
 from solver.depths import near_log_ratio
 from solver.families import Families
 from solver.local_search import LEAST_GAIN, PASSES, LocalSearch
+from solver.options import SolveOptions
 from solver.potentials import fit_near_depths
-from solver.problem import SolveOptions
 from solver.robust import RobustFit
 
 SAFETY = 1e-9  # log depth, kept from every limit so that rounding cannot push the start over it
@@ -30,7 +31,7 @@ class Starter:
     ) -> None:
         """`ratios` as `solver.depths.end_ratios` returns them.
 
-        `real` and `fake` (E,) are a person's word; the real ones must not contradict each other (`solver.facts`).
+        `real` and `fake` (E,) are a person's word; the real ones must not contradict each other (`solver.annotations`).
         """
         self.graph, self.families = graph, families
         self.real, self.fake = real, fake

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 import trimesh
 
-from linecad.calibrating import calibrate
-from linecad.calibration import undistort_points
-from linecad.cameratext import summary
+from linecad.camera.estimate import calibrate
+from linecad.camera.intrinsics import undistort_points
+from linecad.camera.photo import read_photo
+from linecad.camera.text import summary
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
 from linecad.finding import ReconstructOptions
-from linecad.photo import read_photo
+from linecad.io.scene_file import read_scene
+from linecad.lines.segments import find_segments
 from linecad.pipeline import reconstruct
-from linecad.scenefile import read_scene
-from linecad.segments import find_segments
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLES = ROOT / "samples"

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from linecad.cli import main
+from linecad.cli.main import main
 
 DOCS = Path(__file__).resolve().parent.parent
 PHOTO = DOCS.parent / "samples" / "street.jpg"

@@ -14,7 +14,7 @@ from linecad import __version__
 from linecad.batch import remote
 from linecad.batch.job import Job, Outcome
 from linecad.errors import LinecadError, OutputError
-from linecad.files import write_bytes_atomically
+from linecad.io.files import write_bytes_atomically
 
 CONNECT_SECONDS = 30.0
 SIZE_SECONDS = 5.0  # how long the number of the cluster's threads is taken to stay what it was

@@ -4,15 +4,15 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import Literal, Protocol, get_args
 
-from exporters.beside import folder_name, library_name
-from linecad.conversion import Conversion
+from exporters.textures.beside import folder_name, library_name
+from linecad.convert import Conversion
 from linecad.scene import Quality
 
 # done; failed: linecad said why, or broke; time limit, memory limit: of the photo; killed: its process died.
 Status = Literal["done", "failed", "time limit", "memory limit", "killed"]
 STATUSES: tuple[Status, ...] = get_args(Status)
 
-PICTURES = "photo-*.jpg"  # what exporters.beside calls them
+PICTURES = "photo-*.jpg"  # what exporters.textures.beside calls them
 THUMBNAILS = "thumbnails"  # folder in the output folder
 
 

@@ -91,7 +91,7 @@ class LocalExecutor:
     def _start(self) -> None:
         """Start the nursery and wait until it has loaded everything."""
         ours, theirs = Pipe()
-        command = [sys.executable, "-m", "linecad.batch.nursery", str(theirs.fileno()), *self._modules]
+        command = [sys.executable, "-m", "linecad.batch.fork_server", str(theirs.fileno()), *self._modules]
         # One thread a process: several processes would fight for the cores.
         environment = {**os.environ, **dict.fromkeys(THREADS, "1")}
         # The packages are found there as they were found here, also where the working folder made the difference.

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from linecad.errors import OutputError
-from linecad.locking import acquire
+from linecad.io.locks import acquire
 
 NAME = "batch.lock"
 PATIENCE = 5.0  # s, in which the processes of a batch that was killed have time to die

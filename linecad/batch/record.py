@@ -14,10 +14,10 @@ from typing import Self, cast
 
 from linecad import __version__
 from linecad.batch.job import STATUSES, Figures, Outcome, Status
-from linecad.conversion import Conversion
+from linecad.convert import Conversion
 from linecad.errors import InputError, OutputError
+from linecad.io.strict_json import JsonError, Node, parse
 from linecad.scene import QUALITIES, Quality
-from linecad.strictjson import JsonError, Node, parse
 
 NAME = "batch.jsonl"
 LARGEST_RECORD = 2 * 2**30  # bytes; a million photos take about half of it

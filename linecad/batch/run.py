@@ -11,14 +11,14 @@ from pathlib import Path
 from linecad.batch.inputs import output_names
 from linecad.batch.job import THUMBNAILS, Executor, Job, Limits, Outcome
 from linecad.batch.lock import locked
+from linecad.batch.page import write_sheet
 from linecad.batch.record import NAME, Record, Row, options_hash, settled
-from linecad.batch.sheet import write_sheet
 from linecad.batch.work import photo_hash
-from linecad.conversion import Conversion
+from linecad.convert import Conversion
 from linecad.errors import LinecadError, OutputError
 
-LEFTOVERS = ".linecad-*"  # what linecad.files leaves when it is killed while it writes
-PICTURES_BESIDE = "*.textures"  # folders of exporters.beside
+LEFTOVERS = ".linecad-*"  # what linecad.io.files leaves when it is killed while it writes
+PICTURES_BESIDE = "*.textures"  # folders of exporters.textures.beside
 TICK = 0.5  # s between two looks at what else there is to do
 LARGEST_LOSSES = 3  # times that a photo is begun again after its executor broke under it
 

@@ -9,7 +9,7 @@ from linecad.batch.job import Executor, Limits
 from linecad.batch.local import LocalExecutor
 from linecad.batch.resources import need_mb, usual_limits, usual_workers
 from linecad.batch.run import OnRow, Plan, Result, run_batch
-from linecad.conversion import Conversion
+from linecad.convert import Conversion
 from linecad.errors import LinecadError, OutputError
 
 CLUSTER_MEMORY = 2.0  # times what a photo needs is what it may take on machines that we cannot look into

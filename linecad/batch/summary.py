@@ -4,9 +4,9 @@ import statistics
 from pathlib import Path
 
 from linecad.batch.job import STATUSES
+from linecad.batch.page import figures_text
 from linecad.batch.record import Row
 from linecad.batch.run import Progress, Result
-from linecad.batch.sheet import figures_text
 
 BAR = 24  # characters
 LISTED = 20  # failures that the summary names

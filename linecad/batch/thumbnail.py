@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exporters.colours import line_colour
-from linecad.files import write_bytes_atomically
+from linecad.io.files import write_bytes_atomically
 from linecad.scene import Scene
 
 WIDTH, HEIGHT = 320, 240  # px, at most, of each half

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from linecad.batch.job import Figures, Job, Outcome
 from linecad.batch.thumbnail import write_thumbnail
+from linecad.camera.photo import Photo
 from linecad.errors import LinecadError, PhotoError
-from linecad.photo import Photo
 from linecad.scene import Scene
 
 OUT_OF_MEMORY = ("std::bad_alloc", "Insufficient memory")  # as OpenCV says it, from C++ and from its own allocator

@@ -4,11 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Bool, Float
 from linecad.dataset.modelling import Model
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.geometry import REFERENCE_WIDTH
-from linecad.graph import build_line_graph, components
-from linecad.scene import Bool, Camera, Float, ManhattanFrame, Segments
+from linecad.graph.build import build_line_graph
+from linecad.graph.connectivity import components
+from linecad.line_graph import ManhattanFrame, Segments
+from linecad.scene import Camera
 
 MOST_TRIES = 12  # drawings of one scene; the last one is taken as it is
 LONG = 40.0  # px at the reference width; shorter pieces do not count

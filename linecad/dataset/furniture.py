@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.random import Generator
 
+from linecad.arrays import Float
 from linecad.dataset.modelling import UP, Material, Model
-from linecad.scene import Float
 
 PAINTS = ((0.55, 0.12, 0.12), (0.15, 0.24, 0.42), (0.74, 0.75, 0.76), (0.14, 0.14, 0.15), (0.86, 0.86, 0.84))
 LEAVES = ((0.26, 0.36, 0.15), (0.33, 0.43, 0.19), (0.20, 0.29, 0.14))

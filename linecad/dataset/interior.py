@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.random import Generator
 
+from linecad.arrays import Float
 from linecad.dataset.facades import DOORS
 from linecad.dataset.modelling import UP, Interval, Material, Model, Point, Wall
-from linecad.scene import Float
 
 WALL_COLOURS: tuple[Point, ...] = ((0.87, 0.85, 0.80), (0.80, 0.83, 0.82), (0.86, 0.78, 0.68), (0.75, 0.80, 0.74))
 WOODS: tuple[Point, ...] = ((0.62, 0.46, 0.30), (0.44, 0.31, 0.21), (0.74, 0.62, 0.45))

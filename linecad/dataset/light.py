@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from linecad.scene import Float
+from linecad.arrays import Float
 
 ELEVATION = (0.45, 1.05)  # rad, of the sun
 SUN = (4.6, 4.2, 3.6)  # irradiance of full sun where the sky's radiance is about 1

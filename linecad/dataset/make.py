@@ -21,7 +21,7 @@ from linecad.dataset.textures import Image
 from linecad.dataset.truth import Truth
 from linecad.dataset.view import View
 from linecad.errors import DatasetError, LinecadError, OutputError
-from linecad.locking import alone
+from linecad.io.locks import alone
 
 JUDGED_SIZE = (1920, 1080)  # px; scenes are judged at it whatever their size, so that the size does not change them
 SMALLEST_SIDE, LARGEST_SIDE = 64, 8192  # px

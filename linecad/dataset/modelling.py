@@ -11,7 +11,7 @@ from typing import Literal
 
 import numpy as np
 
-from linecad.scene import Float, Int
+from linecad.arrays import Float, Int
 
 Interval = tuple[float, float]
 Point = tuple[float, float, float]

@@ -7,8 +7,8 @@ a point of it shows a quad in whose plane the point lies.
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING
-from linecad.scene import Bool, Float, Int
 
 NEAR = 0.05  # m, camera depth of the near plane
 SAMPLE = 1.0  # px between the points of an edge that are tested

@@ -14,11 +14,11 @@ from typing import Any
 import mitsuba as mi
 import numpy as np
 
+from linecad.arrays import Float
 from linecad.dataset.light import LAMP, SKY_IN_ROOMS, Light
 from linecad.dataset.modelling import Material, Model
 from linecad.dataset.textures import Image, sky, texture
 from linecad.dataset.view import View
-from linecad.scene import Float
 
 LLVM_VARIABLE = "DRJIT_LIBLLVM_PATH"
 LLVM_PLACES = ("/usr/lib", "/usr/lib64", "/usr/local/lib")

@@ -6,12 +6,12 @@ from typing import Literal, get_args
 import numpy as np
 from numpy.random import Generator
 
+from linecad.arrays import Float
 from linecad.dataset.facades import Style, build_facade, draw_style
 from linecad.dataset.furniture import add_car, add_lamp, add_sign, add_tree
 from linecad.dataset.interior import build_room
 from linecad.dataset.modelling import UP, Interval, Material, Model, Wall
 from linecad.dataset.view import View
-from linecad.scene import Float
 
 SceneKind = Literal["street", "courtyard", "room"]
 SCENE_KINDS: tuple[SceneKind, ...] = get_args(SceneKind)

@@ -15,12 +15,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from linecad.arrays import Float, Int
 from linecad.dataset.modelling import parallelograms
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.errors import DatasetError, OutputError
-from linecad.files import write_atomically, write_text_atomically
-from linecad.scene import Float, Int
-from linecad.strictjson import JsonError, parse
+from linecad.io.files import write_atomically, write_text_atomically
+from linecad.io.strict_json import JsonError, parse
 
 LIST = "dataset.json"
 PHOTO = "photo.jpg"

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.scene import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int
 
 NOTHING = -1  # in the id map: the sky
 

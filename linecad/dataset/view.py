@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Float
 from linecad.geometry import rotation_about
-from linecad.scene import Float
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import numpy as np
 from exporters.faces import triangulate
 from exporters.formats import FORMATS, SCENE_FILE
 from exporters.model import FlatFace, build_model
-from linecad.cameratext import summary
+from linecad.camera.text import summary
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError

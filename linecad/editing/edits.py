@@ -2,8 +2,9 @@
 
 import numpy as np
 
-from linecad.correcting import Correcting
-from linecad.corrections import (
+from linecad.arrays import Float
+from linecad.corrections.apply import Correcting
+from linecad.corrections.edits import (
     Anchor,
     Delete,
     Draw,
@@ -16,10 +17,9 @@ from linecad.corrections import (
     SetFrame,
     Split,
 )
-from linecad.correctionsfile import OPERATIONS, axis, ends, frame_lines, label, metres, point
+from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label, metres, point
 from linecad.editing.session import Session
-from linecad.scene import Float
-from linecad.strictjson import Node
+from linecad.io.strict_json import Node
 
 
 def read_edit(node: Node, session: Session) -> Edit:

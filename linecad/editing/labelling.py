@@ -6,11 +6,12 @@ Only what a person said is written: what the solver proposes is no label.
 import json
 from pathlib import Path
 
-from linecad.correcting import Said
+from linecad.camera.photo import Photo
+from linecad.corrections.apply import Said
 from linecad.errors import OutputError
-from linecad.files import check_output
-from linecad.photo import Photo
-from linecad.scene import AXES, LineGraph
+from linecad.io.files import check_output
+from linecad.line_graph import LineGraph
+from linecad.scene import AXES
 
 FORMAT = "linecad-labels"
 VERSION = 1

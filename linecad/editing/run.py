@@ -7,19 +7,19 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import FrameType
 
-from linecad.corrections import Corrections
-from linecad.correctionsfile import check_belongs, read_corrections, write_corrections
+from linecad.camera.photo import Photo
+from linecad.corrections.edits import Corrections
+from linecad.corrections.file import check_belongs, read_corrections, write_corrections
 from linecad.editing.guard import HOST, new_token
 from linecad.editing.labelling import camera_of_labels, labels_to_json
 from linecad.editing.saving import Saver
 from linecad.editing.session import Session, ToSave
 from linecad.editing.solving import SolvingProcess
 from linecad.errors import EditorError
-from linecad.files import check_output, write_text_atomically
 from linecad.finding import ReconstructOptions
-from linecad.locking import alone
-from linecad.photo import Photo
-from linecad.segments import find_segments
+from linecad.io.files import check_output, write_text_atomically
+from linecad.io.locks import alone
+from linecad.lines.segments import find_segments
 
 try:
     from linecad.editing.server import Editor, listen, serve

@@ -26,8 +26,8 @@ from linecad.editing.solving import Task
 from linecad.editing.tabs import Tabs
 from linecad.editing.tiles import Pyramid
 from linecad.errors import EditorError, LinecadError
-from linecad.scenefile import write_scene
-from linecad.strictjson import JsonError, Node, parse
+from linecad.io.scene_file import write_scene
+from linecad.io.strict_json import JsonError, Node, parse
 
 PAGE = Path(__file__).parent / "page"
 MEDIA_TYPES = {

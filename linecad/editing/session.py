@@ -9,15 +9,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from linecad.correcting import CorrectedLines, Correcting, Said, correcting_of, rows_of, said_of
-from linecad.corrections import Corrections, Edit, KnownLength, SetFrame
+from linecad.camera.photo import Photo
+from linecad.corrections.apply import CorrectedLines, Correcting, Said, correcting_of, rows_of, said_of
+from linecad.corrections.edits import Corrections, Edit, KnownLength, SetFrame
 from linecad.editing.solving import Answer, Step, Task
 from linecad.errors import CorrectionError, LinecadError
 from linecad.finding import FoundLines, ReconstructOptions, connect_all, name_lines
-from linecad.photo import Photo
+from linecad.line_graph import LineGraph, Segments
 from linecad.pipeline import measured
-from linecad.scene import LineGraph, Scene, Segments
-from solver.problem import Progress
+from linecad.scene import Scene
+from solver.options import Progress
 
 MODELS_KEPT = 12  # solved before, shown again at once when an undo or redo comes back to what they were solved for
 CROSSING_BASE = 10**7  # ids of crossings are smaller id * this + larger id of their lines
@@ -101,7 +102,7 @@ class Session:
         corrections: Corrections,
         on_change: Callable[[ToSave], None],
     ) -> None:
-        """`raw` are the photo's segments (`linecad.segments.find_segments`)."""
+        """`raw` are the photo's segments (`linecad.lines.segments.find_segments`)."""
         self.photo, self.options = photo, options
         self._raw, self._on_change = raw, on_change
         self._lock = threading.RLock()

@@ -16,20 +16,24 @@ from multiprocessing.process import BaseProcess
 from types import FrameType
 from typing import TYPE_CHECKING
 
-from linecad.correcting import CorrectedLines
+from linecad.camera.photo import Photo
+from linecad.corrections.apply import CorrectedLines
 from linecad.errors import ContradictionError, LinecadError
 from linecad.finding import FoundLines, ReconstructOptions
-from linecad.photo import Photo
 from linecad.pipeline import reconstruct_corrected
 from linecad.scene import Scene
-from solver.problem import Progress
+from solver.options import Progress
 
 if TYPE_CHECKING:
     from multiprocessing.sharedctypes import Synchronized
 
 PATIENCE_S = 5.0  # that a process gets to end by itself
 NO_TASK = -1
-LOADED_LATE = ("solver.gain", "solver.paper", "solver.scip_backend")  # by who needs them; here before
+LOADED_LATE = (
+    "solver.gain.search",
+    "solver.paper.search",
+    "solver.backends.scip_gain",
+)  # by who needs them; here before
 
 _CONTEXT = multiprocessing.get_context("spawn")  # a fork of a process with OpenCV's threads hangs now and then
 

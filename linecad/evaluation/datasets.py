@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from linecad import strictjson
 from linecad.dataset.store import LIST, PHOTO, read_list
 from linecad.errors import DatasetError
-from linecad.strictjson import JsonError, Node
+from linecad.io import strict_json as strictjson
+from linecad.io.strict_json import JsonError, Node
 
 Kind = Literal["made", "york", "york-json", "points", "lines", "labels"]
 

@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
 from linecad.evaluation.labels import FAKE, REAL, UNDECIDED
-from linecad.graph import components, spanning_tree
-from linecad.scene import Bool, Float, Int, LineGraph
+from linecad.graph.connectivity import components, spanning_tree
+from linecad.line_graph import LineGraph
 
 
 @dataclass(frozen=True)

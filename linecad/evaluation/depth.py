@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Bool, Float
 from linecad.geometry import inside_ring, world_rays
-from linecad.scene import Bool, Face, Float, Plane, Scene
+from linecad.scene import Face, Plane, Scene
 
 REACH = 4.0  # px between a surveyed point and the line that is taken to show it
 

@@ -11,7 +11,7 @@ from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.measure import PhotoResult
 from linecad.evaluation.methods import Settings
 from linecad.evaluation.tables import Row, Table
-from linecad.files import write_text_atomically
+from linecad.io.files import write_text_atomically
 
 FORMAT, VERSION = "linecad-evaluation", 1
 NOTHING = "-"

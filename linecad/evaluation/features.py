@@ -3,8 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from linecad.arrays import Float
 from linecad.geometry import REFERENCE_WIDTH
-from linecad.scene import Float, LineGraph
+from linecad.line_graph import LineGraph
 
 ASIDE = 10.0  # px at the reference width from both lines to the middle of a sampled patch
 ASIDE_FLOOR = 3.0  # px

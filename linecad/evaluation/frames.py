@@ -4,8 +4,8 @@ from itertools import permutations
 
 import numpy as np
 
+from linecad.arrays import Float, Int
 from linecad.geometry import angles_to
-from linecad.scene import Float, Int
 
 
 def rotation_error(found: Float, true: Float) -> tuple[float, tuple[int, int, int]]:

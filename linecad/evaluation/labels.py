@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int, Text
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.overlap import Overlaps, find_overlaps, union_length
 from linecad.geometry import angles_to, vanishing_points
-from linecad.scene import Bool, Float, Int, LineGraph, Segments, Text
+from linecad.line_graph import LineGraph, Segments
 
 REAL, FAKE, UNDECIDED = 1, 0, -1
 

@@ -4,10 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Float, Int
 from linecad.evaluation.labels import UNDECIDED
 from linecad.evaluation.overlap import find_overlaps
 from linecad.geometry import REFERENCE_WIDTH
-from linecad.scene import Camera, Float, Int, LineGraph
+from linecad.line_graph import LineGraph
+from linecad.scene import Camera
 
 POINT_REACH = 20.0  # px at the reference width between a marked crossing and one of the graph
 POINT_REACH_FLOOR = 5.0  # px in any photo

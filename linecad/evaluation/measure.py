@@ -7,6 +7,8 @@ from typing import Any
 import cv2
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
+from linecad.camera.photo import Photo
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
@@ -18,11 +20,11 @@ from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
-from linecad.lifting import lift
-from linecad.photo import Photo
-from linecad.placing import place
-from linecad.scene import Bool, Float, Formulation, Int, LineGraph, Scene
-from solver.problem import solve
+from linecad.line_graph import Formulation, LineGraph
+from linecad.model.build import place
+from linecad.model.lifting import lift
+from linecad.scene import Scene
+from solver.solve import solve
 
 MARKED_REACH = 3.0  # px between a line marked by hand and a reconstructed one
 MARKED_ANGLE = np.radians(3.0)

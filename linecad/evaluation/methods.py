@@ -4,12 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
 from linecad.evaluation.decisions import Decisions, compare
 from linecad.finding import SHORT_REACH, ReconstructOptions
-from linecad.graph import Weights
-from linecad.lifting import lift
-from linecad.scene import Bool, Float, Formulation, Int, LineGraph
-from solver.problem import FAMILIES, Family, SolveOptions, solve
+from linecad.graph.build import Weights
+from linecad.line_graph import Formulation, LineGraph
+from linecad.model.lifting import lift
+from solver.options import FAMILIES, Family, SolveOptions
+from solver.solve import solve
 
 BASELINE = "Baseline"
 PAPER_ROWS = (BASELINE, "B", "C", "P", "B+C", "B+P", "C+P", "B+C+P")

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.scene import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int
 
 TINY = 1e-12
 

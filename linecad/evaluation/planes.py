@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.geometry import world_rays
-from linecad.scene import Bool, Float, Int, Scene
+from linecad.scene import Scene
 
 PLANE_ANGLE = np.radians(2.0)  # between the normals of a found plane and a true one that it may be
 PLANE_DEPTH = 0.02  # relative error of the depth

@@ -6,17 +6,19 @@ from typing import assert_never
 
 import numpy as np
 
-from linecad.calibration import read_calibration, undistort_points
+from linecad.arrays import Bool, Float, Int
+from linecad.camera.distortion import open_photo
+from linecad.camera.intrinsics import read_calibration, undistort_points
+from linecad.camera.photo import Photo, read_photo, read_photo_of
 from linecad.dataset.store import CAMERA, read_truth
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.errors import DatasetError
 from linecad.evaluation.datasets import Case, read_json
 from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings
 from linecad.evaluation.marks import UNKNOWN_AXIS, MarkedCrossings, label_by_marks
-from linecad.photo import Photo, read_photo, read_photo_of
-from linecad.scene import AXES, Bool, Camera, Float, Int, LineGraph
-from linecad.straightening import open_photo
-from linecad.strictjson import JsonError, Node
+from linecad.io.strict_json import JsonError, Node
+from linecad.line_graph import LineGraph
+from linecad.scene import AXES, Camera
 
 POINT_STEP = 40.0  # px between the points that are sampled on true edges
 GRID = 96  # columns of the grid of pixels for the dense measure

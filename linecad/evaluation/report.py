@@ -8,7 +8,7 @@ from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.document import cells_of, summary
 from linecad.evaluation.measure import PhotoResult, Picture
 from linecad.evaluation.tables import Table
-from linecad.files import write_text_atomically
+from linecad.io.files import write_text_atomically
 
 WORST = 10  # photos that are shown
 BAR_WIDTH, BAR_HEIGHT, LABEL_WIDTH = 420, 18, 150  # px

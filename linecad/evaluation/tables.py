@@ -8,7 +8,7 @@ from linecad.evaluation.decisions import Decisions
 from linecad.evaluation.depth import DepthScore
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, ROWS, Run, Settings
-from linecad.scene import Formulation
+from linecad.line_graph import Formulation
 
 CHOOSING = ("precision", "recall", "F1")  # columns that only a method that chooses crossings has
 

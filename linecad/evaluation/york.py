@@ -14,9 +14,9 @@ import numpy as np
 from scipy.io import loadmat
 from scipy.io.matlab import MatReadError
 
+from linecad.arrays import Float, Int
 from linecad.errors import DatasetError
 from linecad.evaluation.datasets import YORK_CAMERA, YORK_LINES
-from linecad.scene import Float, Int
 
 DIRECTIONS = "GroundTruthVP_Orthogonal_CamParams.mat"
 FROM_ONE = 1.0  # px: MATLAB counts pixels from 1

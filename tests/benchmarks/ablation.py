@@ -15,17 +15,18 @@ from pathlib import Path
 import numpy as np
 from dense import hull
 
-import linecad.placing
+import linecad.model.build
+from linecad.camera.photo import Photo
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score, score_depth
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import LONG_REACH, MIDDLE_REACH, SHORT_REACH, FoundLines, ReconstructOptions, connect, find_lines
-from linecad.photo import Photo
-from linecad.placing import place
+from linecad.model.body_scales import join_bodies
+from linecad.model.build import place
 from linecad.scene import Scene
-from linecad.ties import join_bodies
-from solver.problem import SolveOptions, solve
+from solver.options import SolveOptions
+from solver.solve import solve
 
 FIT = ReconstructOptions(solve=SolveOptions(fast=True))
 Row = Callable[[Photo, float], Scene]
@@ -149,7 +150,7 @@ ROWS: dict[str, Row] = {
     "nothing refused": with_options(replace(FIT, witnesses=1)),
     "three witnesses instead of resampling": with_options(replace(FIT, witnesses=3)),
     "no window grids that continue": patched(
-        linecad.placing, "join_bodies", functools.partial(join_bodies, enough=np.inf)
+        linecad.model.build, "join_bodies", functools.partial(join_bodies, enough=np.inf)
     ),
     "a second look for faint segments (`--faint`)": with_options(replace(FIT, faint=True)),
     "hulls instead of faces": hulls,

@@ -19,12 +19,13 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "solver"), str(Path(__file__).resolve().parent)]
 
-from conftest import line_graph  # noqa: E402 - a script, run from a checkout without installing
-from run import COLUMNS  # noqa: E402
-from test_brute_force import ALL_WITHOUT, problems, values  # noqa: E402
+from conftest import line_graph
+from run import COLUMNS
+from test_brute_force import ALL_WITHOUT, problems, values
 
-from linecad.scene import LineGraph  # noqa: E402
-from solver.problem import SolveOptions, solve  # noqa: E402
+from linecad.line_graph import LineGraph
+from solver.options import SolveOptions
+from solver.solve import solve
 
 MOST_EDGES = 12
 CLOSE = 1e-6  # of the objective

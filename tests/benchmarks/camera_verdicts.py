@@ -5,15 +5,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from linecad.calibrating import Calibrated
+from linecad.arrays import Float
+from linecad.camera.distortion import straighten
+from linecad.camera.estimate import Calibrated
+from linecad.camera.photo import Photo
 from linecad.errors import LinecadError
 from linecad.evaluation.frames import rotation_error
 from linecad.finding import find_calibration
 from linecad.geometry import angles_to, vanishing_points
-from linecad.photo import Photo
-from linecad.scene import Float, Segments
-from linecad.segments import find_segments
-from linecad.straightening import straighten
+from linecad.line_graph import Segments
+from linecad.lines.segments import find_segments
 
 NEAR_FOCAL, NEAR_TURN = 0.05, np.radians(1.0)  # relative and rad: recovered, whatever the standard errors say
 FAR_FOCAL, FAR_TURN = 0.05, np.radians(1.5)  # beyond one of them, a wrong answer that is called good is a silent one

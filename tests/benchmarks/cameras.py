@@ -17,17 +17,18 @@ import numpy as np
 from camera_verdicts import Verdict, area_below, finite_level_points, judge
 from simulated_kinds import CHANGES, PLAIN, simulated_photos
 
+from linecad.arrays import Float
+from linecad.camera.distortion import straighten
+from linecad.camera.photo import Photo, read_photo
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import ReconstructOptions
-from linecad.photo import Photo, read_photo
 from linecad.pipeline import reconstruct
-from linecad.scene import QUALITIES, Camera, Float
-from linecad.straightening import straighten
-from solver.problem import SolveOptions
+from linecad.scene import QUALITIES, Camera
+from solver.options import SolveOptions
 
 FIT = ReconstructOptions(solve=SolveOptions(fast=True))
 LIMITS = (3.0, 5.0, 10.0)  # degrees

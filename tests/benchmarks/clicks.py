@@ -11,16 +11,17 @@ from pathlib import Path
 
 import numpy as np
 
-from linecad.corrections import Anchor, Corrections, LabelCrossing
+from linecad.camera.photo import Photo
+from linecad.corrections.edits import Anchor, Corrections, LabelCrossing
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import DepthScore, score_depth
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, ReconstructOptions, connect, find_lines
-from linecad.photo import Photo
+from linecad.line_graph import Segments
 from linecad.pipeline import correct_lines, reconstruct_corrected
-from linecad.scene import Scene, Segments
-from solver.problem import SolveOptions
+from linecad.scene import Scene
+from solver.options import SolveOptions
 
 LARGEST_GROUPS = 3  # besides component 0, that a click may tie to it
 TRIED = 8  # crossings for each click

@@ -20,18 +20,19 @@ from scipy.spatial import ConvexHull
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from linecad.errors import LinecadError  # noqa: E402 - a script, run from a checkout without installing
-from linecad.evaluation.datasets import find_dataset  # noqa: E402
-from linecad.evaluation.depth import face_depths, line_depths, score  # noqa: E402
-from linecad.evaluation.labels import REAL  # noqa: E402
-from linecad.evaluation.references import Points, Reference, open_case  # noqa: E402
-from linecad.faces import find_faces  # noqa: E402
-from linecad.finding import ReconstructOptions, connect, find_lines  # noqa: E402
-from linecad.photo import Photo  # noqa: E402
-from linecad.pipeline import reconstruct  # noqa: E402
-from linecad.placing import place  # noqa: E402
-from linecad.scene import Face, Plane, Scene, Solution  # noqa: E402
-from solver.problem import SolveOptions  # noqa: E402
+from linecad.camera.photo import Photo
+from linecad.errors import LinecadError
+from linecad.evaluation.datasets import find_dataset
+from linecad.evaluation.depth import face_depths, line_depths, score
+from linecad.evaluation.labels import REAL
+from linecad.evaluation.references import Points, Reference, open_case
+from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.line_graph import Solution
+from linecad.model.build import place
+from linecad.model.faces import find_faces
+from linecad.pipeline import reconstruct
+from linecad.scene import Face, Plane, Scene
+from solver.options import SolveOptions
 
 
 def main() -> None:

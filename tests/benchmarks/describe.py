@@ -10,7 +10,7 @@ import numpy as np
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(Path(__file__).resolve().parent)]
 
-from instances import LADDER, make_instance  # noqa: E402 - a script, run from a checkout without installing
+from instances import LADDER, make_instance
 
 
 def main() -> None:

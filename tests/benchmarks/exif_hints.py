@@ -23,7 +23,7 @@ from PIL.ExifTags import IFD, Base
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
-from linecad.photo import read_photo  # noqa: E402 - a script, run from a checkout without installing
+from linecad.camera.photo import read_photo
 
 Edit = Callable[[Image.Image], Image.Image]
 CUT = 0.3  # of the width

@@ -18,8 +18,8 @@ import numpy as np
 from PIL import Image
 
 from exporters.formats import FORMATS, TEXTURES
+from linecad.io.scene_file import write_scene
 from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
-from linecad.scenefile import write_scene
 
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH, HEIGHT, FOCAL = 3072, 2048, 2760.0  # px, as the photos of castle

@@ -11,11 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
+from linecad.camera.photo import read_photo
 from linecad.dataset.store import read_list, read_truth
 from linecad.evaluation.labels import REAL, UNDECIDED, depths_at_crossings, find_true_lines, judge_crossings
 from linecad.finding import ReconstructOptions, connect, find_lines
-from linecad.photo import read_photo
-from solver.problem import SolveOptions, solve
+from solver.options import SolveOptions
+from solver.solve import solve
 
 RELIEF = 0.03  # of the depth
 KINDS = ("real", "undecided", "spurious line", "wrong axis", "relief", "join of distant bodies")

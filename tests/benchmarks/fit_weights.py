@@ -1,6 +1,6 @@
 """Fit the weights of crossings to labelled photos: `PYTHONPATH=. python tests/benchmarks/fit_weights.py DATASET ...`.
 
-A logistic regression of "real" on the features of linecad/weighting.py, over all decided crossings of the line graphs
+A logistic regression of "real" on the features of cues/fitted.py, over all decided crossings of the line graphs
 of all photos. Each photo is also judged by a fit to the photos of the other folds: the area under the curve and the
 log-loss with the fitted table, with the table of junction kinds, and with the colours of linecad/evaluation/features.py
 added. `--write` writes linecad/fitted_weights.json. Fit on photos that nothing else is measured on.
@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from linecad.arrays import Bool, Float, Int
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.features import COLOUR_FEATURES, colour_features
@@ -20,14 +21,13 @@ from linecad.evaluation.labels import FAKE, REAL
 from linecad.evaluation.methods import Settings
 from linecad.evaluation.references import open_case
 from linecad.finding import connect, find_lines
-from linecad.scene import Bool, Float, Int
-from linecad.weighting import (
+from linecad.graph.cues.fitted import (
     COLLINEAR_FEATURES,
     CROSSING_FEATURES,
     TABLE,
     collinear_features,
     crossing_features,
-)  # fmt: skip
+)
 
 RIDGE = 10.0  # pull of the factors of standardised features towards zero, in crossings
 STEPS = 100  # of Newton's method, halved while they do not help

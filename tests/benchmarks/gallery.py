@@ -10,17 +10,18 @@ from pathlib import Path
 
 import numpy as np
 
-from exporters.canvas import Canvas
 from exporters.colours import line_colour
-from exporters.picture_faces import draw_dashed, draw_faces
+from exporters.picture.canvas import Canvas
+from exporters.picture.faces import draw_dashed, draw_faces
+from linecad.arrays import Bool, Float
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
 from linecad.evaluation.references import Points, open_case
 from linecad.finding import ReconstructOptions
 from linecad.pipeline import reconstruct
-from linecad.scene import Bool, Float, Scene
-from solver.problem import SolveOptions
+from linecad.scene import Scene
+from solver.options import SolveOptions
 
 WIDTH = 780  # px of each of the two panels
 LINE_WIDTH = 2  # px

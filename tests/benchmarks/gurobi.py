@@ -8,12 +8,12 @@ import tempfile
 import time
 from pathlib import Path
 
-from linecad.scene import LineGraph
+from linecad.line_graph import LineGraph
+from solver.backends.scip import FEASIBILITY_TOLERANCE
 from solver.depths import end_ratios
 from solver.families import find_families
-from solver.milp import build_model
-from solver.problem import SolveOptions, relative_gap
-from solver.scip import FEASIBILITY_TOLERANCE
+from solver.options import SolveOptions, relative_gap
+from solver.paper.milp import build_model
 
 MOST = 2000  # variables, and rows
 

@@ -11,14 +11,15 @@ from pathlib import Path
 
 import numpy as np
 
-import linecad.hinges
+import linecad.decide.rigid_bodies
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
 from linecad.finding import ReconstructOptions, connect, find_lines
-from linecad.placing import place
-from solver.problem import SolveOptions, solve
+from linecad.model.build import place
+from solver.options import SolveOptions
+from solver.solve import solve
 
 Variant = tuple[int, int]  # witnesses, lines that may hang on a body
 
@@ -33,7 +34,7 @@ def measure(case: Case, limit: float, variants: list[Variant]) -> dict[Variant, 
     solution = solve(graph, SolveOptions(time_limit_s=limit))
     rows = {}
     for witnesses, hanging in variants:
-        linecad.hinges.HANGING = hanging
+        linecad.decide.rigid_bodies.HANGING = hanging
         began = time.monotonic()
         scene = place(photo, found, graph, solution, ReconstructOptions(witnesses=witnesses))
         seconds = time.monotonic() - began
@@ -46,7 +47,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("dataset", type=Path, nargs="+")
     parser.add_argument("--witnesses", type=int, nargs="+", default=[1, 2, 3, 4])
-    parser.add_argument("--hanging", type=int, nargs="+", default=[linecad.hinges.HANGING])
+    parser.add_argument("--hanging", type=int, nargs="+", default=[linecad.decide.rigid_bodies.HANGING])
     parser.add_argument("--only", default="", help="photos whose name starts so")
     parser.add_argument("--time-limit", type=float, default=20.0)
     chosen = parser.parse_args()

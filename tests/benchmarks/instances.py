@@ -14,7 +14,8 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from linecad.scene import Bool, Float, Int, LineGraph, Segments
+from linecad.arrays import Bool, Float, Int
+from linecad.line_graph import LineGraph, Segments
 
 WIDTH, HEIGHT, FOCAL = 3840, 2160, 1900.0  # px
 EYE = 1.7  # m above the street

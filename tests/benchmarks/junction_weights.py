@@ -17,16 +17,20 @@ from pathlib import Path
 import numpy as np
 from real_photos import surveyed_points
 
-from linecad.calibration import undistort_points
+from linecad.arrays import Bool, Float, Int
+from linecad.camera.intrinsics import undistort_points
+from linecad.camera.photo import read_photo
+from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.frames import rotation_error
 from linecad.geometry import world_rays
-from linecad.graph import CORNER_FACTOR, JUNCTION_WEIGHT, build_line_graph, components, spanning_tree
-from linecad.lifting import lift
-from linecad.photo import read_photo
-from linecad.scene import Bool, Camera, Float, Int, LineGraph, ManhattanFrame, Segments
-from linecad.segments import find_segments, group_segments, label_segments
-from linecad.vanishing import find_frame
-from solver.problem import SolveOptions, solve
+from linecad.graph.build import CORNER_FACTOR, JUNCTION_WEIGHT, build_line_graph
+from linecad.graph.connectivity import components, spanning_tree
+from linecad.line_graph import LineGraph, ManhattanFrame, Segments
+from linecad.lines.segments import find_segments, group_segments, label_segments
+from linecad.model.lifting import lift
+from linecad.scene import Camera
+from solver.options import SolveOptions
+from solver.solve import solve
 
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 EXTENSIONS = (30.0, 60.0)  # px at 3840 px width

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from linecad.graph import build_line_graph, components
-from linecad.photo import read_photo
-from linecad.scene import LineGraph
-from linecad.segments import find_segments, group_segments, label_segments
-from linecad.vanishing import find_frame
+from linecad.camera.photo import read_photo
+from linecad.camera.vanishing_points import find_frame
+from linecad.graph.build import build_line_graph
+from linecad.graph.connectivity import components
+from linecad.line_graph import LineGraph
+from linecad.lines.segments import find_segments, group_segments, label_segments
 
 DATASETS = ("castle", "south_building")
 

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 
-from linecad.calibration import undistort_points
+from linecad.camera.intrinsics import undistort_points
+from linecad.camera.photo import read_photo
+from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
 from linecad.finding import ReconstructOptions
-from linecad.photo import read_photo
+from linecad.lines.segments import find_segments
 from linecad.pipeline import reconstruct
-from linecad.segments import find_segments
-from linecad.vanishing import find_frame
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 
 def measure_depth(truth_file: Path, options: ReconstructOptions) -> tuple[float, ...]:

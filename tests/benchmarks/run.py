@@ -22,15 +22,16 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(Path(__file__).resolve().parent)]
 
-from gurobi import SkippedError, solve_by_gurobi  # noqa: E402 - a script, run from a checkout without installing
-from instances import LADDER, make_instance  # noqa: E402
-from plot import Dot, draw_growth  # noqa: E402
-from real_graphs import real_graphs  # noqa: E402
+from gurobi import SkippedError, solve_by_gurobi
+from instances import LADDER, make_instance
+from plot import Dot, draw_growth
+from real_graphs import real_graphs
 
-from linecad.errors import SolverError  # noqa: E402
-from linecad.graph import EXTENSION  # noqa: E402
-from linecad.scene import LineGraph  # noqa: E402
-from solver.problem import SolveOptions, solve  # noqa: E402
+from linecad.errors import SolverError
+from linecad.graph.build import EXTENSION
+from linecad.line_graph import LineGraph
+from solver.options import SolveOptions
+from solver.solve import solve
 
 COLUMNS = {
     "gain": {"formulation": "gain", "backend": "scip"},

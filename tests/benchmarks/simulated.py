@@ -13,6 +13,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from linecad.arrays import Float, Int
 from linecad.dataset.modelling import Model
 from linecad.dataset.rasteriser import rasterise
 from linecad.dataset.scenes import SceneKind, draw_scene
@@ -20,7 +21,6 @@ from linecad.dataset.textures import clouds, texture
 from linecad.dataset.truth import NOTHING
 from linecad.dataset.view import View
 from linecad.geometry import rotation_about
-from linecad.scene import Float, Int
 
 OF_TEN: tuple[SceneKind, ...] = (*("street",) * 4, *("courtyard",) * 3, *("room",) * 3)
 LONG_SIDE = (640.0, 1600.0)  # px

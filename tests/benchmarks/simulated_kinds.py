@@ -11,7 +11,7 @@ import numpy as np
 from numpy.random import Generator
 from simulated import SUPER, Canvas, Shot, bent, cropped, draw_canvas, draw_shot, finished, turned, with_turned_house
 
-from linecad.scene import Float
+from linecad.arrays import Float
 
 RECIPE = 1  # counts the changes of what is made, so that a folder with older photos is not taken for the new ones
 RADIAL = (-0.3, 0.1)  # k1

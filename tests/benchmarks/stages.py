@@ -17,10 +17,11 @@ from linecad.evaluation.frames import true_axes
 from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
 from linecad.finding import ReconstructOptions, connect, find_lines
-from linecad.placing import place
-from linecad.scene import Segments
-from linecad.segments import find_segments, group_segments, label_segments
-from solver.problem import SolveOptions, solve
+from linecad.line_graph import Segments
+from linecad.lines.segments import find_segments, group_segments, label_segments
+from linecad.model.build import place
+from solver.options import SolveOptions
+from solver.solve import solve
 
 STAGES = ("detected", "labelled", "grouped", "long enough", "solved", "tied", "in the scene")
 

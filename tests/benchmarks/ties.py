@@ -11,15 +11,16 @@ from pathlib import Path
 
 import numpy as np
 
+from linecad.decide.rigid_bodies import WITNESSES, agreeing, find_held
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.labels import find_true_lines
 from linecad.evaluation.references import open_case
 from linecad.finding import MIN_COMPONENT, ReconstructOptions, connect, find_lines
-from linecad.graph import components
-from linecad.grids import find_grid_ties
-from linecad.hinges import WITNESSES, agreeing, find_held
-from linecad.lifting import lift
-from solver.problem import SolveOptions, solve
+from linecad.graph.connectivity import components
+from linecad.model.lifting import lift
+from linecad.model.window_grids import find_grid_ties
+from solver.options import SolveOptions
+from solver.solve import solve
 
 EVIDENCE = [0.0, 0.3, 0.6, 1.0, 1.3, 1.6, 2.0, 3.0, np.inf]  # decades
 RIGHT = 0.05  # log scale

@@ -15,8 +15,9 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
 from linecad.finding import SHORT_REACH, ReconstructOptions, connect, find_lines
-from linecad.placing import place
-from solver.problem import SolveOptions, solve
+from linecad.model.build import place
+from solver.options import SolveOptions
+from solver.solve import solve
 
 
 def measure(case: Case, options: ReconstructOptions) -> tuple[float, float] | None:

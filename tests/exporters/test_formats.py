@@ -14,7 +14,7 @@ from pxr import Usd
 from exporters import formats
 from exporters.formats import FORMATS, export, find_format, suffixes
 from linecad.errors import OutputError
-from linecad.scenefile import write_scene
+from linecad.io.scene_file import write_scene
 
 FACES_ONLY = {".ply", ".stl"}
 NO_FACES = {".fspy", ".png"}  # the picture draws faces as they are, the project has none
@@ -251,7 +251,7 @@ def test_only_the_module_of_the_format_is_loaded(scene, tmp_path):
     write_scene(scene, tmp_path / "scene.json")
     script = (
         "import sys; from pathlib import Path; from exporters.formats import export\n"
-        "from linecad.scenefile import read_scene\n"
+        "from linecad.io.scene_file import read_scene\n"
         "export(read_scene(Path(sys.argv[1])), Path(sys.argv[2]))\n"
         "print(' '.join(name.split('.')[0] for name in sys.modules))"
     )

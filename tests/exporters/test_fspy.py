@@ -15,7 +15,8 @@ from exporters.control_lines import find_control_lines, vanishing_points
 from exporters.formats import export
 from exporters.fspy import write_camera
 from linecad.errors import OutputError
-from linecad.scene import Camera, Segments
+from linecad.line_graph import Segments
+from linecad.scene import Camera
 
 AXES = {"xPositive": (0, 1), "yPositive": (1, 1), "zPositive": (2, 1)}
 AXES |= {"xNegative": (0, -1), "yNegative": (1, -1), "zNegative": (2, -1)}

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from linecad.scenefile import write_scene
+from linecad.io.scene_file import write_scene
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="forks and signals as on POSIX")
 

@@ -17,11 +17,11 @@ from PIL import Image
 
 from linecad.batch.job import Figures, Outcome
 from linecad.batch.record import Row, parse_row, row_line
-from linecad.calibration import read_calibration
-from linecad.correctionsfile import corrections_from_json, corrections_to_json
+from linecad.camera.intrinsics import read_calibration
+from linecad.camera.photo import read_photo
+from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.errors import InputError
-from linecad.photo import read_photo
-from linecad.scenefile import scene_from_json, scene_to_json
+from linecad.io.scene_file import scene_from_json, scene_to_json
 
 CORPUS = Path(__file__).parent / "corpus"
 SIDE = 64  # px, the smallest photo that is read

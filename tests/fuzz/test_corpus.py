@@ -11,8 +11,8 @@ import pytest
 from targets import CORPUS, TARGETS, folder_in_memory
 
 from linecad.errors import CameraError, SceneFileError
-from linecad.scenefile import read_scene, scene_from_json
-from linecad.strictjson import MOST_VALUES, JsonError, parse
+from linecad.io.scene_file import read_scene, scene_from_json
+from linecad.io.strict_json import MOST_VALUES, JsonError, parse
 
 HOSTILE = [
     float("nan"), float("inf"), float("-inf"), 1e308, -1e308, 5e-324, 1e12, 1.0000001e12, 0, -1, 1.5, 2**31, 2**63,
@@ -120,7 +120,7 @@ def test_a_million_entries_are_read_or_refused_in_seconds(name):
 
 @pytest.mark.parametrize("name", ["keys, two of them alike", "lists in lists", "distortion"])
 def test_a_camera_file_of_a_million_entries(name, tmp_path):
-    from linecad.calibration import read_calibration
+    from linecad.camera.intrinsics import read_calibration
 
     path = tmp_path / "camera.json"
     path.write_text(MANY[name](json.loads(next(TARGETS["scene"].seeds()))))

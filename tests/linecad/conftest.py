@@ -6,9 +6,11 @@ import cv2
 import numpy as np
 import pytest
 
+from linecad.arrays import Float, Int
 from linecad.geometry import project
-from linecad.graph import build_line_graph
-from linecad.scene import Camera, Float, Int, ManhattanFrame, Segments
+from linecad.graph.build import build_line_graph
+from linecad.line_graph import ManhattanFrame, Segments
+from linecad.scene import Camera
 
 WIDTH, HEIGHT, FOCAL = 1600, 1200, 900.0
 YAW, PITCH, ROLL = 0.15, -0.10, 0.02  # rad

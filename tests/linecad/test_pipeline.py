@@ -8,18 +8,19 @@ import networkx as nx
 import numpy as np
 import pytest
 
+from linecad.camera.photo import Photo, read_photo
 from linecad.errors import ReconstructionError
 from linecad.evaluation.frames import rotation_error
 from linecad.finding import SHORT_REACH, ReconstructOptions, find_lines
 from linecad.geometry import project
-from linecad.graph import build_line_graph
-from linecad.lifting import lift
-from linecad.photo import Photo, read_photo
+from linecad.graph.build import build_line_graph
+from linecad.io.scene_file import read_scene, write_scene
+from linecad.line_graph import ManhattanFrame, Segments, Solution
+from linecad.model.build import TYPICAL_DEPTH, _scene, _within_groups
+from linecad.model.lifting import lift
 from linecad.pipeline import reconstruct
-from linecad.placing import TYPICAL_DEPTH, _scene, _within_groups
-from linecad.scene import Camera, ManhattanFrame, Segments, Solution
-from linecad.scenefile import read_scene, write_scene
-from solver.problem import SolveOptions
+from linecad.scene import Camera
+from solver.options import SolveOptions
 
 # The made scene is two boxes of two faces each. The whole program of the paper cuts them apart at their edges: its
 # 3-cycles forbid a true corner, and mu_2 = 10 outweighs the crossings at an edge that is kept off the boundary.

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.correcting import correct, said_of
-from linecad.corrections import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
+from linecad.camera.photo import Photo
+from linecad.camera.vanishing_points import fit_frame
+from linecad.corrections.apply import correct, said_of
+from linecad.corrections.edits import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
+from linecad.decide.rigid_bodies import find_held, tied
 from linecad.errors import ContradictionError, ReconstructionError
 from linecad.finding import SHORT_REACH, FoundLines, ReconstructOptions, connect, name_lines
-from linecad.hinges import find_held, tied
-from linecad.photo import Photo
 from linecad.pipeline import correct_lines, measured, reconstruct, reconstruct_corrected
-from linecad.vanishing import fit_frame
-from solver.problem import BACKENDS, FORMULATIONS, SolveOptions
+from solver.options import BACKENDS, FORMULATIONS, SolveOptions
 
 # False crossings too, one of them between the two boxes; their optimum takes long to prove, and is not what is tested.
 NEAR = ReconstructOptions(witnesses=3, weights="junctions")

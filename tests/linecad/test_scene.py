@@ -6,19 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from linecad.scene import (
-    Camera,
-    Face,
-    Intersections,
-    LineGraph,
-    Lines,
-    ManhattanFrame,
-    Plane,
-    Scene,
-    Segments,
-    Solution,
-    SolveReport,
-)
+from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
+from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
 
 K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
 TRIANGLE = [[0, 4, 0], [1, 4, 0], [0, 4, 1]]

@@ -12,7 +12,7 @@ import pytest
 from PIL import Image
 from PIL.ExifTags import IFD, Base
 
-from linecad.photo import Photo, read_photo
+from linecad.camera.photo import Photo, read_photo
 
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 NAMES = ("street", "courtyard", "room")

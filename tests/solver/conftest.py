@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linecad.scene import LineGraph, Segments
+from linecad.line_graph import LineGraph, Segments
 
 FOCAL = 1000.0
 CENTRE = np.array([960.0, 640.0])

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-import solver.gain
-import solver.separation
-from solver.problem import SolveOptions, solve
+import solver.gain.search
+import solver.gain.separation
+from solver.options import SolveOptions
+from solver.solve import solve
 from solver.start import Starter
 
 # Found by a search over 400 seeds. With symmetry and both kinds of dual reductions on, SCIP 10.0.2 calls an answer
@@ -26,9 +27,9 @@ def lines_and_edges(seed):
 
 @pytest.mark.parametrize("seed", CUT_OFF)
 def test_symmetry_and_dual_reductions_cannot_cut_off_the_optimum(build_graph, monkeypatch, seed):
-    monkeypatch.setattr(solver.gain, "Starter", lambda *model: Starter(*model[:-1], ~model[-2]))
-    monkeypatch.setattr(solver.gain, "ROUNDS", 0)
-    monkeypatch.setattr(solver.separation, "find_short_cycles", lambda _: [])
+    monkeypatch.setattr(solver.gain.search, "Starter", lambda *model: Starter(*model[:-1], ~model[-2]))
+    monkeypatch.setattr(solver.gain.search, "ROUNDS", 0)
+    monkeypatch.setattr(solver.gain.separation, "find_short_cycles", lambda _: [])
     graph = build_graph(*lines_and_edges(seed), tolerance=0.004)
     found = solve(graph, SolveOptions(mu_boundary=0.4, without=frozenset({"cycles"})))
     assert found.status == "optimal"

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import Phase, find, given, settings
 from hypothesis import strategies as st
 
-import solver.gain
-import solver.separation
+import solver.gain.search
+import solver.gain.separation
 from linecad.errors import ContradictionError
-from solver.problem import BACKENDS, FAMILIES, FORMULATIONS, SolveOptions, solve
+from solver.options import BACKENDS, FAMILIES, FORMULATIONS, SolveOptions
+from solver.solve import solve
 from solver.start import Starter
 
 ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
@@ -205,9 +206,9 @@ def test_branch_and_cut_alone_finds_it_too(build_graph, without, problem):
     graph = build_graph(**problem[0])
     options = SolveOptions(formulation="gain", without=without, **problem[1])
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(solver.gain, "ROUNDS", 0)
-        patch.setattr(solver.gain, "Starter", lambda *model: Starter(*model[:-1], ~model[-2]))
-        patch.setattr(solver.separation, "find_short_cycles", lambda _: [])
+        patch.setattr(solver.gain.search, "ROUNDS", 0)
+        patch.setattr(solver.gain.search, "Starter", lambda *model: Starter(*model[:-1], ~model[-2]))
+        patch.setattr(solver.gain.separation, "find_short_cycles", lambda _: [])
         solution = solve(graph, options)
     assert solution.status == "optimal"
     assert solution.objective == pytest.approx(values(graph, options).max(), abs=1e-6)

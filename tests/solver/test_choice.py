@@ -8,7 +8,8 @@ import pytest
 from linecad.errors import SolverError
 from solver.choice import Choice, boundaries, objective_of, recheck, trivial_bound
 from solver.families import find_families
-from solver.problem import SolveOptions, solve
+from solver.options import SolveOptions
+from solver.solve import solve
 
 RECTANGLE = [(0, (0, 6, 1), 1, 3), (0, (0, 6, 2), 1, 3), (2, (1, 6, 0), 1, 2), (2, (3, 6, 0), 1, 2)]
 

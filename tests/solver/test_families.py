@@ -6,7 +6,7 @@ from solver.families import (
     find_three_cycles,
     find_two_sides,
 )
-from solver.problem import FAMILIES
+from solver.options import FAMILIES
 
 # x0, x1 parallel; y2, y3 and z4, z5 meet them or not according to the edges of each test
 LINES = [

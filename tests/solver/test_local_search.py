@@ -6,7 +6,7 @@ import pytest
 from solver.choice import Choice, boundaries, objective_of, planar_pairs
 from solver.families import find_families
 from solver.local_search import LocalSearch
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 
 def value(graph, families, options, chosen):

@@ -8,9 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.errors import SolverError
-from linecad.scene import LineGraph, Segments
-from solver.problem import SolveOptions, solve
+from linecad.line_graph import LineGraph, Segments
+from solver.options import SolveOptions
 from solver.robust import SLACK, RobustFit, agreeing_with
+from solver.solve import solve
 
 
 def random_graph(lines, edges, fakes, seed):

@@ -6,8 +6,8 @@ import pytest
 from solver.choice import Choice, boundaries, objective_of, recheck
 from solver.depths import end_ratios
 from solver.families import find_families
-from solver.milp import add_start, build_model
-from solver.problem import FAMILIES, SolveOptions
+from solver.options import FAMILIES, SolveOptions
+from solver.paper.milp import add_start, build_model
 from solver.start import Starter
 
 

@@ -8,9 +8,9 @@ import pytest
 
 from linecad.batch.job import THUMBNAILS, Figures, Job, Limits, Outcome
 from linecad.batch.run import Plan
-from linecad.conversion import Conversion
+from linecad.convert import Conversion
 from linecad.finding import ReconstructOptions
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 SAMPLES = Path(__file__).resolve().parents[3] / "samples"
 WIDTH = 320  # px

@@ -16,7 +16,7 @@ pytest.importorskip("distributed", reason="needs Dask: pip install 'linecad[clus
 from linecad.batch.cluster import ClusterExecutor
 from linecad.batch.record import NAME
 from linecad.batch.run import run_batch
-from linecad.cli import main
+from linecad.cli.main import main
 from linecad.errors import LinecadError
 
 ROOT = Path(__file__).resolve().parents[3]

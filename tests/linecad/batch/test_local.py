@@ -15,8 +15,8 @@ from pathlib import Path
 import pytest
 
 from linecad.batch.local import LocalExecutor
-from linecad.cli import main
-from linecad.conversion import Conversion
+from linecad.cli.main import main
+from linecad.convert import Conversion
 from linecad.errors import LinecadError
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from linecad.batch.job import STATUSES, Figures, Outcome
 from linecad.batch.record import NAME, Record, Row, options_hash, parse_row, row_line, settled
-from linecad.conversion import Conversion
+from linecad.convert import Conversion
 from linecad.errors import InputError, OutputError
 from linecad.finding import ReconstructOptions
 from linecad.scene import QUALITIES
-from solver.problem import SolveOptions
+from solver.options import SolveOptions
 
 FIGURES = Figures(20, 30, 25, 4, 5, None, "optimal", ("a note",), "doubtful")
 

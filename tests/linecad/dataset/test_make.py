@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linecad.cli import main
+from linecad.camera.photo import read_photo
+from linecad.cli.main import main
 from linecad.dataset.choice import judge
 from linecad.dataset.make import LOCK, DatasetOptions, draw_draft, make_dataset, measure, scene_name
 from linecad.dataset.store import LIST, PHOTO, read_list, read_truth
 from linecad.dataset.truth import NOTHING
 from linecad.errors import DatasetError, LinecadError, OutputError
-from linecad.locking import alone
-from linecad.photo import read_photo
+from linecad.io.locks import alone
 
 OPTIONS = DatasetOptions(scenes=2, seed=3, width=320, height=180, samples=2)
 

@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linecad.arrays import Float, Int
 from linecad.dataset.rasteriser import GAP, NEAR, rasterise, visible_pieces
 from linecad.dataset.truth import NOTHING
 from linecad.dataset.view import View
-from linecad.scene import Float, Int
 
 WIDTH, HEIGHT = 48, 32
 AHEAD = View(np.zeros(3), 0.0, 0.0, 0.0, 0.66, (0.0, 0.0))

@@ -6,6 +6,7 @@ import mitsuba as mi
 import numpy as np
 import pytest
 
+from linecad.arrays import Float
 from linecad.dataset import render
 from linecad.dataset.light import Light, draw_light
 from linecad.dataset.make import Draft, measure
@@ -13,7 +14,6 @@ from linecad.dataset.modelling import Material, Model
 from linecad.dataset.scenes import draw_scene
 from linecad.dataset.truth import NOTHING
 from linecad.dataset.view import View
-from linecad.scene import Float
 
 WIDTH, HEIGHT = 320, 180
 VIEW = View(np.array([0.3, -0.2, 1.6]), 0.35, 0.06, 0.01, 0.66, (0.03, -0.02))

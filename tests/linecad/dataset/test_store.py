@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from linecad.camera.photo import read_photo
 from linecad.dataset.light import draw_light
 from linecad.dataset.make import Draft, measure
 from linecad.dataset.scenes import draw_scene
@@ -23,7 +24,6 @@ from linecad.dataset.store import (
 )
 from linecad.dataset.truth import Truth
 from linecad.errors import DatasetError, OutputError
-from linecad.photo import read_photo
 
 
 @pytest.fixture(scope="module")

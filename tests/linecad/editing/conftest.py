@@ -5,14 +5,14 @@ import pytest
 from starlette.testclient import TestClient
 
 import linecad.editing.session
-from linecad.corrections import Corrections
+from linecad.camera.photo import Photo
+from linecad.corrections.edits import Corrections
 from linecad.editing.guard import HOST
 from linecad.editing.saving import Saver
 from linecad.editing.server import Editor
 from linecad.editing.session import Session
 from linecad.finding import ReconstructOptions, name_lines
-from linecad.photo import Photo
-from linecad.segments import find_segments
+from linecad.lines.segments import find_segments
 
 PORT, TOKEN = 8765, "the-token"
 URL = f"http://{HOST}:{PORT}"

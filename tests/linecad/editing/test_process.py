@@ -14,9 +14,9 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from linecad.cli import main
+from linecad.cli.main import main
 from linecad.editing.guard import HOST
-from linecad.locking import alone
+from linecad.io.locks import alone
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "samples"
@@ -222,7 +222,7 @@ class TestRefusals:
     def test_a_missing_library_is_named_with_the_extra(self, folder):
         script = (
             "import sys; sys.modules['uvicorn'] = None\n"
-            "from linecad.cli import main\nsys.exit(main(['edit', 'room.jpg', '--no-browser', '--quiet']))"
+            "from linecad.cli.main import main\nsys.exit(main(['edit', 'room.jpg', '--no-browser', '--quiet']))"
         )
         ended = subprocess.run(
             [sys.executable, "-c", script], cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)},

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from exporters.formats import FORMATS
-from linecad.cli import main
-from linecad.correctionsfile import corrections_from_json, corrections_to_json
+from linecad.cli.main import main
+from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.tiles import TILE
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.references import open_case

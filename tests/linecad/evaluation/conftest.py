@@ -8,11 +8,12 @@ import pytest
 from PIL import Image
 from scipy.io import savemat
 
+from linecad.camera.photo import Photo
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.geometry import project, world_rays
-from linecad.graph import build_line_graph
-from linecad.photo import Photo
-from linecad.scene import Camera, ManhattanFrame, Segments
+from linecad.graph.build import build_line_graph
+from linecad.line_graph import ManhattanFrame, Segments
+from linecad.scene import Camera
 
 BIAS = 1e-3  # of the depth; a quad does not hide its own edges
 

@@ -5,7 +5,7 @@ import pytest
 
 from linecad.evaluation.decisions import GraphStatistics, compare, count
 from linecad.evaluation.labels import FAKE, REAL, UNDECIDED
-from linecad.scene import LineGraph, Segments
+from linecad.line_graph import LineGraph, Segments
 
 
 def graph_of(edges, lengths):

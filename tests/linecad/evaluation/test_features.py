@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.features import colour_features
-from linecad.graph import build_line_graph
-from linecad.scene import Camera, ManhattanFrame, Segments
+from linecad.graph.build import build_line_graph
+from linecad.line_graph import ManhattanFrame, Segments
+from linecad.scene import Camera
 
 CAMERA = Camera(400, 300, np.array([[300.0, 0, 200], [0, 300, 150], [0, 0, 1]]), "file")
 FRAME = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), 0.0, 1.0)

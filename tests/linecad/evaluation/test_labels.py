@@ -5,7 +5,7 @@ import pytest
 
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, find_true_lines, label_crossings
-from linecad.scene import ManhattanFrame, Segments
+from linecad.line_graph import ManhattanFrame, Segments
 
 # Lines in space: (axis, start, end). The near box stands at x -3 to -0.5, y 6 to 8, z -1.5 to 1, the far one behind it.
 NEAR_CORNER = (2, (-0.5, 6, -1.5), (-0.5, 6, 1))

@@ -5,7 +5,7 @@ import json
 import pytest
 from PIL import Image
 
-from linecad.cli import main
+from linecad.cli.main import main
 from linecad.dataset.store import DatasetList, write_list, write_scene_folder
 from linecad.errors import DatasetError
 from linecad.evaluation.datasets import find_dataset

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from scipy.io import loadmat, savemat
 
+from linecad.camera.distortion import open_photo
 from linecad.editing.labelling import camera_of_labels
 from linecad.errors import DatasetError, LinecadError
 from linecad.evaluation.datasets import find_dataset
@@ -17,7 +18,6 @@ from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings
 from linecad.evaluation.marks import UNKNOWN_AXIS, label_by_marks
 from linecad.evaluation.references import open_case, reference_of
 from linecad.geometry import project
-from linecad.straightening import open_photo
 
 K = [[500.0, 0, 160], [0, 510.0, 120], [0, 0, 1]]
 

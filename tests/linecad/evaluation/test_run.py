@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from linecad.cli import main
+from linecad.cli.main import main
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.methods import Settings

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from exporters.formats import export
-from linecad.photo import read_photo
-from linecad.scenefile import read_scene
+from linecad.camera.photo import read_photo
+from linecad.io.scene_file import read_scene
 
 STEPS = 30
 
@@ -51,8 +51,8 @@ def test_a_click_turns_a_crossing_from_real_to_fake_and_back(screen):
 
 def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
     crossing = next(each for each in apart(screen.state["crossings"]) if each["real"])
-    screen.run("linecad.photo.change((viewport) => viewport.zoom(2))")
-    screen.run("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel))", crossing["pixel"])
+    screen.run("linecad.camera.photo.change((viewport) => viewport.zoom(2))")
+    screen.run("(pixel) => linecad.camera.photo.change((viewport) => viewport.centre(pixel))", crossing["pixel"])
     read = """() => {
       const canvas = document.querySelector("#drawing-canvas");
       const [x, y] = [canvas.width >> 1, canvas.height >> 1];
@@ -61,12 +61,12 @@ def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
       return [...data].map((value, at) => (at % 4 === 3 ? value : (value * data[at - (at % 4) + 3]) / 255));
     }"""
     screen.run(read)  # the first reading changes how the browser draws
-    screen.run("linecad.photo.redraw('drawing')")
+    screen.run("linecad.camera.photo.redraw('drawing')")
     screen.settle()
     before = np.array(screen.run(read))
     screen.click(crossing["pixel"])
     clicked = np.array(screen.run(read))
-    screen.run("linecad.photo.redraw('drawing')")
+    screen.run("linecad.camera.photo.redraw('drawing')")
     screen.settle()
     anew = np.array(screen.run(read))
     assert np.count_nonzero(clicked != before) > 50

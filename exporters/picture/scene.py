@@ -1,0 +1,177 @@
+"""PNG: the photo with its lines and faces coloured by axis and its crossings, beside three views of them in space."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from exporters.colours import line_colour
+from exporters.model import photo_name
+from exporters.picture.canvas import Canvas, drawable, text_width
+from exporters.picture.faces import OPACITY, draw_dashed, draw_faces
+from exporters.picture.views import VIEWS, draw_view
+from linecad.arrays import Float
+from linecad.scene import AXES, CONFIDENCES, Scene
+
+_WIDTH = 2400  # px
+_MARGIN, _GAP = 44, 24  # px
+_PHOTO_WIDTH, _PHOTO_HEIGHT = 1560, 1500  # px, at most, with the views beside it
+_VIEW_HEIGHT, _VIEW_HEIGHT_BELOW = 300, 560  # px, at least with the views beside the photo; always with them below
+_PANORAMA = 1.9  # from this ratio of width to height on, the views stand below the photo
+_LONGEST_PANORAMA = 40  # px of height that the thinnest strip of a photo still gets
+
+_PAPER, _INK, _QUIET = (0.965, 0.965, 0.97), (0.13, 0.13, 0.15), (0.40, 0.40, 0.43)
+_NO_PHOTO = (0.86, 0.86, 0.87)
+_REAL, _FAKE, _CASING = (1.0, 0.84, 0.12), (0.80, 0.05, 0.62), (1.0, 1.0, 1.0)
+_TITLE, _TEXT = 42, 27  # px of text
+
+_LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 4, False: 2}  # px, by boundary
+_CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wider than the line
+_FEW_LINES = 600  # from there on they are drawn thin
+_MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.0  # px, of crossings
+_OUTLINED = 1.22  # radius of a disc with its dark outline over that of the disc
+_FEW_MARKS = 400  # crossings; from there on they are drawn smaller, so that they do not cover the photo
+
+
+class _Box(NamedTuple):
+    left: int
+    top: int
+    width: int
+    height: int
+
+
+def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
+    """Write the picture to `path`; OSError where that fails. `photo` is RGB, of the size of the camera, or None."""
+    shape, views, height = _layout(scene.camera.width / scene.camera.height)
+    canvas = Canvas(_WIDTH, height, _PAPER)
+    _draw_title(canvas, scene)
+    _draw_photo(canvas.window(*shape), scene, photo)
+    for box, (name, right, up) in zip(views, VIEWS, strict=True):
+        draw_view(canvas.window(*box), scene, name, right, up)
+    _draw_legend(canvas)
+    canvas.image().save(path, format="PNG")
+
+
+def _layout(aspect: float) -> tuple[_Box, list[_Box], int]:
+    """Where the photo and the views stand, and the height of the picture."""
+    top, inner = _MARGIN + 122, _WIDTH - 2 * _MARGIN
+    if aspect >= _PANORAMA:
+        photo = _Box(_MARGIN, top, inner, max(round(inner / aspect), _LONGEST_PANORAMA))
+        width, height = (inner - 2 * _GAP) // 3, _VIEW_HEIGHT_BELOW
+        below = photo.top + photo.height + _GAP
+        views = [_Box(_MARGIN + number * (width + _GAP), below, width, height) for number in range(3)]
+        return photo, views, below + height + 96
+    width = round(min(_PHOTO_WIDTH, _PHOTO_HEIGHT * aspect))
+    photo = _Box(_MARGIN, top, max(width, 1), round(width / aspect))
+    height = max(_VIEW_HEIGHT, (photo.height - 2 * _GAP) // 3)
+    left = _MARGIN + photo.width + _GAP
+    views = [_Box(left, top + number * (height + _GAP), _WIDTH - _MARGIN - left, height) for number in range(3)]
+    return photo, views, top + max(photo.height, 3 * height + 2 * _GAP) + 96
+
+
+def _draw_title(canvas: Canvas, scene: Scene) -> None:
+    lines, real = scene.lines, int(scene.intersections.real.sum())
+    title = (
+        f"{drawable(photo_name(scene))}: {_count(len(lines), 'line')} "
+        f"({_count(int(lines.is_boundary.sum()), 'boundary', 'boundaries')}), {_count(len(scene.planes), 'plane')}, "
+        f"{_count(len(scene.faces), 'face')}"
+    )
+    canvas.text(_MARGIN, _MARGIN + 38, title, _TITLE, _INK)
+    solve, share = scene.solve, f"{100 * scene.solve.gap:.3g} %"
+    facts = [
+        ", ".join(f"{int((lines.axis == axis).sum())} along {AXES[axis]}" for axis in range(3)),
+        f"{_count(len(scene.intersections), 'crossing')}: {real} real, {len(scene.intersections) - real} fake",
+        f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}, {solve.seconds:.1f} s",
+        f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
+    ]
+    weak = int((lines.confidence == "weak").sum())
+    if weak:
+        facts.append(f"{_count(weak, 'line')} weak: dashed, pale")
+    canvas.text(_MARGIN, _MARGIN + 88, "   ·   ".join(map(drawable, facts)), _TEXT, _QUIET)
+
+
+def _count(number: int, one: str, many: str = "") -> str:
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) -> None:
+    if photo is None:
+        panel.fill(_NO_PHOTO)
+    else:
+        panel.show(photo)
+    scale = np.array([panel.width / scene.camera.width, panel.height / scene.camera.height])
+
+    def shown(pixels: Float) -> Float:
+        result: Float = (pixels + 0.5) * scale - 0.5
+        return result
+
+    draw_faces(panel, scene, scale)
+    _draw_segments(panel, scene, shown(scene.lines.segment))
+    _draw_crossings(panel, scene, shown(scene.intersections.pixel))
+    if photo is None:
+        panel.text(panel.width / 2, 24, "photo not given", _TEXT, _QUIET, "ma")
+
+
+def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
+    """Boundaries over the others, with a light casing that keeps them apart from the photo."""
+    lines = scene.lines
+    few = len(lines) <= _FEW_LINES
+    widths, casing = (_LINE_WIDTH, _CASING_WIDTH) if few else (_THIN_LINE_WIDTH, _THIN_CASING_WIDTH)
+    for wanted in (False, True):
+        chosen = np.flatnonzero(lines.is_boundary == wanted).tolist()
+        width = widths[wanted]
+        for number in chosen:
+            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + casing)
+        for number in chosen:
+            draw = draw_dashed if lines.confidence[number] == "weak" else Canvas.line
+            colour = line_colour(int(lines.axis[number]), True)
+            draw(panel, ends[number, 0].tolist(), ends[number, 1].tolist(), colour, width)
+
+
+def _draw_crossings(panel: Canvas, scene: Scene, centres: Float) -> None:
+    """Real ones over the others."""
+    count = max(len(centres), _FEW_MARKS)
+    radius = max(_MARK_RADIUS * (_FEW_MARKS / count) ** 0.5, _SMALLEST_MARK)
+    real = scene.intersections.real
+    for centre in centres[~real].tolist():
+        _draw_fake(panel, centre, radius)
+    for centre in centres[real].tolist():
+        _draw_real(panel, centre, radius)
+
+
+def _draw_real(panel: Canvas, centre: list[float], radius: float) -> None:
+    panel.disc(centre, _OUTLINED * radius, _INK)
+    panel.disc(centre, radius, _REAL)
+
+
+def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
+    panel.cross(centre, radius + 2, _CASING, 5)
+    panel.cross(centre, radius + 1.5, _FAKE, 3)
+
+
+def _draw_legend(canvas: Canvas) -> None:
+    x, y = float(_MARGIN), canvas.height - 48
+    for axis in range(3):
+        for is_boundary in (True, False):
+            width = _LINE_WIDTH[is_boundary]
+            canvas.line((x, y), (x + 50, y), line_colour(axis, True), width)
+            x = _label(canvas, x + 62, y, f"{AXES[axis]} {'boundary' if is_boundary else 'other'}")
+    _draw_real(canvas, [x + 8, y], _MARK_RADIUS)
+    x = _label(canvas, x + 26, y, "real crossing")
+    _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)
+    x = _label(canvas, x + 26, y, "fake crossing")
+    for word in CONFIDENCES:
+        canvas.tint([[_swatch(x, y)]], _INK, 2 * OPACITY[word])
+        x = _label(canvas, x + 46, y, word)
+
+
+def _swatch(x: float, y: float) -> Float:
+    """The sample of a face in the legend."""
+    return np.array([[x, y - 13], [x + 36, y - 13], [x + 36, y + 13], [x, y + 13]])
+
+
+def _label(canvas: Canvas, x: float, y: float, text: str) -> float:
+    """Write a label of the legend; where the next entry starts."""
+    canvas.text(x, y, text, _TEXT, _INK, "lm")
+    return x + text_width(text, _TEXT) + 34

@@ -1,0 +1,1 @@
+"""The photo on the faces: rectified patches, packed into pages, written beside a file or into it."""

@@ -1,0 +1,44 @@
+"""The faces' textures as formats need them: pages of pictures, and where each corner lies on them.
+
+Many faces share a page, because readers open one picture and one material a page: a scene of 500 faces with a picture
+each would be 500 files, and as many changes of material for whoever draws it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from exporters.model import FlatFace
+from exporters.textures.layout import Patch
+from linecad.arrays import Float
+
+MEDIA_TYPE = "image/jpeg"
+
+
+@dataclass(frozen=True, eq=False)
+class Page:
+    """One picture of textures."""
+
+    name: str  # of the file, which says what is in it: two pages of one name are the same
+    data: bytes  # JPEG
+    width: int  # texels
+    height: int
+
+
+@dataclass(frozen=True, eq=False)
+class Textures:
+    """The pages of a scene and the place of each face on them."""
+
+    pages: tuple[Page, ...]
+    patches: dict[int, Patch]  # by the id of the face
+
+    def page(self, face: FlatFace) -> int:
+        """The number of the face's page."""
+        return self.patches[face.id].page
+
+    def coordinates(self, face: FlatFace) -> Float:
+        """(V, 2) texture coordinates of `face.vertices`: from the lower left corner of the page, its sides are 1."""
+        patch = self.patches[face.id]
+        page = self.pages[patch.page]
+        s, t = (patch.texels(face.vertices) / [page.width, page.height]).T
+        return np.stack([s, 1.0 - t], axis=1)

@@ -1,0 +1,42 @@
+"""Textures from the photo, as JPEG pages.
+
+JPEG, because photos are, and every reader of glTF, USD and OBJ reads it; as PNG the pages of a photo take ten times
+the room.
+"""
+
+import hashlib
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from exporters.faces import checked_polygon
+from exporters.model import build_model
+from exporters.textures.build import Page, Textures
+from exporters.textures.layout import build_layout, view_of
+from exporters.textures.rectify import paint_pages
+from linecad.scene import Scene
+
+_QUALITY = 95  # of 100; the photo itself has seldom been stored better
+_DIGITS = 16  # of the digest in a page's name
+
+
+def build_textures(scene: Scene, photo: NDArray[np.uint8], largest: int) -> Textures:
+    """The textures of all faces from the scene's photo (H, W, 3), on pages of at most `largest` texels a side.
+
+    Raises OutputError where the rings of a face do not bound one piece of plane.
+    """
+    model, view = build_model(scene), view_of(scene)
+    for face in model.faces:
+        checked_polygon(face)
+    layout = build_layout(model, view, largest)
+    pages = [_page(pixels) for pixels in paint_pages(model, layout, view, photo)]
+    return Textures(tuple(pages), {face.id: patch for face, patch in zip(model.faces, layout.patches, strict=True)})
+
+
+def _page(pixels: NDArray[np.uint8]) -> Page:
+    settings = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]
+    settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]  # red stays in its line
+    _, encoded = cv2.imencode(".jpg", cv2.cvtColor(pixels, cv2.COLOR_RGB2BGR), settings)
+    data = encoded.tobytes()
+    return Page(f"photo-{hashlib.sha256(data).hexdigest()[:_DIGITS]}.jpg", data, pixels.shape[1], pixels.shape[0])

@@ -1,0 +1,62 @@
+"""Arrays in records: the names of their types, and the checks that make them read-only and of one shape."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Float = NDArray[np.float64]
+Int = NDArray[np.int64]
+Bool = NDArray[np.bool_]
+Text = NDArray[np.str_]
+
+
+def freeze(record: object, name: str, kind: Any, shape: tuple[int | None, ...]) -> None:
+    """Store field `name` of a frozen record as a read-only array of dtype `kind`; None in `shape` is any length."""
+    array: NDArray[Any] = np.array(getattr(record, name), dtype=kind)
+    if array.size == 0 and len(array.shape) != len(shape):
+        array = array.reshape([0 if length is None else length for length in shape])
+    fits = array.ndim == len(shape) and all(
+        want is None or have == want for have, want in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted = "x".join("any" if length is None else str(length) for length in shape)
+        found = "x".join(map(str, array.shape)) or "scalar"
+        raise ValueError(f"{type(record).__name__}.{name} has shape {found}, expected {wanted}")
+    if array.dtype.kind == "f" and not np.isfinite(array).all():
+        raise ValueError(f"{type(record).__name__}.{name} holds a number that is not finite")
+    array.flags.writeable = False
+    object.__setattr__(record, name, array)
+
+
+def check_lengths(record: object, length: int, names: Iterable[str]) -> None:
+    """Raise ValueError unless the fields `names` have `length` entries each."""
+    for name in names:
+        found = len(getattr(record, name))
+        if found != length:
+            raise ValueError(f"{type(record).__name__}.{name} has {found} entries, expected {length}")
+
+
+def check_not_negative(record: object, names: Iterable[str]) -> None:
+    """Raise ValueError unless all numbers of the fields `names` are 0 or more."""
+    for name in names:
+        array = getattr(record, name)
+        if len(array) and array.min() < 0:
+            raise ValueError(f"{type(record).__name__}.{name} holds {array.min()}, expected 0 or more")
+
+
+def check_words(record: object, name: str, words: tuple[str, ...]) -> None:
+    """Raise ValueError unless the field `name` holds no other than these words."""
+    strange = sorted(set(getattr(record, name).tolist()) - set(words))
+    if strange:
+        raise ValueError(f"{type(record).__name__}.{name} holds {strange}, expected {', '.join(words)}")
+
+
+def check_unique(name: str, ids: list[int]) -> None:
+    """Raise ValueError where an id stands twice."""
+    seen: set[int] = set()
+    for number in ids:
+        if number in seen:
+            raise ValueError(f"{name}: the id {number} stands twice")
+        seen.add(number)

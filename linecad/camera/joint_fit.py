@@ -1,0 +1,230 @@
+"""Maximum likelihood of a camera and its Manhattan frame over all segments, with standard errors.
+
+The model of a segment of length L px: it runs along one of three axes, or along none. Along an axis the angle between
+it and the line from its middle to the vanishing point follows Student's t distribution, whose scale is what the
+detector does to a segment of that length; along none, all angles are alike. Which axis it is, is not decided but
+weighed (expectation maximisation), so that every segment has its say and none needs a threshold.
+
+The axes of a real scene are not exactly orthogonal, nor is a lens exactly a pinhole: each axis may lie off the
+orthogonal frame by a small turn of its own, all three by alike amounts. An axis with a thousand segments then does not
+outvote one with ten, and the standard errors do not shrink below what the scene can tell.
+"""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from linecad.arrays import Float
+from linecad.geometry import rotation_about
+
+FREEDOM = 1.0  # degrees of freedom of Student's t: few, as detectors err far more often than by their usual error
+ANGLE_NOISE = 0.3  # px rad: the angle of a segment of L px is off by this over L ..
+ANGLE_FLOOR = np.radians(0.1)  # .. and by this, however long it is
+PLACE_NOISE = 0.5  # px: its place, which turns the direction to a vanishing point near it
+LEAST_SHARE = 1e-3  # of the segments that one axis, or none, has
+FIRST_SHARES = (0.3, 0.3, 0.3, 0.1)
+USUAL_TURN = np.radians(0.3)  # by which axes lie off an orthogonal frame, before the photo tells
+USUAL_TURN_SAYS = 2.0  # as much as so many observed turns
+LARGEST_TURN = np.radians(1.0)  # beyond it, three directions are not a frame
+FIRST_SCALE = 4.0  # by which the noise is taken larger at first, so that a fit does not end at the nearest optimum
+SCALE_DECAY = 0.8  # from one iteration to the next
+ITERATIONS = 60
+STEP_END = 1e-6  # of the parameters, rad or relative; smaller steps end the iterations
+LARGEST_STEP = 0.2  # rad and relative, in one iteration
+RADIAL_STEP = 1e-5  # for the derivative
+INVERSIONS = 12  # rounds of the fixed point that undoes a distortion
+
+TURNS, FOCAL, CENTER_X, CENTER_Y, RADIAL = slice(0, 3), 3, 4, 5, 6  # places of the parameters
+PARAMETERS = 7
+
+
+@dataclass(frozen=True, eq=False)
+class View:
+    """A camera before a Manhattan scene."""
+
+    axes: Float  # (3, 3) rows are the axes in the camera frame, det +1 or -1
+    focal: float  # px
+    center: Float  # (2,) px, the principal point
+    radial: float = 0.0  # share by which points at half the diagonal move out, see `undistorted`
+
+    @property
+    def matrix(self) -> Float:
+        """K (3, 3), px."""
+        return np.array([[self.focal, 0.0, self.center[0]], [0.0, self.focal, self.center[1]], [0.0, 0.0, 1.0]])
+
+    def moved(self, step: Float, size: float) -> "View":
+        """This view after a step of the PARAMETERS: turns, log focal length, center over `size` px, radial."""
+        return View(
+            self.axes @ rotation_about(step[TURNS]).T,
+            self.focal * float(np.exp(step[FOCAL])),
+            self.center + size * step[[CENTER_X, CENTER_Y]],
+            self.radial + float(step[RADIAL]),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Prior:
+    """What is known before looking: standard errors of the parameters, 0 where they are fixed, inf where free."""
+
+    focal: float  # px, the expected one
+    focal_error: float  # relative
+    center: Float  # (2,) px, the expected one
+    center_error: float  # of the larger side
+    radial_error: float = 0.0  # expected 0
+    largest_turn: float = LARGEST_TURN  # rad, of the usual turn of an axis off the orthogonal frame
+
+    def scaled(self, scale: float) -> "Prior":
+        """The same of the photo at another size."""
+        return replace(self, focal=self.focal * scale, center=(self.center + 0.5) * scale - 0.5)
+
+
+def known(K: Float) -> Prior:
+    """The prior of a camera whose K (3, 3) is given."""
+    return Prior(float(K[0, 0]), 0.0, K[:2, 2], 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """The most likely view, and how sure it is."""
+
+    view: View
+    covariance: Float  # (7, 7) of the parameters; 0 for those that were fixed
+    log_posterior: float
+    share: Float  # (4,) of the segments: along each axis, and along none
+    own_axes: Float  # (3, 3) rows: each axis after the turn of its own
+    turn: float  # rad, the usual turn of an axis off the orthogonal frame
+    belongs: Float = field(repr=False)  # (4, N) the probability that a segment runs along each axis, or along none
+
+
+def undistorted(points: Float, radial: float, center: Float, width: int, height: int) -> Float:
+    """Pixels (..., 2) of a photo as taken, freed from a radial distortion about a center (2,) px.
+
+    `radial` is the share by which the distortion moves a point at half the diagonal away from the center: it is
+    OpenCV's k1 = radial (focal / half diagonal)^2. Negative is a barrel.
+    """
+    if radial == 0.0:
+        return points
+    half = np.hypot(width, height) / 2
+    taken = (points - center) / half
+    straight = taken
+    for _ in range(INVERSIONS):
+        straight = taken / (1 + radial * (straight**2).sum(axis=-1, keepdims=True))
+    result: Float = straight * half + center
+    return result
+
+
+def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, iterations: int = ITERATIONS) -> Fit:
+    """The view that makes segments (N, 2, 2) px most likely, by Gauss-Newton steps from a start near it."""
+    size = float(max(width, height))
+    errors = np.array([np.inf] * 3 + [prior.focal_error, prior.center_error, prior.center_error, prior.radial_error])
+    free = np.flatnonzero(errors > 0)
+    precision = np.zeros(PARAMETERS)
+    precision[free] = 1 / errors[free] ** 2
+    view, turns, turn = start, np.zeros((3, 3)), USUAL_TURN
+    share = np.array(FIRST_SHARES)
+    unknowns = len(free) + 9
+    for iteration in range(iterations):
+        wider = max(FIRST_SCALE * SCALE_DECAY**iteration, 1.0)
+        own = replace(view, axes=_turned(view.axes, turns))
+        sine, scale, slope = _angles(ends, own, width, height, free)
+        scale = scale * wider
+        density = _student(sine / scale) / scale
+        likely = np.vstack([share[:3, None] * density, np.full((1, len(ends)), share[3] / np.pi)])
+        belongs = likely / likely.sum(axis=0)
+        share = np.maximum(belongs.mean(axis=1), LEAST_SHARE)
+        share /= share.sum()
+        say = belongs[:3] * (FREEDOM + 1) / (FREEDOM + (sine / scale) ** 2) / scale**2
+        system, pull = np.zeros((unknowns, unknowns)), np.zeros(unknowns)
+        for axis in range(3):
+            places = np.r_[np.arange(len(free)), len(free) + 3 * axis + np.arange(3)]
+            columns = np.concatenate([slope[axis], slope[axis][:, TURNS]], axis=1)
+            system[np.ix_(places, places)] += (columns * say[axis][:, None]).T @ columns
+            pull[places] += columns.T @ (say[axis] * sine[axis])
+        off = np.zeros(PARAMETERS)
+        off[FOCAL] = np.log(view.focal / prior.focal)
+        off[[CENTER_X, CENTER_Y]] = (view.center - prior.center) / size
+        off[RADIAL] = view.radial
+        diagonal = np.arange(unknowns)
+        system[diagonal, diagonal] += np.r_[precision[free], np.full(9, turn**-2)] + 1e-9
+        pull += np.r_[(precision * off)[free], turns.ravel() * turn**-2]
+        inverse = np.linalg.inv(system)
+        move = np.clip(-inverse @ pull, -LARGEST_STEP, LARGEST_STEP)
+        step = np.zeros(PARAMETERS)
+        step[free] = move[: len(free)]
+        view = view.moved(step, size)
+        turns = turns + move[len(free) :].reshape(3, 3)
+        # Expectation maximisation of the usual turn; a turn of an axis about itself changes nothing, so six count.
+        spread = np.diag(inverse)[len(free) :].reshape(3, 3)
+        across = 1 - view.axes**2
+        seen = (((turns**2 + spread) * across).sum(), across.sum())
+        turn = float(np.sqrt((USUAL_TURN_SAYS * USUAL_TURN**2 + seen[0]) / (USUAL_TURN_SAYS + seen[1])))
+        turn = min(turn, prior.largest_turn)
+        if wider == 1.0 and np.abs(move).max() < STEP_END:
+            break
+    covariance = np.zeros((PARAMETERS, PARAMETERS))
+    covariance[np.ix_(free, free)] = inverse[: len(free), : len(free)]
+    # The density of the turns, and of the usual turn itself, against those of USUAL_TURN.
+    penalty = (precision * off**2).sum() + (turns**2).sum() / turn**2 + USUAL_TURN_SAYS * (USUAL_TURN / turn) ** 2
+    widened = (seen[1] + USUAL_TURN_SAYS) * np.log(turn / USUAL_TURN)
+    posterior = float(np.log(likely.sum(axis=0)).sum() - penalty / 2 - widened)
+    return Fit(view, covariance, posterior, share, _turned(view.axes, turns), turn, belongs)
+
+
+def _turned(axes: Float, turns: Float) -> Float:
+    """Each axis (3, 3), a row, after the turn of its own (3, 3), rad."""
+    return np.array([axis @ rotation_about(turn).T for axis, turn in zip(axes, turns, strict=True)])
+
+
+def _student(ratio: Float) -> Float:
+    """Density of Student's t with FREEDOM = 1 degree of freedom."""
+    density: Float = 1 / np.pi / (1 + ratio**2)
+    return density
+
+
+def _angles(ends: Float, view: View, width: int, height: int, free: "np.ndarray") -> tuple[Float, Float, Float]:
+    """Sines (3, N) of the angles between segments and the directions to the axes, their scales and slopes.
+
+    The slopes (3, N, F) are by the `free` parameters.
+    """
+    sine, scale, cosine, towards, middle = _against(ends, view, width, height)
+    size, K = float(max(width, height)), view.matrix
+    squared = (towards**2).sum(axis=-1)
+
+    def by(change: Float) -> Float:
+        """Slope of the sine where the vanishing points (3, 3) change so."""
+        moved = change[:, None, :2] - middle * change[:, None, 2:]
+        slope: Float = cosine * (towards[..., 0] * moved[..., 1] - towards[..., 1] * moved[..., 0]) / squared
+        return slope
+
+    changes = [by(np.cross(turn, view.axes) @ K.T) for turn in np.eye(3)]
+    for parameter in free[3:]:
+        if parameter == RADIAL or (parameter != FOCAL and RADIAL in free):
+            # The center of the distortion moves with the principal point.
+            step = np.zeros(PARAMETERS)
+            step[parameter] = RADIAL_STEP
+            there = _against(ends, view.moved(step, size), width, height)[0]
+            changes.append((there - sine) / RADIAL_STEP)
+            continue
+        change = np.zeros((3, 3))
+        if parameter == FOCAL:
+            change[0, 0] = change[1, 1] = view.focal
+        else:
+            change[parameter - CENTER_X, 2] = size
+        changes.append(by(view.axes @ change.T))
+    return sine, scale, np.stack(changes, axis=-1)
+
+
+def _against(ends: Float, view: View, width: int, height: int) -> tuple[Float, Float, Float, Float, Float]:
+    """Signed sines, scales and cosines (3, N) against the axes; vectors to the vanishing points; middles."""
+    ends = undistorted(ends, view.radial, view.center, width, height)
+    middle, along = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(along, axis=1)
+    along = along / length[:, None]
+    points = view.axes @ view.matrix.T
+    towards = points[:, None, :2] - middle * points[:, None, 2:]
+    distance = np.maximum(np.linalg.norm(towards, axis=-1), np.finfo(float).tiny)
+    sine = (towards[..., 1] * along[:, 0] - towards[..., 0] * along[:, 1]) / distance
+    cosine = (towards * along).sum(axis=-1) / distance
+    near = PLACE_NOISE * np.abs(points[:, None, 2]) / distance
+    scale = np.sqrt(ANGLE_FLOOR**2 + (ANGLE_NOISE / length) ** 2 + near**2)
+    return sine, scale, cosine, towards, middle

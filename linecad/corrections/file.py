@@ -1,0 +1,216 @@
+"""Corrections as a file: JSON, described in docs/corrections.md, that reads back as exactly the same edits."""
+
+import json
+import os
+from pathlib import Path
+from typing import assert_never, cast
+
+from linecad.corrections.edits import (
+    LABELS,
+    LONGEST,
+    MOST_EDITS,
+    SHORTEST,
+    Anchor,
+    Corrections,
+    Delete,
+    Draw,
+    Edit,
+    Join,
+    KnownLength,
+    Label,
+    LabelCrossing,
+    Point,
+    SetAxis,
+    SetFrame,
+    Split,
+)
+from linecad.errors import CorrectionsFileError
+from linecad.io.files import read_text, write_text_atomically
+from linecad.io.strict_json import JsonError, Node, parse
+from linecad.scene import AXES
+
+FORMAT = "linecad-corrections"
+VERSION = 1
+SUFFIX = ".corrections.json"
+LARGEST_FILE = 64 * 2**20  # bytes; an edit takes a few hundred
+LARGEST_PHOTO = 10**6  # px along one side
+LARGEST_PIXEL = 1e7  # px from the photo's corner
+LEAST_LENGTH = 1e-3  # px, of a segment
+MOST_FRAME_LINES = 100
+OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame")
+
+
+def read_corrections(path: str | os.PathLike[str]) -> Corrections:
+    """The corrections in a file; CorrectionsFileError when it cannot be read or breaks docs/corrections.md."""
+    text = read_text(path, LARGEST_FILE, "corrections file", CorrectionsFileError)
+    try:
+        return corrections_from_json(text)
+    except CorrectionsFileError as error:
+        raise CorrectionsFileError(f"{' '.join(str(path).splitlines())}: {error}") from None
+
+
+def write_corrections(corrections: Corrections, path: str | os.PathLike[str]) -> None:
+    """Write the corrections file, whole or not at all; OutputError when that cannot be done."""
+    write_text_atomically(Path(path), corrections_to_json(corrections))
+
+
+def check_belongs(corrections: Corrections, name: str, width: int, height: int) -> None:
+    """Raise CorrectionsFileError unless the corrections were made in a photo of this size; `name` is theirs."""
+    if (corrections.width, corrections.height) != (width, height):
+        raise CorrectionsFileError(
+            f"{name} is for a photo of {corrections.width} x {corrections.height} px ({corrections.photo}), this one "
+            f"has {width} x {height} px; give the corrections of this photo"
+        )
+
+
+def corrections_from_json(text: str) -> Corrections:
+    """The corrections that a JSON text tells; CorrectionsFileError with one line when it breaks the format."""
+    try:
+        return _corrections(parse(text))
+    except JsonError as error:
+        raise CorrectionsFileError(f"{error}; see docs/corrections.md") from None
+
+
+def corrections_to_json(corrections: Corrections) -> str:
+    """The text of the corrections file, the same for the same corrections, with one edit in each line."""
+    head = {
+        "format": FORMAT,
+        "version": VERSION,
+        "photo": corrections.photo,
+        "width": corrections.width,
+        "height": corrections.height,
+    }
+    parts = [f" {json.dumps(key)}: {json.dumps(value)}" for key, value in head.items()]
+    for key, edits in (("edits", corrections.edits), ("undone", corrections.undone)):
+        rows = ",\n".join("  " + json.dumps(edit_to_json(edit), allow_nan=False) for edit in edits)
+        parts.append(f' "{key}": [\n{rows}\n ]' if rows else f' "{key}": []')
+    return "{\n" + ",\n".join(parts) + "\n}\n"
+
+
+def edit_to_json(edit: Edit) -> dict[str, object]:
+    """One edit as plain values."""
+    match edit:
+        case LabelCrossing():
+            return {
+                "op": "label",
+                "lines": [_anchor_to_json(line) for line in edit.lines],
+                "pixel": list(edit.pixel),
+                "value": edit.label,
+            }
+        case SetAxis():
+            return {"op": "axis", "line": _anchor_to_json(edit.line), "axis": AXES[edit.axis]}
+        case Delete():
+            return {"op": "delete", "line": _anchor_to_json(edit.line)}
+        case Split():
+            return {"op": "split", "line": _anchor_to_json(edit.line), "at": list(edit.at)}
+        case Join():
+            return {"op": "join", "lines": [_anchor_to_json(line) for line in edit.lines]}
+        case Draw():
+            return {"op": "draw", "line": _anchor_to_json(edit.line)}
+        case KnownLength():
+            return {"op": "length", "line": _anchor_to_json(edit.line), "metres": edit.metres}
+        case SetFrame():
+            return {"op": "frame", "lines": [_anchor_to_json(line) for line in edit.lines]}
+        case _:
+            assert_never(edit)
+
+
+def _anchor_to_json(anchor: Anchor) -> dict[str, object]:
+    return {"segment": [list(end) for end in anchor.ends], "axis": AXES[anchor.axis]}
+
+
+def _corrections(top: Node) -> Corrections:
+    if top["format"].value != FORMAT:
+        raise top["format"].wrong(f'"{FORMAT}"')
+    if top["version"].integer() != VERSION:
+        raise JsonError(f"version is {top['version'].value}, but only version {VERSION} can be read here")
+    edits, undone = top["edits"].items(), top["undone"].items() if top.get("undone") else []
+    if len(edits) + len(undone) > MOST_EDITS:
+        raise JsonError(f"there are {len(edits) + len(undone)} edits, at most {MOST_EDITS} are taken")
+    return Corrections(
+        photo=top["photo"].text(),
+        width=top["width"].integer(1, LARGEST_PHOTO),
+        height=top["height"].integer(1, LARGEST_PHOTO),
+        edits=tuple(map(_edit, edits)),
+        undone=tuple(map(_edit, undone)),
+    )
+
+
+def _edit(node: Node) -> Edit:
+    match node["op"].one_of(OPERATIONS):
+        case "label":
+            return LabelCrossing(_two(node["lines"]), point(node["pixel"]), label(node))
+        case "axis":
+            return SetAxis(_anchor(node["line"]), axis(node["axis"]))
+        case "delete":
+            return Delete(_anchor(node["line"]))
+        case "split":
+            return Split(_anchor(node["line"]), point(node["at"]))
+        case "join":
+            return Join(_two(node["lines"]))
+        case "draw":
+            return Draw(_anchor(node["line"]))
+        case "length":
+            return KnownLength(_anchor(node["line"]), metres(node))
+        case _:
+            return SetFrame(frame_lines(node["lines"], "segment"))
+
+
+def _anchor(node: Node, key: str = "segment") -> Anchor:
+    return Anchor(ends(node[key]), axis(node["axis"]))
+
+
+def _two(node: Node) -> tuple[Anchor, Anchor]:
+    items = node.items()
+    if len(items) != 2:
+        raise node.wrong("a list of 2")
+    return _anchor(items[0]), _anchor(items[1])
+
+
+def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:
+    """Lines drawn along the axes, their ends under `key`; JsonError for anything else, as below."""
+    items = node.items()
+    if not 1 <= len(items) <= MOST_FRAME_LINES:
+        raise node.wrong(f"a list of 1 to {MOST_FRAME_LINES}")
+    return tuple(_anchor(item, key) for item in items)
+
+
+def ends(node: Node) -> tuple[Point, Point]:
+    """Both ends of a segment, px."""
+    items = node.items()
+    if len(items) != 2:
+        raise node.wrong("a list of 2")
+    first, second = point(items[0]), point(items[1])
+    if abs(first[0] - second[0]) + abs(first[1] - second[1]) < LEAST_LENGTH:
+        raise node.wrong("two ends that differ")
+    return first, second
+
+
+def point(node: Node) -> Point:
+    """A place in the photo, px."""
+    items = node.items()
+    if len(items) != 2:
+        raise node.wrong("a list of 2")
+    return items[0].number(LARGEST_PIXEL), items[1].number(LARGEST_PIXEL)
+
+
+def axis(node: Node) -> int:
+    """0, 1 or 2 for x, y or z."""
+    return AXES.index(node.one_of(tuple(AXES)))
+
+
+def label(node: Node) -> Label | None:
+    """The member "value": a label, or null."""
+    member = node.get("value")
+    return None if member is None or member.value is None else cast(Label, member.one_of(LABELS))
+
+
+def metres(node: Node) -> float | None:
+    """The member "metres": a length, or null."""
+    member = node.get("metres")
+    if member is None or member.value is None:
+        return None
+    found = member.number(LONGEST)
+    if found < SHORTEST:
+        raise member.wrong(f"a length from {SHORTEST:g} to {LONGEST:g} m")
+    return found

@@ -1,0 +1,171 @@
+"""The records of the line graph: segments with their axes, the graph that goes into a solver, what comes out.
+
+Words: a *segment* is in the image, a *line* is in space, an *edge* joins two nodes of the line graph, a *crossing* is
+where two segments meet in the image, an *axis* is 0, 1 or 2 (x, y, z), a *depth* is the camera z of a point. Frames of
+reference are those of `linecad.scene`.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int, Text, check_lengths, check_words, freeze
+
+EdgeKind = Literal["L", "T", "X", "collinear"]
+Formulation = Literal["gain", "paper"]
+Status = Literal[
+    "optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit", "heuristic", "robust fit"
+]  # fmt: skip
+
+EDGE_KINDS: tuple[EdgeKind, ...] = get_args(EdgeKind)
+STATUSES: tuple[Status, ...] = get_args(Status)
+
+
+@dataclass(frozen=True, eq=False)
+class Segments:
+    """Straight pieces of image, labelled by the axis of the line that they show."""
+
+    ends: Float  # (N, 2, 2) px, both ends, x and y
+    axis: Int  # (N,) 0, 1, 2 or -1 where it is not known
+
+    def __post_init__(self) -> None:
+        freeze(self, "ends", np.float64, (None, 2, 2))
+        freeze(self, "axis", np.int64, (None,))
+        check_lengths(self, len(self.ends), ["axis"])
+        if len(self.axis) and not (self.axis.min() >= -1 and self.axis.max() <= 2):
+            raise ValueError("Segments.axis holds a number outside -1, 0, 1, 2")
+
+    def __len__(self) -> int:
+        return len(self.ends)
+
+    @property
+    def length(self) -> Float:
+        """(N,) px."""
+        length: Float = np.linalg.norm(self.ends[:, 1] - self.ends[:, 0], axis=1)
+        return length
+
+    def subset(self, keep: Bool | Int) -> "Segments":
+        """The segments that a mask or an index array selects."""
+        return Segments(self.ends[keep], self.axis[keep])
+
+    def joined(self, others: "Segments") -> "Segments":
+        """These segments and the others after them."""
+        return Segments(np.concatenate([self.ends, others.ends]), np.concatenate([self.axis, others.axis]))
+
+
+@dataclass(frozen=True, eq=False)
+class ManhattanFrame:
+    """How the three Manhattan axes stand before the camera."""
+
+    rotation: Float  # (3, 3) world to camera; columns are the axes x, y, z in the camera frame, det +1
+    residual: float  # root mean square angle between the segments and their vanishing points, rad
+    explained: float  # share of the segment length that points to one of the three vanishing points, 0 to 1
+
+    def __post_init__(self) -> None:
+        freeze(self, "rotation", np.float64, (3, 3))
+        off = np.abs(self.rotation @ self.rotation.T - np.eye(3)).max()
+        if off > 1e-6 or np.linalg.det(self.rotation) < 0:
+            raise ValueError(f"ManhattanFrame.rotation is not a rotation (off by {off:.3g})")
+
+
+@dataclass(frozen=True, eq=False)
+class LineGraph:
+    """The paper's line graph: nodes are segments, edges are crossings that may be real.
+
+    A line of known axis through a known segment has one unknown, the depth s_i of the segment's middle. Lines i and j
+    of different axes meet in space exactly when they agree in the third coordinate, s_i d_i = s_j d_j with d the ray's
+    component in that coordinate: log s_i - log s_j = log_ratio, within `tolerance` (design: one depth per line).
+    """
+
+    segments: Segments  # N; each passes exactly through the vanishing point of its axis
+    rays: Float  # (N, 3) world ray of the segment's middle, camera depth 1
+    end_rays: Float  # (N, 2, 3) world rays of the two ends, the paper's d_i1 and d_i2, camera depth 1
+    edges: Int  # (E, 2) indices of the two segments, smaller first
+    crossing: Float  # (E, 2) px
+    gap: Float  # (E, 2) px by which each segment falls short of the crossing; 0 inside the segment
+    kind: Text  # (E,) L, T, X, collinear
+    corner: Bool  # (E,) a line of the third axis passes too (a Y or W junction)
+    weight: Float  # (E,) the paper's w_ij, positive
+    coordinate: Int  # (E,) axis in which the two lines must agree, the paper's alpha
+    log_ratio: Float  # (E,) c_ij: log s_i - log s_j of two lines that meet; 0 where not possible
+    tolerance: Float  # (E,) half width of the interval about log_ratio that pixel noise explains
+    possible: Bool  # (E,) False where the two lines lie on opposite sides of the camera in `coordinate`
+    informative: Bool  # (E,) False where the tolerance is so wide that the crossing says nothing about depth
+
+    def __post_init__(self) -> None:
+        freeze(self, "rays", np.float64, (None, 3))
+        freeze(self, "end_rays", np.float64, (None, 2, 3))
+        freeze(self, "edges", np.int64, (None, 2))
+        freeze(self, "crossing", np.float64, (None, 2))
+        freeze(self, "gap", np.float64, (None, 2))
+        for name in ("weight", "log_ratio", "tolerance"):
+            freeze(self, name, np.float64, (None,))
+        for name in ("corner", "possible", "informative"):
+            freeze(self, name, np.bool_, (None,))
+        freeze(self, "kind", np.str_, (None,))
+        freeze(self, "coordinate", np.int64, (None,))
+        check_lengths(self, len(self.segments), ["rays", "end_rays"])
+        check_lengths(self, len(self.edges), _EDGE_FIELDS)
+        if len(self.edges):
+            if self.edges.min() < 0 or self.edges.max() >= len(self.segments):
+                raise ValueError(f"LineGraph.edges name segment {self.edges.max()} of {len(self.segments)}")
+            if not (self.edges[:, 0] < self.edges[:, 1]).all():
+                raise ValueError("LineGraph.edges must name the smaller segment first")
+            check_words(self, "kind", EDGE_KINDS)
+
+    @property
+    def axis(self) -> Int:
+        """(N,) axis of each line."""
+        return self.segments.axis
+
+    def misfit(self, log_depth: Float) -> Float:
+        """By how much log depths (N,) miss the ratio that each crossing asks for (E,): |log s_i - log s_j - c_ij|."""
+        first, second = self.edges.T
+        misfit: Float = np.abs(log_depth[first] - log_depth[second] - self.log_ratio)
+        return misfit
+
+    def subset(self, keep: Int) -> "LineGraph":
+        """The graph on the nodes `keep` (ascending indices), renumbered, with the edges among them."""
+        new = np.full(len(self.segments), -1, np.int64)
+        new[keep] = np.arange(len(keep))
+        inside = (new[self.edges] >= 0).all(axis=1) if len(self.edges) else np.zeros(0, bool)
+        fields = {name: getattr(self, name)[inside] for name in _EDGE_FIELDS}
+        return LineGraph(
+            segments=self.segments.subset(keep),
+            rays=self.rays[keep],
+            end_rays=self.end_rays[keep],
+            edges=new[self.edges[inside]],
+            **fields,
+        )
+
+
+_EDGE_FIELDS = (
+    "crossing", "gap", "kind", "corner", "weight", "coordinate", "log_ratio", "tolerance", "possible", "informative",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """What a solver found for a line graph of N lines and E edges."""
+
+    status: Status
+    solver: str  # name and version
+    formulation: Formulation
+    objective: float
+    bound: float  # proven upper bound of the objective, infinite where nothing was proven
+    gap: float  # (bound - objective) / max(|objective|, 1e-9)
+    seconds: float
+    nodes: int  # branch-and-bound nodes
+    connected: Bool  # (E,) the paper's b_ij: this crossing is real
+    is_boundary: Bool  # (N,) the paper's B_i
+    planar_pairs: Int  # (P, 3) two parallel lines and the other axis of the plane they lie in, the paper's pi
+    log_depth: Float  # (N,) log of the depth of each segment's middle, consistent with `connected`
+    cuts: int = 0  # rows that were added while solving
+
+    def __post_init__(self) -> None:
+        freeze(self, "connected", np.bool_, (None,))
+        freeze(self, "is_boundary", np.bool_, (None,))
+        freeze(self, "planar_pairs", np.int64, (None, 3))
+        freeze(self, "log_depth", np.float64, (None,))
+        check_lengths(self, len(self.is_boundary), ["log_depth"])

@@ -1,0 +1,1 @@
+"""Straight segments of the photo, grouped to whole lines along their vanishing points."""

@@ -1,0 +1,1 @@
+"""From decided crossings to a model: lines in space, planes, faces, scale, the scene."""

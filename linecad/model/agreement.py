@@ -1,0 +1,63 @@
+"""Where planes and faces differ from what the solver said of planar families and boundaries, in words for the notes.
+
+The solver decides both from crossings alone (the paper's pi and B); planes and faces come from the lines in space.
+"""
+
+import numpy as np
+import shapely
+
+from linecad.arrays import Bool, Float, Int
+from linecad.scene import Lines, Plane
+
+ON_FACE = 1e-6  # of a plane's extent; a line so near to a face lies on it or on its edge
+
+
+def disagreements(planes: tuple[Plane, ...], lines: Lines, planar_pairs: Int) -> list[str]:
+    """One note for each kind of difference; none where all agree.
+
+    `planar_pairs` (P, 3) are two parallel lines, by their place in `lines`, and the other axis of the plane in which
+    the solver sees them.
+    """
+    notes = []
+    apart = int((~in_one_plane(lines, planar_pairs)).sum())
+    if apart:
+        notes.append(
+            f"{apart} of {len(planar_pairs)} pairs of parallel lines that the solver sees in one plane lie in two"
+        )
+    bounds, shown = bounding(planes, lines)
+    differ = int((shown & (bounds != lines.is_boundary)).sum())
+    if differ:
+        notes.append(
+            f"{differ} of {int(shown.sum())} lines at faces are boundaries to the solver and touch faces of one "
+            "direction only, or the other way round"
+        )
+    return notes
+
+
+def in_one_plane(lines: Lines, planar_pairs: Int) -> Bool:
+    """Which pairs (P,) have both lines in one plane of the normal that is neither theirs nor the pair's other axis."""
+    first, second, other = planar_pairs.reshape(-1, 3).T
+    normal = 3 - lines.axis[first] - other
+    return np.asarray(lines.ends[first, 0, normal] == lines.ends[second, 0, normal])
+
+
+def bounding(planes: tuple[Plane, ...], lines: Lines) -> tuple[Bool, Bool]:
+    """Which lines (N,) touch faces of both planes' directions that they can lie in, and which touch any."""
+    row = {number: index for index, number in enumerate(lines.id.tolist())}
+    touched = np.zeros((len(lines), 3), bool)
+    for plane in planes:
+        members = np.array([row[number] for number in plane.lines], np.int64)
+        flat = [axis for axis in range(3) if axis != plane.axis]
+        pieces = shapely.linestrings(lines.ends[members][:, :, flat])
+        reach = ON_FACE * float(np.ptp(lines.ends[members][:, :, flat], axis=(0, 1)).max())
+        for face in plane.faces:
+            polygon = shapely.Polygon(_flat(face.outline, flat), [_flat(hole, flat) for hole in face.holes])
+            along = shapely.length(shapely.intersection(pieces, polygon.buffer(reach)))
+            touched[members, plane.axis] |= along > 2 * reach
+    count = touched.sum(axis=1)
+    return count == 2, count > 0
+
+
+def _flat(ring: Float, axes: list[int]) -> Float:
+    points: Float = ring[:, axes]
+    return points

@@ -1,0 +1,167 @@
+"""A solved line graph to lines in space, made exact: chosen crossings meet in one point to rounding.
+
+The solver leaves each chosen crossing within its tolerance. Least squares spreads that slack; then every coordinate
+that chosen crossings share becomes one number, a plane offset. A line of axis x is then the meeting of its y and its z
+plane, and two lines that share a plane and cross in the image meet in space exactly.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import csr_matrix, diags_array
+from scipy.sparse.csgraph import connected_components
+from scipy.sparse.linalg import spsolve
+
+from linecad.arrays import Bool, Float, Int
+from linecad.graph.connectivity import group_numbers
+from linecad.line_graph import LineGraph, Solution
+from linecad.model.plane_merging import MIN_TOLERANCE, Merges, find_merges
+
+ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
+
+
+@dataclass(frozen=True, eq=False)
+class Lifted:
+    """The N lines of a graph in space; the unit is free, lines of different chosen components have unrelated scales."""
+
+    ends: Float  # (N, 2, 3) world
+    offset: Float  # (N, 3) the two coordinates that define each line; NaN along its own axis
+    shared: Int  # (N, 3) number of the offset that each coordinate belongs to; -1 along the line's own axis
+    residual: Float  # (E,) how far the log depths of an edge's lines are from its equation
+    shift: Float  # (N,) rad by which each line moved off the plane of its segment to become exact
+
+
+def lift(graph: LineGraph, solution: Solution) -> Lifted:
+    """Lines in space for every node of the graph, exact at the chosen crossings (paper, algorithm 1, last steps).
+
+    Planes of one normal that the noise cannot tell apart become one.
+    """
+    chosen = solution.connected
+    log_depth = fit_log_depths(graph, chosen, solution.log_depth)
+    shared = _shared_coordinates(graph, chosen)
+    merges = find_merges(graph, chosen, _parts(graph, chosen), shared, log_depth, _normal(graph, chosen))
+    if len(merges.axis):
+        log_depth = fit_log_depths(graph, chosen, log_depth, merges)
+        shared = _shared_coordinates(graph, chosen, merges)
+    offset = _offsets(graph, shared, np.exp(log_depth))
+    ends, shift = _ends(graph, offset)
+    ends = _end_at_junctions(graph, chosen, offset, ends)
+    return Lifted(ends, offset, shared, graph.misfit(log_depth), shift)
+
+
+def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float, merges: Merges | None = None) -> Float:
+    """Weighted least squares of log s_i - log s_j = c_ij over the chosen crossings that say something (N,).
+
+    Planes that were merged are equations more.
+    """
+    used = chosen & graph.informative
+    incidence = _incidence(graph, used)
+    weight = 1 / graph.tolerance[used] ** 2
+    normal = _normal(graph, chosen)
+    # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
+    right = incidence.T @ (weight * (graph.log_ratio[used] - incidence @ guess))
+    if merges is not None:
+        normal = normal + merges.rows.T @ merges.rows / MIN_TOLERANCE**2
+        right = right + merges.rows.T @ (merges.log_ratio - merges.rows @ guess) / MIN_TOLERANCE**2
+    return np.asarray(guess + spsolve(normal.tocsc(), right))
+
+
+def _incidence(graph: LineGraph, used: Bool) -> csr_matrix:
+    """(E', N) with 1 for the first line of each used edge and -1 for the second."""
+    rows = np.arange(used.sum())
+    i, j = graph.edges[used].T
+    values = np.r_[np.ones(len(rows)), -np.ones(len(rows))]
+    return csr_matrix((values, (np.r_[rows, rows], np.r_[i, j])), (len(rows), len(graph.segments)))
+
+
+def _normal(graph: LineGraph, chosen: Bool) -> csr_matrix:
+    """Matrix (N, N) of the normal equations, in units of 1 / tolerance ** 2."""
+    used = chosen & graph.informative
+    incidence = _incidence(graph, used)
+    weight = diags_array(1 / graph.tolerance[used] ** 2)
+    return csr_matrix(incidence.T @ weight @ incidence + ANCHOR * diags_array(np.ones(len(graph.segments))))
+
+
+def _parts(graph: LineGraph, chosen: Bool) -> Int:
+    """Number (N,) of the group of lines that chosen crossings with a say tie to each line."""
+    return group_numbers(len(graph.segments), graph.edges[chosen & graph.informative])
+
+
+def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = None) -> Int:
+    """Numbers (N, 3) such that two coordinates have the same number when crossings or merges make them equal."""
+    count = 3 * len(graph.segments)
+    i, j = graph.edges[chosen].T
+    # Crossing lines share one coordinate, the pieces of one line share both of theirs.
+    also = graph.axis[i] == graph.axis[j]
+    coordinate = np.r_[graph.coordinate[chosen], (3 - graph.axis[i] - graph.coordinate[chosen])[also]]
+    i, j = np.r_[i, i[also]], np.r_[j, j[also]]
+    if merges is not None:
+        coordinate = np.r_[coordinate, merges.axis]
+        i, j = np.r_[i, merges.lines[:, 0]], np.r_[j, merges.lines[:, 1]]
+    links = csr_matrix((np.ones(len(i)), (3 * i + coordinate, 3 * j + coordinate)), (count, count))
+    shared: Int = connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int64)
+    shared[np.arange(len(graph.segments)), graph.axis] = -1
+    return shared
+
+
+def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
+    """One number (N, 3) for each shared coordinate: the mean of what its lines say, by their certainty."""
+    say = depth[:, None] * graph.rays
+    # A segment's noise moves its ray by about the same angle everywhere, so its coordinates move with its depth.
+    certainty = np.broadcast_to(1 / depth[:, None] ** 2, say.shape)
+    own = shared >= 0
+    groups = int(shared.max(initial=-1)) + 1
+    total = np.bincount(shared[own], (say * certainty)[own], groups)
+    mass = np.bincount(shared[own], certainty[own], groups)
+    offset = np.full(shared.shape, np.nan)
+    offset[own] = (total / np.maximum(mass, np.finfo(float).tiny))[shared[own]]
+    return offset
+
+
+def _ends(graph: LineGraph, offset: Float) -> tuple[Float, Float]:
+    """Ends (N, 2, 3): the points of the exact line nearest to the rays of the segment's ends; and the angle (N,)."""
+    count = len(graph.segments)
+    rows = np.arange(count)
+    across = np.stack([(graph.axis + 1) % 3, (graph.axis + 2) % 3], axis=1)
+    fixed = np.take_along_axis(offset, across, axis=1)
+    rays = np.take_along_axis(graph.end_rays, across[:, None, :].repeat(2, axis=1), axis=2)
+    # Of all points of a ray, the one whose two fixed coordinates are nearest to the line's.
+    depth = (rays * fixed[:, None]).sum(axis=2) / np.maximum((rays**2).sum(axis=2), np.finfo(float).tiny)
+    ends = np.empty((count, 2, 3))
+    ends[rows[:, None], np.arange(2), graph.axis[:, None]] = (
+        depth * graph.end_rays[rows[:, None], np.arange(2), graph.axis[:, None]]
+    )
+    for column in range(2):
+        ends[rows[:, None], np.arange(2), across[:, column, None]] = fixed[:, column, None]
+    missed = depth[..., None] * rays - fixed[:, None]
+    length = np.linalg.norm(ends, axis=2)
+    shift = (np.linalg.norm(missed, axis=2) / np.maximum(length, np.finfo(float).tiny)).max(axis=1)
+    return ends, shift
+
+
+def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, ends: Float) -> Float:
+    """Ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
+    junctions: dict[tuple[int, int], list[float]] = {}
+    for edge in np.flatnonzero(chosen & (graph.kind != "collinear")).tolist():  # those have no point in common
+        for side in range(2):
+            line, other = graph.edges[edge, side], graph.edges[edge, 1 - side]
+            if _ends_there(graph, edge, side):
+                to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edge], axis=1)
+                nearer = (int(line), int(to_ends.argmin()))
+                junctions.setdefault(nearer, []).append(float(offset[other, graph.axis[line]]))
+    moved = ends.copy()
+    for (line, end), places in junctions.items():
+        axis = graph.axis[line]
+        outward = float(np.sign(ends[line, end, axis] - ends[line, 1 - end, axis]))
+        moved[line, end, axis] = max(places) if outward > 0 else min(places)
+    return moved
+
+
+def _ends_there(graph: LineGraph, edge: int, side: int) -> bool:
+    """Whether a line ends at a crossing: both do at an L, one does at a T, and an X is passed by all that reach it."""
+    if graph.gap[edge, side] > 0 or graph.kind[edge] == "L":
+        return True
+    if graph.kind[edge] == "X" or graph.gap[edge, 1 - side] > 0:
+        return False
+    to_ends = np.linalg.norm(graph.segments.ends[graph.edges[edge]] - graph.crossing[edge], axis=2).min(axis=1)
+    return bool(to_ends[side] < to_ends[1 - side])

@@ -1,0 +1,200 @@
+"""How long a unit of a scene is in metres, from a length that a person knows.
+
+One photo has no scale, so somebody must say one length: of a line of the scene, between two points of the photo that
+lie on one line or in one plane, or the height of the camera above the ground. Only `metres_per_unit` is set; the
+coordinates of a scene stay as they are.
+
+Only component 0 can be measured: the scale of every other one is itself a guess (linecad.model.build).
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linecad.arrays import Float
+from linecad.errors import ScaleError
+from linecad.geometry import inside_ring, world_rays
+from linecad.scene import AXES, Face, Plane, Scene
+
+REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in the photo lies on it
+LOWER_SHARE = 0.1  # of the camera's height: what reaches farther below a plane speaks against its being the ground
+STRAY_LINES = 2  # lines that may reach below the ground, because some are always wrong
+SHORTEST = 1e-9  # of the scene's median depth; shorter lengths measure nothing
+NOTE = "scale: "  # how the note begins that says where the scale came from
+
+
+@dataclass(frozen=True)
+class LineLength:
+    """A line of the scene is `metres` long, from end to end as the scene has it."""
+
+    line: int  # id
+    metres: float
+
+
+@dataclass(frozen=True)
+class PointDistance:
+    """Two points of the photo lie `metres` apart in space."""
+
+    points: tuple[tuple[float, float], tuple[float, float]]  # px, as `segment` of the scene file counts them
+    metres: float
+
+
+@dataclass(frozen=True)
+class CameraHeight:
+    """The camera stands `metres` above the ground."""
+
+    metres: float
+
+
+Known = LineLength | PointDistance | CameraHeight
+
+
+def set_scale(scene: Scene, known: Known) -> Scene:
+    """The scene with `metres_per_unit` as the known length says, and a note on what was measured for it.
+
+    Raises ScaleError where the scene does not hold what is to be measured.
+    """
+    match known:
+        case LineLength():
+            units, what = _line_length(scene, known.line), f"line {known.line} is {known.metres:g} m long"
+        case PointDistance():
+            units, where = _distance(scene, *known.points)
+            (a, b), (c, d) = known.points
+            what = f"{a:g},{b:g} and {c:g},{d:g} px, on {where}, are {known.metres:g} m apart"
+        case CameraHeight():
+            plane = find_ground(scene)
+            units = -plane.offset
+            what = (
+                f"the camera is {known.metres:g} m above plane {plane.id} (z = {plane.offset:.4g}), taken to be the "
+                "ground as the lowest horizontal plane"
+            )
+    factor = known.metres / units
+    notes = [note for note in scene.notes if not note.startswith(NOTE)]
+    return replace(scene, metres_per_unit=factor, notes=(*notes, f"{NOTE}{what}, so a unit is {factor:.6g} m"))
+
+
+def find_ground(scene: Scene) -> Plane:
+    """The lowest horizontal plane of component 0 below the camera; ScaleError where none is the lowest thing there.
+
+    Lines that reach farther down than LOWER_SHARE of its depth below the camera, more than STRAY_LINES of them, show
+    that it is a balcony or a row of sills, and that the ground is not in the scene.
+    """
+    own = _own_lines(scene)
+    below = [plane for plane in scene.planes if plane.axis == 2 and plane.offset < 0 and own & set(plane.lines)]
+    if not below:
+        raise ScaleError(
+            "the largest group of lines has no horizontal plane below the camera that could be the ground; "
+            "give a length with --scale instead"
+        )
+    ground = min(below, key=lambda plane: plane.offset)
+    lowest = scene.lines.ends[scene.lines.component == 0, :, 2].min(axis=1)
+    lower = int((lowest < ground.offset * (1 + LOWER_SHARE)).sum())
+    if lower > STRAY_LINES:
+        raise ScaleError(
+            f"the lowest horizontal plane, {ground.id} (z = {ground.offset:.4g}), is not the ground: {lower} lines "
+            f"reach below it, down to z = {lowest.min():.4g}; give a length with --scale instead"
+        )
+    return ground
+
+
+def _own_lines(scene: Scene) -> set[int]:
+    """The ids of the lines of component 0."""
+    return set(scene.lines.id[scene.lines.component == 0].tolist())
+
+
+def _line_length(scene: Scene, line: int) -> float:
+    """In units of the scene."""
+    rows = np.flatnonzero(scene.lines.id == line)
+    if len(rows) == 0:
+        last = f"has ids up to {scene.lines.id.max()}" if len(scene.lines) else "has no lines"
+        raise ScaleError(f"the scene has no line {line}, it {last}; see the ids in the scene file")
+    component = int(scene.lines.component[rows[0]])
+    if component != 0:
+        raise ScaleError(
+            f"line {line} belongs to component {component}, whose own scale is a guess; "
+            "choose a line of component 0, the largest"
+        )
+    start, end = scene.lines.ends[rows[0]]
+    return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
+
+
+def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, float]) -> tuple[float, str]:
+    """How far apart two points of the photo (px) lie in space, in units of the scene, and on what they lie."""
+    pixels = np.array([first, second])
+    rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
+    row = _line_under(scene, pixels)
+    if row is not None:
+        ends = scene.lines.ends[row]
+        points, where = _nearest_on_line(rays, ends), f"line {scene.lines.id[row]}"
+    else:
+        plane = _plane_under(scene, rays)
+        points, where = rays * (plane.offset / rays[:, plane.axis])[:, None], f"plane {plane.id} ({AXES[plane.axis]})"
+    return _checked(scene, float(np.linalg.norm(points[1] - points[0])), "between the two points"), where
+
+
+def _line_under(scene: Scene, pixels: Float) -> int | None:
+    """The row of the line of component 0 that both points (2, 2) px lie on, the nearest of several; or None."""
+    lines = scene.lines
+    reach = REACH * max(scene.camera.width, scene.camera.height)
+    along = lines.segment[:, 1] - lines.segment[:, 0]
+    length = np.maximum(np.linalg.norm(along, axis=1), 1e-12)
+    away = pixels[None] - lines.segment[:, :1]  # (N, 2, 2)
+    share = (away * along[:, None]).sum(axis=2) / length[:, None]
+    share = np.clip(share, 0, length[:, None])
+    foot = lines.segment[:, :1] + share[:, :, None] * (along / length[:, None])[:, None]
+    off = np.linalg.norm(pixels[None] - foot, axis=2).max(axis=1, initial=0.0)
+    off[(lines.component != 0) | (off > reach)] = np.inf
+    row = int(off.argmin()) if len(off) else 0
+    return row if len(off) and np.isfinite(off[row]) else None
+
+
+def _nearest_on_line(rays: Float, ends: Float) -> Float:
+    """(M, 3) the points of a line (2, 3) that come nearest to rays (M, 3) from the camera."""
+    direction = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    unit = rays / np.linalg.norm(rays, axis=1)[:, None]
+    cosine = unit @ direction
+    along = (cosine * (unit @ ends[0]) - ends[0] @ direction) / (1.0 - cosine**2)
+    points: Float = ends[0] + along[:, None] * direction
+    return points
+
+
+def _plane_under(scene: Scene, rays: Float) -> Plane:
+    """The plane of component 0 in which both rays (2, 3) meet a face."""
+    own = _own_lines(scene)
+    hit: list[set[int]] = [set(), set()]
+    planes = {plane.id: plane for plane in scene.planes if own & set(plane.lines)}
+    for plane, face in scene.faces:
+        if plane.id in planes:
+            for number in range(2):
+                if _meets(rays[number], plane, face):
+                    hit[number].add(plane.id)
+    for number, word in enumerate(("first", "second")):
+        if not hit[number]:
+            raise ScaleError(
+                f"the {word} point lies on no face of the largest group of lines, and the two on none of its lines; "
+                "choose two points on one line or in one plane, or give a line by its id"
+            )
+    common = sorted(hit[0] & hit[1])
+    if not common:
+        raise ScaleError(
+            f"the two points lie in different planes ({min(hit[0])} and {min(hit[1])}); "
+            "choose two points on one line or in one plane"
+        )
+    return planes[common[0]]
+
+
+def _meets(ray: Float, plane: Plane, face: Face) -> bool:
+    """Whether a ray from the camera meets a face: inside an odd number of its rings."""
+    if ray[plane.axis] * plane.offset <= 0:
+        return False
+    others = [axis for axis in range(3) if axis != plane.axis]
+    point = (ray * (plane.offset / ray[plane.axis]))[others][None]
+    rings = (face.outline, *face.holes)
+    return sum(bool(inside_ring(point, ring[:, others])[0]) for ring in rings) % 2 == 1
+
+
+def _checked(scene: Scene, units: float, what: str) -> float:
+    depth = float(np.median(np.abs(scene.lines.ends @ scene.rotation[2]))) if len(scene.lines) else 1.0
+    if not units > SHORTEST * depth:
+        raise ScaleError(f"{what} measures nothing: its length in the scene is 0; choose a longer one")
+    return units

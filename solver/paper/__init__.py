@@ -1,0 +1,1 @@
+"""Formulation "paper": the program as the paper prints it."""

@@ -1,0 +1,118 @@
+"""Bodies by resampling: two walls that one line joins, walls that many lines join, and the doubt about a photo."""
+
+import numpy as np
+import pytest
+
+from linecad.decide.resampling import SUPPORT, SUPPORT_IN_DOUBT, Draws, doubt, draw, find_supported, support
+from linecad.line_graph import LineGraph, Segments
+from solver.robust import RobustFit, agreeing_with
+
+GRID = 12  # lines of each direction of a wall
+
+
+def walls(bars, contradiction=0.0, kind="X"):
+    """Two walls of a grid of lines each, and crossings of `bars` lines of the first with six uprights of the second.
+
+    `contradiction` is by how much, in log depth, every other bar says another relative depth of the walls.
+    """
+    axis = np.tile(np.repeat([0, 2], GRID), 2)
+    level, upright = np.arange(GRID), np.arange(GRID, 2 * GRID)
+    own = np.array([(i, j) for i in level for j in upright])
+    between = [(i, 2 * GRID + j) for i in level[:bars] for j in upright[:6]]
+    edges = np.concatenate([own, own + 2 * GRID, np.array(between, int).reshape(-1, 2)])
+    ratio = np.zeros(len(edges))
+    joins = np.arange(len(edges)) >= 2 * len(own)
+    ratio[joins] = np.where(edges[joins, 0] % 2, contradiction, 0.0)
+    yes = np.ones(len(edges), bool)
+    graph = LineGraph(
+        segments=Segments(np.tile([[0.0, 0.0], [90.0, 0.0]], (4 * GRID, 1, 1)), axis),
+        rays=np.ones((4 * GRID, 3)),
+        end_rays=np.ones((4 * GRID, 2, 3)),
+        edges=edges,
+        crossing=np.zeros((len(edges), 2)),
+        gap=np.where(joins, 30.0, 0.0)[:, None] * [1, 1],
+        kind=np.where(joins, kind, "X"),
+        corner=~yes,
+        weight=np.ones(len(edges)),
+        coordinate=3 - axis[edges].sum(axis=1),
+        log_ratio=ratio,
+        tolerance=np.full(len(edges), 0.005),
+        possible=yes,
+        informative=yes,
+    )
+    fit = RobustFit(graph)
+    depth = fit.depths()
+    return graph, depth, draw(graph, lambda present: fit.depths(present=present))
+
+
+def bodies(graph, depth, draws, in_doubt=False):
+    return find_supported(graph, agreeing_with(graph, depth), depth, draws, in_doubt)
+
+
+def test_walls_that_agree_are_one_body():
+    found = bodies(*walls(6))
+    assert found.held.bodies == 1
+    assert (found.held.body == 0).all()
+    assert found.firm.all()
+
+
+def test_walls_joined_by_crossings_that_contradict_each_other_are_two_in_doubt():
+    graph, depth, draws = walls(9, contradiction=0.2)
+    joins = np.arange(len(graph.edges)) >= 2 * GRID**2
+    together = bodies(graph, depth, draws).held.joins(graph)
+    assert together[joins].any()
+    assert together[~joins].all()
+    assert not bodies(graph, depth, draws, in_doubt=True).held.joins(graph)[joins].any()
+
+
+def test_every_line_has_one_body():
+    found = bodies(*walls(3, contradiction=0.1))
+    assert found.held.body.min() >= 0
+    assert (found.firm <= found.held.within).all()
+
+
+def test_support_is_the_share_of_draws_that_leave_a_line_in_place():
+    count = 8
+    depth = np.zeros((4, count))
+    depth[:, 0] = [0.0, 0.0, 0.5, 0.5]  # moves in two of the four
+    depth += np.array([0.0, 1.0, 2.0, 3.0])[:, None]  # the scale of a fit means nothing
+    present = np.ones((4, count), bool)
+    present[3, 0] = False  # in one of these two it is absent
+    draws = Draws(present, depth, np.zeros((4, count), np.int64))
+    found = support(np.ones(count, bool), np.zeros(count), draws)
+    assert found[0] == pytest.approx(2 / 3)
+    assert (found[1:] == 1).all()
+
+
+def test_a_line_that_is_tied_to_nothing_in_a_draw_says_nothing_there():
+    group = np.zeros((2, 6), np.int64)
+    group[1, 0] = 1
+    depth = np.zeros((2, 6))
+    depth[1, 0] = 0.7
+    draws = Draws(np.ones((2, 6), bool), depth, group)
+    assert support(np.ones(6, bool), np.zeros(6), draws)[0] == 1
+
+
+def test_each_draw_leaves_out_three_lines_of_ten_and_three_running_none_twice():
+    _, _, draws = walls(2)
+    left_out = ~draws.present
+    assert np.abs(left_out.mean(axis=1) - 0.3).max() < 0.03
+    assert (left_out[:3].sum(axis=0) <= 1).all()
+
+
+def test_draws_are_the_same_for_the_same_seed():
+    graph, _, _ = walls(2)
+    fit = RobustFit(graph)
+    one, two = (draw(graph, lambda present: fit.depths(present=present), 5, 3) for _ in range(2))
+    assert (one.present == two.present).all()
+    assert (one.depth == two.depth).all()
+
+
+def test_contradicting_corners_make_doubt():
+    calm = doubt(*walls(9, kind="L"), 3840)
+    doubtful = doubt(*walls(9, contradiction=0.2, kind="L"), 3840)
+    assert doubtful > calm + 0.1
+
+
+def test_in_doubt_more_is_asked():
+    assert SUPPORT < SUPPORT_IN_DOUBT

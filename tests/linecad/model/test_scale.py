@@ -1,0 +1,176 @@
+"""The scale from a known length: right in a scene of known size, refused where the scene cannot be measured."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linecad.errors import ScaleError
+from linecad.geometry import project
+from linecad.io.scene_file import scene_from_json, scene_to_json
+from linecad.model.scale import CameraHeight, LineLength, PointDistance, find_ground, set_scale
+from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+
+UNIT = 0.25  # m a unit; the scene below is a wall 2.5 m before a camera that stands 0.4 m above the ground
+K = np.array([[1000.0, 0, 640], [0, 1000, 480], [0, 0, 1]])
+TURN = np.radians(20)
+R = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]) @ np.array(
+    [[np.cos(TURN), -np.sin(TURN), 0], [np.sin(TURN), np.cos(TURN), 0], [0, 0, 1]]
+)
+ENDS = np.array([
+    [[-3, 10, -1.6], [4, 10, -1.6]],  # 0: the foot of the wall
+    [[-3, 10, -1.6], [-3, 10, 4]],  # 1: its left edge
+    [[4, 10, -1.6], [4, 10, 4]],  # 2: its right edge
+    [[-3, 10, 4], [4, 10, 4]],  # 3: its top
+    [[-3, 10, -1.6], [-3, 6, -1.6]],  # 4: on the ground
+    [[0, 10, 1], [2, 10, 1]],  # 5: a sill
+    [[-1, 9, 1], [-1, 9, 3]],  # 6: of another component
+])  # fmt: skip
+WALL = [[-3, 10, -1.6], [4, 10, -1.6], [4, 10, 4], [-3, 10, 4]]
+WINDOW = [[0, 10, 1], [0, 10, 3], [2, 10, 3], [2, 10, 1]]
+GROUND = [[-3, 10, -1.6], [-3, 6, -1.6], [4, 6, -1.6], [4, 10, -1.6]]
+
+
+def made_scene():
+    axis = np.abs(ENDS[:, 1] - ENDS[:, 0]).argmax(axis=1)
+    lines = Lines(
+        id=10 + np.arange(7),
+        axis=axis,
+        segment=project(ENDS, K, R),
+        ends=ENDS,
+        is_boundary=[False] * 7,
+        component=[0, 0, 0, 0, 0, 0, 1],
+        confidence=["proven"] * 6 + ["weak"],
+    )
+    planes = (
+        Plane(3, 1, 10.0, (10, 11, 12, 13, 15), (Face(0, WALL, (WINDOW,)),)),
+        Plane(4, 2, -1.6, (10, 14), (Face(1, GROUND),)),
+        Plane(5, 2, 1.0, (15,)),
+    )
+    none = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
+    report = SolveReport("x", "gain", "optimal", 0, 0, 0, 0)
+    return Scene("a.jpg", Camera(1280, 960, K, "file"), R, lines, none, planes, report, notes=("a doubt",))
+
+
+@pytest.fixture
+def scene():
+    return made_scene()
+
+
+def pixel(*point):
+    u, v = project(np.array(point, float), K, R).tolist()
+    return u, v
+
+
+def with_planes(scene, *planes):
+    return replace(scene, planes=planes)
+
+
+def test_a_line_by_its_id(scene):
+    measured = set_scale(scene, LineLength(13, 7 * UNIT))
+    assert measured.metres_per_unit == pytest.approx(UNIT)
+
+
+def test_nothing_but_the_unit_and_a_note_changes(scene):
+    measured = set_scale(scene, LineLength(13, 7 * UNIT))
+    assert measured.lines is scene.lines
+    assert measured.planes is scene.planes
+    assert measured.notes == ("a doubt", "scale: line 13 is 1.75 m long, so a unit is 0.25 m")
+    assert scene_from_json(scene_to_json(measured)).metres_per_unit == measured.metres_per_unit
+
+
+def test_a_second_length_replaces_the_first(scene):
+    twice = set_scale(set_scale(scene, LineLength(13, 999)), LineLength(13, 7 * UNIT))
+    assert twice.metres_per_unit == pytest.approx(UNIT)
+    assert len(twice.notes) == 2
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "units", "where"),
+    [
+        ((-2, 10, -1.6), (3, 10, -1.6), 5, "line 10"),
+        ((4, 10, 0), (4, 10, 2), 2, "line 12"),
+        ((-2, 10, 0), (3, 10, 3.5), np.hypot(5, 3.5), "plane 3 (y)"),
+        ((-2, 7, -1.6), (3, 8, -1.6), np.hypot(5, 1), "plane 4 (z)"),
+    ],
+)
+def test_two_points_on_one_line_or_in_one_plane(scene, first, second, units, where):
+    measured = set_scale(scene, PointDistance((pixel(*first), pixel(*second)), units * UNIT))
+    assert measured.metres_per_unit == pytest.approx(UNIT, rel=1e-9)
+    assert where in measured.notes[-1]
+
+
+def test_points_beside_a_line_count_as_on_it(scene):
+    (u, v), second = pixel(-2, 10, 4), pixel(3, 10, 4)
+    measured = set_scale(scene, PointDistance(((u, v - 4), second), 5 * UNIT))
+    assert measured.metres_per_unit == pytest.approx(UNIT, rel=0.01)
+    assert "line 13" in measured.notes[-1]
+
+
+@given(st.floats(-2.9, 3.9), st.floats(-1.5, 3.9), st.floats(1e-3, 1e3))
+def test_any_distance_on_the_wall(u, v, metres):
+    scene = with_planes(made_scene(), Plane(3, 1, 10.0, (10,), (Face(0, WALL),)))
+    start = (-1.7, 10.0, 0.4)
+    units = np.hypot(u - start[0], v - start[2])
+    if units < 0.5:
+        return
+    measured = set_scale(scene, PointDistance((pixel(*start), pixel(u, 10, v)), metres))
+    assert measured.metres_per_unit == pytest.approx(metres / units, rel=0.03)  # a line near both may be taken
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "words"),
+    [
+        ((1, 10, 2), (-2, 10, 3), "the first point lies on no face"),
+        ((-2, 10, 3), (1, 10, 2), "the second point lies on no face"),
+        ((-2, 10, 3), (2, 7, -1.6), "in different planes (3 and 4)"),
+        ((-2, 10, 3), (-2, 10, 3), "measures nothing"),
+    ],
+)
+def test_points_that_cannot_be_measured_are_refused(scene, first, second, words):
+    with pytest.raises(ScaleError) as caught:
+        set_scale(scene, PointDistance((pixel(*first), pixel(*second)), 1.0))
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(("line", "words"), [(99, "no line 99, it has ids up to 16"), (16, "belongs to component 1")])
+def test_a_line_that_cannot_be_measured_is_refused(scene, line, words):
+    with pytest.raises(ScaleError, match=words):
+        set_scale(scene, LineLength(line, 1.0))
+
+
+def test_the_lines_of_another_component_are_not_measured_by_points(scene):
+    with pytest.raises(ScaleError, match="the first point lies on no face"):
+        set_scale(with_planes(scene), PointDistance((pixel(-1, 9, 1.2), pixel(-1, 9, 2.8)), 1.0))
+
+
+def test_the_height_of_the_camera_above_the_ground(scene):
+    assert find_ground(scene).id == 4
+    measured = set_scale(scene, CameraHeight(0.4))
+    assert measured.metres_per_unit == pytest.approx(UNIT)
+    assert "plane 4 (z = -1.6)" in measured.notes[-1]
+
+
+def test_without_a_horizontal_plane_below_the_camera_there_is_no_ground(scene):
+    with pytest.raises(ScaleError, match="give a length with --scale"):
+        set_scale(with_planes(scene, scene.planes[0], scene.planes[2]), CameraHeight(1.6))
+
+
+def test_a_plane_of_another_component_is_not_the_ground(scene):
+    other = Plane(9, 2, -5.0, (16,))
+    assert find_ground(with_planes(scene, *scene.planes, other)).id == 4
+
+
+def test_a_row_of_sills_above_the_feet_of_walls_is_not_the_ground(scene):
+    sills = Plane(9, 2, -0.5, (15,))
+    with pytest.raises(ScaleError, match=r"4 lines reach below it, down to z = -1\.6"):
+        find_ground(with_planes(scene, sills))
+
+
+def test_a_line_or_two_may_stray_below_the_ground(scene):
+    ends = ENDS.copy()
+    ends[1, 0, 2] = ends[2, 0, 2] = -1.9
+    assert find_ground(replace(scene, lines=replace(scene.lines, ends=ends))).id == 4
