@@ -9,8 +9,9 @@ from exporters.options import Value
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import read_calibration
 from linecad.camera.photo import Photo
-from linecad.finding import ReconstructOptions, StageReport
+from linecad.finding import StageReport
 from linecad.model.scale import Known, set_scale
+from linecad.options import Options
 from linecad.outputs import write_outputs
 from linecad.pipeline import reconstruct
 from linecad.scene import Scene
@@ -23,7 +24,7 @@ class Conversion:
 
     camera: Path | None = None  # the calibration of the photo; not together with `focal`
     focal: float | None = None  # px
-    options: ReconstructOptions = field(default_factory=ReconstructOptions)
+    options: Options = field(default_factory=Options)
     known: Known | None = None  # a length that sets the scale
     values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as exporters.formats reads them
 

@@ -7,13 +7,14 @@ LinecadError
 │   ├── SceneFileError a scene file that does not say what its format promises
 │   ├── DatasetError   a made dataset that is damaged or was begun with other options
 │   └── CorrectionsFileError a corrections file that is malformed or belongs to another photo
+├── OptionError        an option that does not exist, or a value that it does not take
 ├── ScaleError         a known length that the scene does not hold
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
 ├── CorrectionError    an edit that names no line, or that cannot be done
 ├── EditorError        the page cannot be served
 └── SolverError        the solver ended without any usable answer
-    └── ContradictionError what a person said about crossings cannot all be true
+    └── ContradictionError annotations of crossings cannot all be true
 
 The text of each is one line: what was found, and what to do about it.
 """
@@ -45,6 +46,10 @@ class DatasetError(InputError):
 
 class CorrectionsFileError(InputError):
     """The corrections file breaks the promises of docs/corrections.md, or was made for another photo."""
+
+
+class OptionError(LinecadError):
+    """An option does not exist, or does not take the value that was given."""
 
 
 class ScaleError(LinecadError):

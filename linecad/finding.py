@@ -1,21 +1,21 @@
-"""From a photo to its line graph: what a user can choose, what was found, and what of it is connected."""
+"""From a photo to its line graph: the camera, the lines along its axes, and what of them is connected."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linecad.camera.estimate import Calibrated, calibrate, calibrate_again
 from linecad.camera.photo import Photo
 from linecad.corrections.edits import SetFrame
-from linecad.decide.resampling import FITS_FOR_DOUBT, MOST_DOUBT, doubt, draw
+from linecad.decide.stability import FITS_FOR_INCONSISTENCY, MOST_INCONSISTENT, inconsistency_of, resample
 from linecad.errors import ReconstructionError
-from linecad.graph.build import EXTENSION, MIN_LENGTH, MIN_TOLERANCE, Weights, build_line_graph
+from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.lines.segments import (
-    GROUP_ALONG,
     SMALL_WIDTH,
     find_faint_segments,
     find_segments,
@@ -23,64 +23,11 @@ from linecad.lines.segments import (
     label_segments,
 )
 from linecad.lines.vanishing_point_lines import find_pencil_lines
+from linecad.options import LONG_REACH, MIN_COMPONENT, Options, Reach, Weights
 from linecad.scene import Camera, Certainty
-from solver.options import SolveOptions
 from solver.robust import RobustFit
 
-MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 StageReport = Callable[[str], None]
-
-
-@dataclass(frozen=True)
-class Reach:
-    """How far evidence is carried along a segment, in px at 3840 px width."""
-
-    extension: float  # by which segments are extended to find crossings
-    largest_gap: float  # between fragments of one segment
-    least_length: float  # of a line
-    least_tolerance: float  # of a crossing, relative depth: errors of frame and lens add up along the way
-
-
-SHORT_REACH = Reach(EXTENSION, GROUP_ALONG, MIN_LENGTH, MIN_TOLERANCE)  # as in the paper
-# 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
-LONG_REACH = Reach(75.0, 125.0, 18.75, 0.0035)
-MIDDLE_REACH = Reach(37.5, 62.5, 18.75, MIN_TOLERANCE)  # for photos in which little can be believed
-
-
-@dataclass(frozen=True)
-class ReconstructOptions:
-    """What a user can choose about a reconstruction."""
-
-    # px at 3840 px width by which segments are extended to find crossings; None: that of the reach.
-    extension: float | None = None
-    reach: Reach | None = None  # None: long with formulation gain, middle in doubt; short with the paper's
-    weights: Weights | None = None  # None: odds with formulation gain, junctions with the paper's
-    collinear: bool = True  # segments on one image line may be one line in space; the paper does not have this
-    largest_component: bool = False  # only the largest connected component, as in the paper
-    # Lines by which two bodies must be tied to share a scale (linecad.decide.rigid_bodies); 1 asks nothing. None: lines
-    # must keep their place in resampling (linecad.decide.resampling) with formulation gain, 1 with the paper's.
-    witnesses: int | None = None
-    faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
-    solve: SolveOptions = field(default_factory=SolveOptions)
-
-    @property
-    def is_paper(self) -> bool:
-        """Whether what is not said is as in the paper."""
-        return self.solve.formulation == "paper"
-
-    def reach_for(self, found: "FoundLines") -> Reach:
-        """`reach` and `extension` in use."""
-        if found.reach is not None:
-            return found.reach
-        reach = self.reach
-        if reach is None:
-            reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if found.is_doubtful else LONG_REACH
-        return reach if self.extension is None else replace(reach, extension=self.extension)
-
-    @property
-    def weights_used(self) -> Weights:
-        """`weights` in use."""
-        return self.weights if self.weights is not None else "junctions" if self.is_paper else "odds"
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,26 +37,31 @@ class FoundLines:
     camera: Camera
     frame: ManhattanFrame
     segments: Segments  # labelled fragments, not grouped yet
-    notes: tuple[str, ...]  # doubts so far
+    notes: tuple[str, ...]  # what to know about them
     reach: Reach | None = None  # with which the segments were grouped to whole lines; None: they are fragments
-    known_doubt: float | None = None  # about the photo they come from, where that was asked before
+    known_inconsistency: float | None = None  # of the photo they come from, where that was asked before
     certainty: Certainty | None = None  # of camera and frame
+    pixels: NDArray[np.uint8] | None = None  # (H, W, 3) of the photo, for cues that look at it
 
-    def grouped(self, options: ReconstructOptions) -> "FoundLines":
+    def grouped(self, options: Options) -> "FoundLines":
         """The whole lines, as the reach in use makes them of the fragments: what a person sees and corrects."""
-        reach = options.reach_for(self)
+        reach = self.reach_for(options)
         whole = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
-        return replace(self, segments=whole, reach=reach, known_doubt=None if options.is_paper else self.doubt)
+        known = self.inconsistency if options.needs_inconsistency else None
+        return replace(self, segments=whole, reach=reach, known_inconsistency=known)
+
+    def reach_for(self, options: Options) -> Reach:
+        """The reach in use: that with which these were grouped, else that of the options for this photo."""
+        if self.reach is not None:
+            return self.reach
+        return options.reach_for(options.needs_inconsistency and self.is_inconsistent)
 
     def graph(self, reach: Reach, weights: Weights, collinear: bool) -> LineGraph:
         """The line graph of these lines."""
         grouped = self.segments
         if self.reach is None:
             grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
-        return build_line_graph(
-            grouped, self.camera, self.frame, reach.extension, weights, collinear,
-            reach.least_length, reach.least_tolerance,
-        )  # fmt: skip
+        return build_line_graph(grouped, self.camera, self.frame, reach, weights, collinear, self.pixels)
 
     @cached_property
     def widest_graph(self) -> LineGraph:
@@ -117,19 +69,19 @@ class FoundLines:
         return self.graph(LONG_REACH, "odds", True)
 
     @cached_property
-    def doubt(self) -> float:
-        """How little agreement is worth in this photo (linecad.decide.resampling), as a fit at long reach tells."""
-        if self.known_doubt is not None:
-            return self.known_doubt
+    def inconsistency(self) -> float:
+        """How often crossings of this photo contradict each other (linecad.decide.stability), at long reach."""
+        if self.known_inconsistency is not None:
+            return self.known_inconsistency
         graph = self.widest_graph
         fit = RobustFit(graph)
-        draws = draw(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_DOUBT)
-        return doubt(graph, fit.depths(), draws, self.camera.width)
+        fits = resample(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_INCONSISTENCY)
+        return inconsistency_of(graph, fit.depths(), fits, self.camera.width)
 
     @property
-    def is_doubtful(self) -> bool:
-        """Whether agreement is worth so little that more of it is asked."""
-        return self.doubt > MOST_DOUBT
+    def is_inconsistent(self) -> bool:
+        """Whether agreement is worth so little in this photo that more of it is asked."""
+        return self.inconsistency > MOST_INCONSISTENT
 
 
 def silent(_stage: str) -> None:
@@ -164,7 +116,7 @@ def name_lines(
         raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
     pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
-    return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty)
+    return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
 
 
 def find_calibration(
@@ -187,26 +139,26 @@ def find_calibration(
     return calibrate_again(photo, raw, first, graph.segments.subset(np.concatenate(met)))
 
 
-def connect(found: FoundLines, options: ReconstructOptions) -> tuple[LineGraph, LineGraph]:
+def connect(found: FoundLines, options: Options) -> tuple[LineGraph, LineGraph]:
     """The line graph of all found lines, and the part of it that is solved; ReconstructionError when that is none."""
     whole = connect_all(found, options)
     return whole, _kept(whole, options)
 
 
-def connect_all(found: FoundLines, options: ReconstructOptions) -> LineGraph:
+def connect_all(found: FoundLines, options: Options) -> LineGraph:
     """The line graph of all found lines."""
-    reach, weights = options.reach_for(found), options.weights_used
-    is_widest = reach == LONG_REACH and weights == "odds" and options.collinear
-    return found.widest_graph if is_widest else found.graph(reach, weights, options.collinear)
+    reach, weights, collinear = found.reach_for(options), options.weights_used, options.collinear_used
+    is_widest = reach == LONG_REACH and weights == "odds" and collinear
+    return found.widest_graph if is_widest else found.graph(reach, weights, collinear)
 
 
-def _kept(graph: LineGraph, options: ReconstructOptions) -> LineGraph:
+def _kept(graph: LineGraph, options: Options) -> LineGraph:
     """The part of the line graph that is solved: the largest component, or all that are not tiny."""
     parts = components(graph)
     if not parts or len(parts[0]) < MIN_COMPONENT:
         raise ReconstructionError(
             f"the {len(graph.segments)} lines found hardly touch each other: {len(parts[0]) if parts else 0} in the "
-            f"largest group, at least {MIN_COMPONENT} are needed; raise --extension or use a larger photo"
+            f"largest group, at least {MIN_COMPONENT} are needed; raise --option extension=PX or use a larger photo"
         )
     kept = parts[:1] if options.largest_component else [part for part in parts if len(part) >= MIN_COMPONENT]
     return graph.subset(np.sort(np.concatenate(kept)))

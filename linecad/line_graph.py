@@ -5,6 +5,7 @@ where two segments meet in the image, an *axis* is 0, 1 or 2 (x, y, z), a *depth
 reference are those of `linecad.scene`.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -70,6 +71,45 @@ class ManhattanFrame:
 
 
 @dataclass(frozen=True, eq=False)
+class LineDepths:
+    """Unary evidence: depths that something other than crossings tells of M lines, in one common scale."""
+
+    line: Int  # (M,) node of the line graph; a line may stand more than once
+    log_depth: Float  # (M,) log of the depth of its segment's middle
+    sigma: Float  # (M,) standard error of log_depth, positive
+    may_be_outlier: Bool  # (M,) True: far off it costs a constant and pulls no more; False: it pulls however far off
+
+    def __post_init__(self) -> None:
+        freeze(self, "line", np.int64, (None,))
+        freeze(self, "log_depth", np.float64, (None,))
+        freeze(self, "sigma", np.float64, (None,))
+        freeze(self, "may_be_outlier", np.bool_, (None,))
+        check_lengths(self, len(self.line), ["log_depth", "sigma", "may_be_outlier"])
+        if len(self.sigma) and not self.sigma.min() > 0:
+            raise ValueError(f"LineDepths.sigma holds {self.sigma.min()}, expected positive numbers")
+
+    @classmethod
+    def joined(cls, parts: Sequence["LineDepths"]) -> "LineDepths":
+        """What several sources tell."""
+        names = ("line", "log_depth", "sigma", "may_be_outlier")
+        return cls(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+
+    @classmethod
+    def none(cls) -> "LineDepths":
+        """No depth at all."""
+        return cls(np.zeros(0, np.int64), np.zeros(0), np.zeros(0), np.zeros(0, bool))
+
+    def chosen(self, which: Bool) -> "LineDepths":
+        """Those that a mask (M,) selects."""
+        return LineDepths(self.line[which], self.log_depth[which], self.sigma[which], self.may_be_outlier[which])
+
+    def subset(self, new: Int) -> "LineDepths":
+        """Those of lines that stay, with the new number (N,) of each line, -1 where it goes."""
+        stay = self.chosen(new[self.line] >= 0)
+        return LineDepths(new[stay.line], stay.log_depth, stay.sigma, stay.may_be_outlier)
+
+
+@dataclass(frozen=True, eq=False)
 class LineGraph:
     """The paper's line graph: nodes are segments, edges are crossings that may be real.
 
@@ -92,6 +132,7 @@ class LineGraph:
     tolerance: Float  # (E,) half width of the interval about log_ratio that pixel noise explains
     possible: Bool  # (E,) False where the two lines lie on opposite sides of the camera in `coordinate`
     informative: Bool  # (E,) False where the tolerance is so wide that the crossing says nothing about depth
+    depths: LineDepths | None = None  # what unary cues tell
 
     def __post_init__(self) -> None:
         freeze(self, "rays", np.float64, (None, 3))
@@ -113,6 +154,8 @@ class LineGraph:
             if not (self.edges[:, 0] < self.edges[:, 1]).all():
                 raise ValueError("LineGraph.edges must name the smaller segment first")
             check_words(self, "kind", EDGE_KINDS)
+        if self.depths is not None and len(self.depths.line) and self.depths.line.max() >= len(self.segments):
+            raise ValueError(f"LineGraph.depths name segment {self.depths.line.max()} of {len(self.segments)}")
 
     @property
     def axis(self) -> Int:
@@ -136,6 +179,7 @@ class LineGraph:
             rays=self.rays[keep],
             end_rays=self.end_rays[keep],
             edges=new[self.edges[inside]],
+            depths=None if self.depths is None else self.depths.subset(new),
             **fields,
         )
 

@@ -1,30 +1,38 @@
 """The stages in the paper's order (algorithm 1): a photo becomes a scene."""
 
-from collections.abc import Callable
-from dataclasses import replace
-
-import numpy as np
+from dataclasses import dataclass, replace
 
 from linecad.camera.photo import Photo
-from linecad.corrections.apply import CorrectedLines, Said, correct, rows_of, said_of
+from linecad.corrections.apply import CorrectedLines, correct
 from linecad.corrections.edits import Corrections
-from linecad.errors import ContradictionError
-from linecad.finding import FoundLines, ReconstructOptions, StageReport, connect, find_lines, silent
-from linecad.line_graph import LineGraph
-from linecad.model.build import place
+from linecad.corrections.lengths import measured
+from linecad.decide.annotations import annotate, solve_annotated
+from linecad.decide.decision import Decision, decide
+from linecad.finding import FoundLines, StageReport, connect, find_lines, silent
+from linecad.line_graph import LineGraph, Solution
+from linecad.model.build import View, build_scene
+from linecad.model.lifting import Lifted, lift
+from linecad.options import Options
 from linecad.scene import Scene
-from solver.options import Progress
-from solver.solve import solve
+from solver.options import OnProgress
 
-SURE_FACTOR = 2.0  # by which the tolerance of a crossing grows that a person called real
-WIDEST_TOLERANCE = float(np.log(100.0))  # of a crossing that a person called real, in log depth
-LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
+
+@dataclass(frozen=True, eq=False)
+class Reconstruction:
+    """A scene with all that it was made of."""
+
+    whole: LineGraph  # of all lines that were found
+    graph: LineGraph  # the part of it that was solved
+    solution: Solution  # of the program
+    decision: Decision  # about every crossing of the graph
+    lifted: Lifted  # the lines of the graph in space, before components are placed
+    scene: Scene
 
 
 def reconstruct(
     photo: Photo,
-    options: ReconstructOptions,
-    on_progress: Callable[[Progress], None] | None = None,
+    options: Options,
+    on_progress: OnProgress = None,
     on_stage: StageReport = silent,
     corrections: Corrections | None = None,
 ) -> Scene:
@@ -34,97 +42,37 @@ def reconstruct(
     all be true, a note where it names what is not there.
     """
     found = find_lines(photo, on_stage, options.faint, None if corrections is None else corrections.frame)
-    if corrections is not None:
-        found = found.grouped(options)
-        corrected = correct_lines(found, corrections)
-        return measured(reconstruct_corrected(photo, found, corrected, options, on_progress, on_stage), corrected)
-    whole, graph = connect(found, options)
-    on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
-    solution = solve(graph, options.solve, on_progress)
-    on_stage("lifting the lines into space")
-    return place(photo, found, graph, solution, options, len(whole.segments) - len(graph.segments))
+    if corrections is None:
+        return reconstruct_lines(photo.name, found, options, on_progress, on_stage).scene
+    found = found.grouped(options)
+    corrected = correct(found.segments, found.camera, found.frame, corrections)
+    return measured(reconstruct_lines(photo.name, found, options, on_progress, on_stage, corrected).scene, corrected)
 
 
-def correct_lines(found: FoundLines, corrections: Corrections) -> CorrectedLines:
-    """The lines that were found, grouped, after all edits; `found` must have the frame of the corrections."""
-    return correct(found.segments, found.camera, found.frame, corrections)
-
-
-def reconstruct_corrected(
-    photo: Photo,
+def reconstruct_lines(
+    photo: str,
     found: FoundLines,
-    corrected: CorrectedLines,
-    options: ReconstructOptions,
-    on_progress: Callable[[Progress], None] | None = None,
+    options: Options,
+    on_progress: OnProgress = None,
     on_stage: StageReport = silent,
-) -> Scene:
-    """The scene of corrected lines, without the scale that known lengths give (`measured`).
+    corrected: CorrectedLines | None = None,
+) -> Reconstruction:
+    """The scene of the lines that were found in a photo of that name, or of the same after all edits (`corrected`).
 
-    May raise ReconstructionError, ContradictionError or SolverError.
+    Raises ReconstructionError, SolverError or, where annotations cannot all be true, ContradictionError. The scale of
+    known lengths is not set (`corrections.lengths.measured`).
     """
-    found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
+    if corrected is not None:
+        found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)
-    said = said_of(graph, corrected)
-    found = replace(found, notes=found.notes + said.notes)
-    graph = _believed(graph, said)
-    known = replace(
-        options.solve,
-        real=tuple(np.flatnonzero(said.real).tolist()),
-        fake=tuple(np.flatnonzero(said.fake).tolist()),
-    )
+    graph, said = annotate(graph, corrected)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
-    try:
-        solution = solve(graph, known, on_progress)
-    except ContradictionError as error:
-        raise _named(error, graph, corrected) from None
+    solution = solve_annotated(graph, options.solve, said, corrected, on_progress)
+    on_stage("deciding which crossings are real")
+    decision = decide(graph, solution, options, found.inconsistency if options.joins_used == "stable" else None, said)
     on_stage("lifting the lines into space")
-    left_out = len(whole.segments) - len(graph.segments)
-    return place(photo, found, graph, solution, options, left_out, said.real)
-
-
-def _named(error: ContradictionError, graph: LineGraph, corrected: CorrectedLines) -> ContradictionError:
-    """The same contradiction told by places in the photo, with the ids of the lines."""
-    ids = corrected.ids[rows_of(graph.segments, corrected)]
-    edge = {pair: number for number, pair in enumerate(map(tuple, graph.edges.tolist()))}
-    places = [graph.crossing[edge[pair]].round().astype(int).tolist() for pair in error.crossings]
-    where = ", ".join(f"({x}, {y})" for x, y in places)
-    return ContradictionError(
-        f"the crossings at {where} cannot all be real: no depths fit them; take one of them back",
-        tuple(int(ids[line]) for line in error.lines),
-        tuple((int(min(ids[i], ids[j])), int(max(ids[i], ids[j]))) for i, j in error.crossings),
-    )
-
-
-def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
-    """The scene with the scale that known lengths give it: the geometric mean of what each says.
-
-    Only lengths on component 0 count, since the scales of the others are guesses.
-    """
-    if not corrected.lengths:
-        return scene
-    seen = zip(scene.lines.axis.tolist(), scene.lines.segment, strict=True)
-    row = {(axis, ends.tobytes()): number for number, (axis, ends) in enumerate(seen)}
-    scales, notes = [], []
-    for number, metres in corrected.lengths.items():
-        own = int(np.flatnonzero(corrected.ids == number)[0])
-        key = (int(corrected.segments.axis[own]), corrected.segments.ends[own].tobytes())
-        if key not in row or scene.lines.component[row[key]] != 0:
-            notes.append(f"a line of known length ({metres:g} m) is not on component 0, so its length says nothing")
-            continue
-        ends = scene.lines.ends[row[key]]
-        scales.append(metres / float(np.linalg.norm(ends[1] - ends[0])))
-    if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
-        notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
-    metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
-    return replace(scene, metres_per_unit=metres_per_unit, notes=scene.notes + tuple(notes))
-
-
-def _believed(graph: LineGraph, said: Said) -> LineGraph:
-    """The graph in which every crossing that a person called real says something about depth, if little.
-
-    Its tolerance is wider: a person is not wrong because a segment is off by a little more than its noise.
-    """
-    taken = said.real & graph.possible
-    wider = np.minimum(SURE_FACTOR * graph.tolerance, WIDEST_TOLERANCE)
-    tolerance = np.where(taken, wider, graph.tolerance)
-    return replace(graph, tolerance=tolerance, informative=graph.informative | taken)
+    notes = found.notes + said.notes + decision.notes
+    view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes)
+    lifted = lift(graph, decision.real, solution.log_depth)
+    scene = build_scene(view, graph, solution, decision, lifted, options.largest_component)
+    return Reconstruction(whole, graph, solution, decision, lifted, scene)

@@ -24,9 +24,14 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
+# Why a crossing is real or not (linecad.decide.decision, docs/scene-file.md). Real: annotated, chosen.
+Reason = Literal[
+    "annotated", "chosen", "not chosen", "impossible", "uninformative", "unstable", "loose", "small group"
+]  # fmt: skip
 
 CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 CONFIDENCES: tuple[Confidence, ...] = get_args(Confidence)
+REASONS: tuple[Reason, ...] = get_args(Reason)
 QUALITIES: tuple[Quality, ...] = get_args(Quality)
 
 
@@ -127,6 +132,7 @@ class Intersections:
     real: Bool  # (E,)
     in_tree: Bool  # (E,) in the minimum spanning tree of the real ones
     weight: Float  # (E,)
+    reason: Text  # (E,) one of REASONS; "" in scenes that do not tell
 
     def __post_init__(self) -> None:
         freeze(self, "lines", np.int64, (None, 2))
@@ -135,8 +141,10 @@ class Intersections:
         for name in ("real", "in_tree"):
             freeze(self, name, np.bool_, (None,))
         freeze(self, "weight", np.float64, (None,))
-        check_lengths(self, len(self.lines), ["kind", "pixel", "real", "in_tree", "weight"])
+        freeze(self, "reason", np.str_, (None,))
+        check_lengths(self, len(self.lines), ["kind", "pixel", "real", "in_tree", "weight", "reason"])
         check_words(self, "kind", EDGE_KINDS)
+        check_words(self, "reason", (*REASONS, ""))
 
     def __len__(self) -> int:
         return len(self.lines)

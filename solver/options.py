@@ -1,6 +1,7 @@
 """What a solver is asked, and how it tells how far it is: the options with their defaults, the progress on the way."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Literal, get_args
 
@@ -11,6 +12,8 @@ Family = Literal["cycles", "planarity", "boundary"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 # The paper's mu_2 keeps so many lines off the boundary that one wall remains of most buildings (CONTRIBUTING).
 DEFAULT_MU_BOUNDARY: dict[Formulation, float] = {"gain": 1.0, "paper": 10.0}
+# s; gain starts near its end, the paper's program does not.
+DEFAULT_TIME_LIMIT_S: dict[Formulation, float] = {"gain": 10.0, "paper": 60.0}
 BackendName = Literal["scip", "highs"]
 BACKENDS: tuple[BackendName, ...] = get_args(BackendName)
 FORMULATIONS: tuple[Formulation, ...] = get_args(Formulation)
@@ -29,7 +32,7 @@ class SolveOptions:
     mu_planarity: float = 0.5  # the paper's mu_1, reward of a pair of parallel lines in one Manhattan plane
     # The paper's mu_2, reward of a line that is not at the meeting of two planes; if None, that of the formulation.
     mu_boundary: float | None = None
-    time_limit_s: float = 60.0  # s, for the whole of `solve`
+    time_limit_s: float | None = None  # s, for the whole of `solve`; if None, that of the formulation
     gap: float = 0.0  # (bound - objective) / |objective| at which the solver may stop
     seed: int = 0
     depth_range: float = 100.0  # largest over smallest depth of the near ends; bounds the constant L of "paper" alone
@@ -55,7 +58,7 @@ class SolveOptions:
             self._require(name, 0 <= reward <= LARGEST_REWARD, f"a number from 0 to {LARGEST_REWARD:.0f}")
         self._require(
             "time_limit_s",
-            0 < self.time_limit_s <= LONGEST_TIME_S,
+            0 < self.seconds <= LONGEST_TIME_S,
             f"more than zero seconds, at most {LONGEST_TIME_S:g}",
         )
         self._require("gap", self.gap >= 0, "zero or more")
@@ -68,6 +71,11 @@ class SolveOptions:
     def boundary_reward(self) -> float:
         """The paper's mu_2 in use."""
         return DEFAULT_MU_BOUNDARY[self.formulation] if self.mu_boundary is None else self.mu_boundary
+
+    @property
+    def seconds(self) -> float:
+        """The time limit in use, s."""
+        return DEFAULT_TIME_LIMIT_S[self.formulation] if self.time_limit_s is None else self.time_limit_s
 
     def _require(self, name: str, holds: bool, expected: str) -> None:
         value = getattr(self, name)
@@ -84,6 +92,9 @@ class Progress:
     bound: float  # no solution is better than this
     gap: float  # (bound - objective) / max(|objective|, 1e-9)
     nodes: int  # branch-and-bound nodes so far
+
+
+OnProgress = Callable[[Progress], None] | None
 
 
 def relative_gap(objective: float, bound: float) -> float:

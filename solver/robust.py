@@ -16,7 +16,7 @@ from scipy.sparse.linalg import splu
 
 from linecad.arrays import Bool, Float, Int
 from linecad.errors import SolverError
-from linecad.line_graph import LineGraph, Solution
+from linecad.line_graph import LineDepths, LineGraph, Solution
 from solver.choice import boundaries
 from solver.depths import end_ratios
 from solver.options import Progress, SolveOptions
@@ -46,6 +46,8 @@ class RobustFit:
         every = np.arange(self.count)
         rows, columns = np.r_[self.i, self.j, self.i, self.j, every], np.r_[self.j, self.i, self.i, self.j, every]
         cells, self.cell = np.unique(columns * self.count + rows, return_inverse=True)
+        told = graph.depths if graph.depths is not None else LineDepths.none()
+        self.told, self.told_place = told, self.place[told.line]
         self.rows = (cells % max(1, self.count)).astype(np.int32)
         self.starts = np.searchsorted(cells // max(1, self.count), np.arange(self.count + 1)).astype(np.int32)
 
@@ -57,36 +59,51 @@ class RobustFit:
         own = self.weight if weight is None else weight[self.used]
         if present is not None:
             own = own * present[self.lines].all(axis=1)
-        if not (own > 0).any():
+        if not (own > 0).any() and not len(self.told.line):
             return np.zeros(self.count)
         width = np.maximum(self.tolerance, WIDTH)
-        depth = self._step(own / width**2, np.zeros(self.count))
+        # One unit of log-odds a depth that is told: what crossings contradict is given up as one crossing would be.
+        told = np.ones(len(self.told.line)) if present is None else present[self.told.line].astype(np.float64)
+        depth = self._step(own / width**2, told / self.told.sigma**2, np.zeros(self.count))
         far = float((self._residual(depth, width) ** 2)[own > 0].max(initial=0.0))
+        outside = (told > 0) & self.told.may_be_outlier
+        far = max(far, float((self._told_residual(depth) ** 2)[outside].max(initial=0.0)))
         widening = max(1.0, 2 * far)  # of the squared width, at which the cost is convex where the residuals are
         while widening > 1:
-            depth = self._narrowed(depth, own, width, widening)
+            depth = self._narrowed(depth, own, told, width, widening)
             widening /= NARROWING
         for _ in range(LAST_STEPS):
-            depth = self._narrowed(depth, own, width, 1.0)
+            depth = self._narrowed(depth, own, told, width, 1.0)
         return depth[self.place]
 
-    def _narrowed(self, depth: Float, weight: Float, width: Float, widening: float) -> Float:
+    def _narrowed(self, depth: Float, weight: Float, told: Float, width: Float, widening: float) -> Float:
         """One step of iteratively reweighted least squares."""
         squared = self._residual(depth, width) ** 2
-        return self._step(weight / width**2 * (widening / (widening + squared)) ** 2, depth)
+        squared_told = np.where(self.told.may_be_outlier, self._told_residual(depth) ** 2, 0.0)
+        return self._step(
+            weight / width**2 * (widening / (widening + squared)) ** 2,
+            told / self.told.sigma**2 * (widening / (widening + squared_told)) ** 2,
+            depth,
+        )
 
     def _residual(self, depth: Float, width: Float) -> Float:
         residual: Float = (depth[self.i] - depth[self.j] - self.ratio) / width
         return residual
 
-    def _step(self, weight: Float, depth: Float) -> Float:
-        """The weighted least squares, as a step from `depth`."""
+    def _told_residual(self, depth: Float) -> Float:
+        residual: Float = (depth[self.told_place] - self.told.log_depth) / self.told.sigma
+        return residual
+
+    def _step(self, weight: Float, told: Float, depth: Float) -> Float:
+        """The weighted least squares of crossings (E',) and depths that are told (M,), as a step from `depth`."""
         pulled = np.bincount(self.i, weight, self.count) + np.bincount(self.j, weight, self.count)
         anchor = ANCHOR * np.maximum(pulled, ANCHOR * pulled.max(initial=0.0))
+        anchor += np.bincount(self.told_place, told, self.count)
         values = np.bincount(self.cell, np.concatenate([-weight, -weight, weight, weight, anchor]), len(self.rows))
         matrix = csc_matrix((values, self.rows, self.starts), (self.count, self.count))
         pull = weight * (self.ratio - depth[self.i] + depth[self.j])
         right = np.bincount(self.i, pull, self.count) - np.bincount(self.j, pull, self.count)
+        right += np.bincount(self.told_place, told * (self.told.log_depth - depth[self.told_place]), self.count)
         factors = splu(matrix, permc_spec="NATURAL", options={"SymmetricMode": True}, diag_pivot_thresh=0.0)
         stepped: Float = depth + factors.solve(right)
         return stepped

@@ -17,7 +17,7 @@ from linecad.camera.photo import read_photo
 from linecad.camera.text import summary
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from linecad.io.scene_file import read_scene
 from linecad.lines.segments import find_segments
 from linecad.pipeline import reconstruct
@@ -30,10 +30,10 @@ GAP = 0.01  # at which the solver may stop; to prove the rest takes ten times as
 
 # The graph and the program of the paper, and what a user gets who says nothing.
 OPTIONS = {
-    "paper": ReconstructOptions(
+    "paper": Options(
         collinear=False, solve=SolveOptions(formulation="paper", mu_boundary=10.0, time_limit_s=TIME_LIMIT)
     ),
-    "default": ReconstructOptions(solve=SolveOptions(mu_boundary=1.0, time_limit_s=TIME_LIMIT, gap=GAP)),
+    "default": Options(solve=SolveOptions(mu_boundary=1.0, time_limit_s=TIME_LIMIT, gap=GAP)),
 }
 
 # What is asked of component 0: how many of 200 points on true edges its lines must reach, and the share of these that

@@ -42,10 +42,10 @@ def make_plan(
     _make_folder(folder)
     if means.scheduler is not None:
         workers, memory = 0, round(CLUSTER_MEMORY * need_mb(photos))
-        usual = usual_limits(photos, 1, conversion.options.solve.time_limit_s)
+        usual = usual_limits(photos, 1, conversion.options.solve.seconds)
     else:
         workers = means.workers or min(usual_workers(photos), len(photos))
-        usual = usual_limits(photos, workers, conversion.options.solve.time_limit_s)
+        usual = usual_limits(photos, workers, conversion.options.solve.seconds)
         memory = usual.memory_mb
     limits = Limits(means.photo_limit_s or usual.seconds, means.memory_limit_mb or memory)
     return Plan(photos, folder.resolve(), suffixes, conversion, limits), workers

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
     from linecad.batch.record import Row
     from linecad.batch.run import Progress as BatchProgress
     from linecad.camera.photo import Photo
-    from linecad.finding import ReconstructOptions
     from linecad.model.scale import Known
+    from linecad.options import Options
     from linecad.scene import Scene
     from solver.options import Progress
 
@@ -462,18 +462,15 @@ def _suffixes(text: str) -> tuple[str, ...]:
     return suffixes
 
 
-def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
-    from linecad.finding import ReconstructOptions
+def _reconstruct_options(parsed: argparse.Namespace) -> "Options":
+    from linecad.options import Options
     from solver.options import SolveOptions
 
-    is_gain = parsed.formulation == "gain"
-    usual_limit = GAIN_SECONDS if is_gain else PAPER_SECONDS
-    return ReconstructOptions(
+    return Options(
         extension=parsed.extension,
         weights=parsed.weights,
-        collinear=is_gain if parsed.collinear is None else parsed.collinear,
+        collinear=parsed.collinear,
         largest_component=parsed.largest_component,
-        witnesses=parsed.witnesses,
         faint=parsed.faint,
         solve=SolveOptions(
             formulation=parsed.formulation,
@@ -481,7 +478,7 @@ def _reconstruct_options(parsed: argparse.Namespace) -> "ReconstructOptions":
             mu_planarity=parsed.mu_planarity,
             mu_boundary=parsed.mu_boundary,
             backend=parsed.backend,
-            time_limit_s=usual_limit if parsed.time_limit is None else parsed.time_limit,
+            time_limit_s=parsed.time_limit,
             gap=parsed.gap,
             seed=parsed.seed,
             fast=parsed.fast,
@@ -636,6 +633,7 @@ def _evaluate(parsed: argparse.Namespace) -> int:
     from linecad.evaluation.run import evaluate
     from linecad.evaluation.tables import all_tables
     from linecad.io.files import check_output
+    from linecad.options import Options
 
     outputs = [path for path in (parsed.json, parsed.markdown, parsed.report) if path is not None]
     for path in outputs:
@@ -644,10 +642,7 @@ def _evaluate(parsed: argparse.Namespace) -> int:
     settings = Settings(
         formulations=("paper", "gain") if parsed.formulation == "both" else (parsed.formulation,),
         ablation=parsed.ablation,
-        time_limit_s=parsed.time_limit,
-        weights=parsed.weights,
-        mu_planarity=parsed.mu_planarity,
-        mu_boundary=parsed.mu_boundary,
+        reconstruction=Options(weights=parsed.weights),
         pictures=parsed.report is not None,
     )
     dataset = find_dataset(parsed.dataset)

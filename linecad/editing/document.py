@@ -116,7 +116,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
 
 def _crossings(now: Now) -> list[dict[str, object]]:
     graph, said, ids = now.lines.graph, now.lines.said, now.lines.ids
-    real = {} if now.model is None else now.model.real
+    decided = {} if now.model is None else now.model.decided
     changed = frozenset() if now.model is None else now.model.changed
     rows = zip(
         now.lines.crossings, graph.edges.tolist(), graph.kind.tolist(), graph.crossing.tolist(), said.label, strict=True
@@ -127,7 +127,8 @@ def _crossings(now: Now) -> list[dict[str, object]]:
             "lines": [ids[i], ids[j]],
             "kind": kind,
             "pixel": pixel,
-            "real": real.get(crossing, False),
+            "real": crossing in decided and decided[crossing].real,
+            "reason": decided[crossing].reason if crossing in decided else None,
             "label": label,
             "changed": crossing in changed,
         }

@@ -16,10 +16,10 @@ from linecad.editing.saving import Saver
 from linecad.editing.session import Session, ToSave
 from linecad.editing.solving import SolvingProcess
 from linecad.errors import EditorError
-from linecad.finding import ReconstructOptions
 from linecad.io.files import check_output, write_text_atomically
 from linecad.io.locks import alone
 from linecad.lines.segments import find_segments
+from linecad.options import Options
 
 try:
     from linecad.editing.server import Editor, listen, serve
@@ -35,7 +35,7 @@ class EditOptions:
 
     corrections: Path  # read if it is there, written on every change
     port: int = 0  # 0: any free one
-    reconstruct: ReconstructOptions = field(default_factory=ReconstructOptions)
+    reconstruct: Options = field(default_factory=Options)
     labels: Path | None = None  # written on every change, beside the photo
     camera_file: Path | None = None  # the photo's calibration, which the labels name
 

@@ -12,11 +12,13 @@ from functools import cached_property
 from linecad.camera.photo import Photo
 from linecad.corrections.apply import CorrectedLines, Correcting, Said, correcting_of, rows_of, said_of
 from linecad.corrections.edits import Corrections, Edit, KnownLength, SetFrame
+from linecad.corrections.lengths import measured
 from linecad.editing.solving import Answer, Step, Task
 from linecad.errors import CorrectionError, LinecadError
-from linecad.finding import FoundLines, ReconstructOptions, connect_all, name_lines
+from linecad.finding import FoundLines, connect_all, name_lines
 from linecad.line_graph import LineGraph, Segments
-from linecad.pipeline import measured
+from linecad.options import Options
+from linecad.pipeline import Reconstruction
 from linecad.scene import Scene
 from solver.options import Progress
 
@@ -52,13 +54,21 @@ class ToSave:
     lines: Lines
 
 
+@dataclass(frozen=True)
+class Decided:
+    """The decision about one crossing."""
+
+    real: bool
+    reason: str  # one of linecad.scene.REASONS
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """A solved scene."""
 
     scene: Scene
     version: int  # of the state that it was solved for
-    real: dict[int, bool]  # by the id of the crossing
+    decided: dict[int, Decided]  # by the id of the crossing
     changed: frozenset[int]  # crossings whose decision differs from that of the model before
 
 
@@ -98,7 +108,7 @@ class Session:
         self,
         photo: Photo,
         raw: Segments,
-        options: ReconstructOptions,
+        options: Options,
         corrections: Corrections,
         on_change: Callable[[ToSave], None],
     ) -> None:
@@ -199,7 +209,8 @@ class Session:
             self._task += 1
             self._solving = (self._task, self._content())
             self._progress, self._error, self._contradiction = None, "", None
-            return Task(self._task, self._found_now(), self._lines.corrected)
+            # The process that solves has the photo already.
+            return Task(self._task, replace(self._found_now(), pixels=None), self._lines.corrected)
 
     def hear(self, step: Step) -> None:
         """Take note of how far a solve has come."""
@@ -221,8 +232,8 @@ class Session:
             if answer.lines:
                 crossings = tuple(crossing_id(*pair) for pair in answer.crossings)
                 self._contradiction = Contradiction(answer.lines, crossings, answer.error)
-            if answer.scene is not None:
-                self._models[content] = self._model_of(answer.scene)
+            if answer.made is not None:
+                self._models[content] = self._model_of(answer.made)
                 self._show(self._models[content])
                 while len(self._models) > MODELS_KEPT:
                     self._models.popitem(last=False)
@@ -291,11 +302,13 @@ class Session:
         self._solved = model
         self._model = replace(model, scene=measured(model.scene, self._lines.corrected))
 
-    def _model_of(self, scene: Scene) -> Model:
-        real = decisions(scene, self._lines)
-        before = {} if self._model is None else self._model.real
-        changed = frozenset(crossing for crossing in real if before.get(crossing, real[crossing]) != real[crossing])
-        return Model(scene, self._version, real, changed)
+    def _model_of(self, made: Reconstruction) -> Model:
+        now = decisions(made, self._lines)
+        before = {} if self._model is None else self._model.decided
+        changed = frozenset(
+            crossing for crossing, found in now.items() if before.get(crossing, found).real != found.real
+        )
+        return Model(made.scene, self._version, now, changed)
 
 
 def crossing_id(one: int, other: int) -> int:
@@ -303,15 +316,16 @@ def crossing_id(one: int, other: int) -> int:
     return min(one, other) * CROSSING_BASE + max(one, other)
 
 
-def decisions(scene: Scene, lines: Lines) -> dict[int, bool]:
-    """By the id of each crossing whether it is real; those of lines that are not in the scene are not."""
+def decisions(made: Reconstruction, lines: Lines) -> dict[int, Decided]:
+    """What was decided, by the id of each crossing; those of lines that were not solved are in too small a group."""
     row = {
         (axis, ends.tobytes()): ids
         for axis, ends, ids in zip(lines.graph.axis.tolist(), lines.graph.segments.ends, lines.ids, strict=True)
     }
-    of_scene = zip(scene.lines.id.tolist(), scene.lines.axis.tolist(), scene.lines.segment, strict=True)
-    named = {number: row[axis, ends.tobytes()] for number, axis, ends in of_scene}
-    found = dict.fromkeys(lines.crossings, False)
-    for (one, other), real in zip(scene.intersections.lines.tolist(), scene.intersections.real.tolist(), strict=True):
-        found[crossing_id(named[one], named[other])] = real
+    graph, decision = made.graph, made.decision
+    ids = [row[axis, ends.tobytes()] for axis, ends in zip(graph.axis.tolist(), graph.segments.ends, strict=True)]
+    found = dict.fromkeys(lines.crossings, Decided(False, "small group"))
+    rows = zip(graph.edges.tolist(), decision.real.tolist(), decision.reason.tolist(), strict=True)
+    for (i, j), real, reason in rows:
+        found[crossing_id(ids[i], ids[j])] = Decided(real, reason)
     return found

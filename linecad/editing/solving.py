@@ -10,7 +10,7 @@ import os
 import signal
 import threading
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
 from multiprocessing.process import BaseProcess
 from types import FrameType
@@ -19,9 +19,9 @@ from typing import TYPE_CHECKING
 from linecad.camera.photo import Photo
 from linecad.corrections.apply import CorrectedLines
 from linecad.errors import ContradictionError, LinecadError
-from linecad.finding import FoundLines, ReconstructOptions
-from linecad.pipeline import reconstruct_corrected
-from linecad.scene import Scene
+from linecad.finding import FoundLines
+from linecad.options import Options
+from linecad.pipeline import Reconstruction, reconstruct_lines
 from solver.options import Progress
 
 if TYPE_CHECKING:
@@ -49,10 +49,10 @@ class Task:
 
 @dataclass(frozen=True, eq=False)
 class Answer:
-    """What came of a task: a scene, or an error in one line."""
+    """What came of a task: a reconstruction, or an error in one line."""
 
     number: int
-    scene: Scene | None = None
+    made: Reconstruction | None = None
     error: str = ""
     lines: tuple[int, ...] = ()  # ids of lines that stand in a contradiction
     crossings: tuple[tuple[int, int], ...] = ()  # pairs of line ids whose crossings cannot all be real
@@ -72,7 +72,7 @@ class SolvingProcess:
     def __init__(
         self,
         photo: Photo,
-        options: ReconstructOptions,
+        options: Options,
         on_step: Callable[[Step], None],
         on_answer: Callable[[Answer], None],
     ) -> None:
@@ -189,9 +189,7 @@ def _warm() -> None:
         importlib.import_module(name)
 
 
-def _solve(
-    task: Task, photo: Photo, options: ReconstructOptions, pipe: Connection, asked: "Synchronized[int]"
-) -> Answer:
+def _solve(task: Task, photo: Photo, options: Options, pipe: Connection, asked: "Synchronized[int]") -> Answer:
     def tell(at: Progress) -> None:
         pipe.send(Step(task.number, at))
         if asked.value == task.number:
@@ -200,12 +198,13 @@ def _solve(
     return solve_task(task, photo, options, tell)
 
 
-def solve_task(task: Task, photo: Photo, options: ReconstructOptions, tell: Callable[[Progress], None]) -> Answer:
+def solve_task(task: Task, photo: Photo, options: Options, tell: Callable[[Progress], None]) -> Answer:
     """The answer to a task, in this process."""
     try:
-        scene = reconstruct_corrected(photo, task.found, task.corrected, options, tell)
+        found = replace(task.found, pixels=photo.pixels)
+        made = reconstruct_lines(photo.name, found, options, tell, corrected=task.corrected)
     except ContradictionError as error:
         return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings)
     except LinecadError as error:
         return Answer(task.number, error=str(error))
-    return Answer(task.number, scene)
+    return Answer(task.number, made)

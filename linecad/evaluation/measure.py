@@ -21,10 +21,8 @@ from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import Formulation, LineGraph
-from linecad.model.build import place
-from linecad.model.lifting import lift
+from linecad.pipeline import reconstruct_lines
 from linecad.scene import Scene
-from solver.solve import solve
 
 MARKED_REACH = 3.0  # px between a line marked by hand and a reconstructed one
 MARKED_ANGLE = np.radians(3.0)
@@ -51,7 +49,7 @@ class WholeResult:
     seconds: float  # s, of the solver
     status: str
     gap: float
-    decisions: Decisions | None  # None where no crossing has a label
+    decisions: Decisions | None  # the final ones, as in the scene; None where no crossing has a label
     rotation_error: float | None  # degrees
     edges: DepthScore | None  # component 0 alone
     edges_with_weak: DepthScore | None  # all components
@@ -123,13 +121,10 @@ def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -
 def _whole(
     photo: Photo, found: FoundLines, reference: Reference, settings: Settings
 ) -> tuple[WholeResult, Picture | None]:
-    options = settings.whole_photo()
-    everything, graph = connect(found, options)
-    solution = solve(graph, options.solve)
-    scene = place(photo, found, graph, solution, options)
+    made = reconstruct_lines(photo.name, found, settings.reconstruction)
+    graph, solution, scene = made.graph, made.solution, made.scene
     label = reference.label(graph, found.camera, found.frame.rotation)
-    residual = lift(graph, solution).residual
-    length = float(everything.segments.length.sum())
+    length = float(made.whole.segments.length.sum())
     edges = reference.edges
     largest = _score(reference, scene, scene.lines.component == 0)
     result = WholeResult(
@@ -138,7 +133,9 @@ def _whole(
         seconds=solution.seconds,
         status=solution.status,
         gap=solution.gap,
-        decisions=compare(graph, solution.connected, residual, label, length) if reference.has_labels else None,
+        decisions=compare(graph, made.decision.real, made.lifted.residual, label, length)
+        if reference.has_labels
+        else None,
         rotation_error=_rotation_error(reference, scene),
         edges=largest,
         edges_with_weak=None if edges is None else score_depth(scene, edges.pixels, edges.depth),
@@ -154,7 +151,7 @@ def _whole(
         ),
         marked=None if reference.lines is None else _marked(reference, reference.lines, scene),
     )
-    return result, _picture(photo, graph, solution.connected, label) if settings.pictures else None
+    return result, _picture(photo, graph, made.decision.real, label) if settings.pictures else None
 
 
 def _score(reference: Reference, scene: Scene, lines: Bool) -> DepthScore | None:

@@ -1,15 +1,14 @@
 """The rows of the paper's table 1: which families of constraints each method has, and how it is run on a graph."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.evaluation.decisions import Decisions, compare
-from linecad.finding import SHORT_REACH, ReconstructOptions
-from linecad.graph.build import Weights
 from linecad.line_graph import Formulation, LineGraph
 from linecad.model.lifting import lift
+from linecad.options import SHORT_REACH, Options
 from solver.options import FAMILIES, Family, SolveOptions
 from solver.solve import solve
 
@@ -27,34 +26,18 @@ class Settings:
 
     formulations: tuple[Formulation, ...] = ("paper", "gain")  # for table 1
     ablation: bool = True  # solve all rows of table 1, or only the default settings
-    time_limit_s: float = 60.0  # s, for each solve
-    weights: Weights | None = None  # None: the default of each graph, junctions on the paper's
-    mu_planarity: float = 0.5
-    mu_boundary: float | None = None  # None: the default of each formulation
+    reconstruction: Options = field(default_factory=Options)  # of the whole photo; of table 1 the weights and rewards
     pictures: bool = False  # keep what the report shows of each photo
 
     def options(self, formulation: Formulation, row: str) -> SolveOptions:
         """The solver's options for a row of table 1 that is no baseline."""
-        return self._options(formulation, frozenset(name for name in FAMILIES if LETTERS[name] not in row.split("+")))
+        left_out = frozenset(name for name in FAMILIES if LETTERS[name] not in row.split("+"))
+        return replace(self.reconstruction.solve, formulation=formulation, without=left_out, fast=False)
 
-    def _options(self, formulation: Formulation, without: frozenset[Family]) -> SolveOptions:
-        return SolveOptions(
-            formulation=formulation,
-            without=without,
-            mu_planarity=self.mu_planarity,
-            mu_boundary=self.mu_boundary,
-            time_limit_s=self.time_limit_s,
-        )
-
-    def paper_graph(self) -> ReconstructOptions:
+    def paper_graph(self) -> Options:
         """The line graph of table 1: the paper's extension, no collinear edges, the largest component."""
-        return ReconstructOptions(
-            reach=SHORT_REACH, weights=self.weights or "junctions", collinear=False, largest_component=True
-        )
-
-    def whole_photo(self) -> ReconstructOptions:
-        """What `linecad convert` does with a photo when nothing is said."""
-        return ReconstructOptions(weights=self.weights, solve=self._options("gain", frozenset()))
+        weights = self.reconstruction.weights or "junctions"
+        return Options(reach=SHORT_REACH, weights=weights, collinear=False, largest_component=True)
 
 
 @dataclass(frozen=True)
@@ -75,7 +58,7 @@ def run_method(
         return _run_baseline(graph, label, total_length, settings)
     solution = solve(graph, settings.options(formulation, row))
     chosen: Bool = solution.connected
-    residual: Float = lift(graph, solution).residual
+    residual: Float = lift(graph, chosen, solution.log_depth).residual
     decisions = compare(graph, chosen, residual, label, total_length)
     return Run(decisions, solution.seconds, solution.status, solution.gap)
 
@@ -84,6 +67,6 @@ def _run_baseline(graph: LineGraph, label: Int, total_length: float, settings: S
     """The baseline chooses nothing: its tree is the minimum spanning tree of all crossings, in order of slack."""
     from solver.baseline import solve_baseline
 
-    found = solve_baseline(graph, settings.time_limit_s)
+    found = solve_baseline(graph, settings.options("paper", BASELINE).seconds)
     decisions = compare(graph, np.ones(len(graph.edges), bool), found.slack, label, total_length)
     return Run(decisions, found.seconds, "optimal", 0.0)

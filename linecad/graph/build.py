@@ -5,21 +5,19 @@ in the third coordinate alpha: s_i d_i = s_j d_j, an equation between the logs o
 free parameter: it is how far the equation moves when the segments move by their pixel noise.
 """
 
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, Text
 from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points, world_rays
-from linecad.graph.cues.fitted import fitted_weights
-from linecad.graph.cues.odds import log_odds
+from linecad.graph.cues import Known, weigh
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
+from linecad.options import SHORT_REACH, Reach, Weights
 from linecad.scene import Camera
 
-EXTENSION = 30.0  # px at the reference width, the paper's value
 EXTENSION_FLOOR = 5.0  # px in any photo: the ends of a segment are not known better
-MIN_LENGTH = 25.0  # px at the reference width; shorter segments are no lines of the graph
 MIN_LENGTH_FLOOR = 10.0  # px in any photo
 END_ZONE = 10.0  # px at the reference width; a crossing so near an end counts as at the end
 END_ZONE_FLOOR = 2.5  # px
@@ -34,17 +32,7 @@ COLLINEAR_GAP_SHARE = 1.5  # of the shorter segment; a larger gap needs longer s
 NOISE = 1.25  # px across the segment at the reference width, one standard deviation
 NOISE_FLOOR = 0.5  # px in any photo: the detector is not better
 NOISE_FACTOR = 3.0  # standard deviations that a tolerance covers
-MIN_TOLERANCE = 0.002  # relative depth; calibration and frame are not better than that
 MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
-
-Weights = Literal["ones", "junctions", "fitted", "odds"]
-
-# w_ij by kind of junction, and where a line of the third axis passes through the same point (Y and W junctions).
-# The paper took its weights from an earlier work that did not print them. These follow the log-odds that a crossing of
-# each kind is real in surveyed photos, X = 1 (tests/benchmarks/junction_weights.py; CONTRIBUTING, 2026-11-21).
-JUNCTION_WEIGHT = {"L": 1.1, "T": 0.9, "X": 1.0}
-CORNER_FACTOR = 0.6
-COLLINEAR_WEIGHT = 0.5  # two segments of one image line are evidence too, but not that the line goes on between them
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,45 +49,33 @@ def build_line_graph(
     segments: Segments,
     camera: Camera,
     frame: ManhattanFrame,
-    extension: float = EXTENSION,
+    reach: Reach = SHORT_REACH,
     weights: Weights = "junctions",
     collinear: bool = False,
-    least_length: float = MIN_LENGTH,
-    least_tolerance: float = MIN_TOLERANCE,
+    pixels: NDArray[np.uint8] | None = None,
 ) -> LineGraph:
     """The line graph of segments that pass through their vanishing points (paper, section "Line Graph").
 
-    `extension` and `least_length` are in px at REFERENCE_WIDTH; shorter segments are left out. `collinear` adds a
-    second kind of edge that the paper does not have: two segments on one image line may be one line in space.
-    `least_tolerance` is the least tolerance of an edge, relative depth.
+    Segments shorter than the reach asks for are left out. `collinear` adds a second kind of edge that the paper does
+    not have: two segments on one image line may be one line in space. `weights` names the cues that weigh the edges;
+    `pixels` (H, W, 3) are those of the photo, for cues that look at it.
     """
     scale = camera.width / REFERENCE_WIDTH
-    segments = segments.subset(segments.length >= max(least_length * scale, MIN_LENGTH_FLOOR))
-    found = _find_crossings(segments, max(extension * scale, EXTENSION_FLOOR))
+    segments = segments.subset(segments.length >= max(reach.least_length * scale, MIN_LENGTH_FLOOR))
+    found = _find_crossings(segments, max(reach.extension * scale, EXTENSION_FLOOR))
     kind = _junction_kinds(found, max(END_ZONE * scale, END_ZONE_FLOOR))
     corner = _corners(found, segments.axis, max(CORNER_REACH * scale, CORNER_REACH_FLOOR))
-
-    middle = segments.ends.mean(axis=1)
-    rays = world_rays(middle, camera.matrix, frame.rotation)
-    spread = _ray_spread(segments, middle, camera, frame, max(NOISE * scale, NOISE_FLOOR))
+    rays = world_rays(segments.ends.mean(axis=1), camera.matrix, frame.rotation)
     coordinate = 3 - segments.axis[found.edges].sum(axis=1)
-    weight = _weights(kind, corner, weights)
     if collinear:
-        pieces = _find_collinear(
-            segments, directions_to(middle, vanishing_points(camera.matrix, frame.rotation)[segments.axis]), scale
-        )
+        pieces = _find_collinear(segments, _directions(segments, camera, frame), scale)
         found = _joined(found, pieces)
         kind = np.r_[kind, np.full(len(pieces.edges), "collinear")]
         corner = np.r_[corner, np.zeros(len(pieces.edges), bool)]
-        weight = np.r_[weight, np.full(len(pieces.edges), 1.0 if weights == "ones" else COLLINEAR_WEIGHT)]
         coordinate = np.r_[coordinate, _telling_coordinates(rays, segments.axis, pieces.edges)]
-    i, j = found.edges.T
-    component = np.stack([rays[i, coordinate], rays[j, coordinate]], axis=1)
-    noise = np.abs(np.stack([spread[i, coordinate], spread[j, coordinate]], axis=1))
-    possible = component.prod(axis=1) > 0
-    size = np.maximum(np.abs(component), np.finfo(float).tiny)
-    tolerance = np.maximum(NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T), least_tolerance)
-    log_ratio = np.where(possible, np.log(size[:, 1] / size[:, 0]), 0.0)
+    spread = _ray_spread(segments, camera, frame, max(NOISE * scale, NOISE_FLOOR))
+    equation = _equations(rays, spread, found.edges, coordinate)
+    tolerance = np.maximum(equation.tolerance, reach.least_tolerance)
     graph = LineGraph(
         segments=segments,
         rays=rays,
@@ -109,16 +85,34 @@ def build_line_graph(
         gap=found.gap,
         kind=kind,
         corner=corner,
-        weight=weight,
+        weight=np.ones(len(found.edges)),
         coordinate=coordinate,
-        log_ratio=log_ratio,
+        log_ratio=equation.log_ratio,
         tolerance=tolerance,
-        possible=possible,
-        informative=possible & (tolerance <= MAX_TOLERANCE),
+        possible=equation.possible,
+        informative=equation.possible & (tolerance <= MAX_TOLERANCE),
     )
-    if weights == "fitted":
-        return replace(graph, weight=fitted_weights(graph, camera.width))
-    return replace(graph, weight=log_odds(graph, camera, frame)) if weights == "odds" else graph
+    return weigh(Known(graph, camera, frame, pixels), weights)
+
+
+@dataclass(frozen=True, eq=False)
+class _Equations:
+    """What E edges ask of the log depths of their lines."""
+
+    log_ratio: Float  # (E,)
+    tolerance: Float  # (E,) by pixel noise alone
+    possible: Bool  # (E,)
+
+
+def _equations(rays: Float, spread: Float, edges: Int, coordinate: Int) -> _Equations:
+    """The equation of each edge (E, 2) in its coordinate (E,), from rays (N, 3) and how far noise moves them (N, 3)."""
+    i, j = edges.T
+    component = np.stack([rays[i, coordinate], rays[j, coordinate]], axis=1)
+    noise = np.abs(np.stack([spread[i, coordinate], spread[j, coordinate]], axis=1))
+    possible = component.prod(axis=1) > 0
+    size = np.maximum(np.abs(component), np.finfo(float).tiny)
+    tolerance = NOISE_FACTOR * np.hypot(*np.minimum(noise / size, 1e6).T)
+    return _Equations(np.where(possible, np.log(size[:, 1] / size[:, 0]), 0.0), tolerance, possible)
 
 
 def _find_crossings(segments: Segments, extension: float) -> _Crossings:
@@ -217,18 +211,17 @@ def _corners(found: _Crossings, axis: Int, reach: float) -> Bool:
     return is_corner
 
 
-def _ray_spread(segments: Segments, middle: Float, camera: Camera, frame: ManhattanFrame, noise: float) -> Float:
+def _directions(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Float:
+    """(N, 2) unit vector in the photo from the middle of each segment to its vanishing point."""
+    points = vanishing_points(camera.matrix, frame.rotation)[segments.axis]
+    return directions_to(segments.ends.mean(axis=1), points)
+
+
+def _ray_spread(segments: Segments, camera: Camera, frame: ManhattanFrame, noise: float) -> Float:
     """How far the world rays (N, 3) of the middles move when the segments move across by `noise` px."""
-    towards = directions_to(middle, vanishing_points(camera.matrix, frame.rotation)[segments.axis])
+    middle, towards = segments.ends.mean(axis=1), _directions(segments, camera, frame)
     across = np.stack([-towards[:, 1], towards[:, 0]], axis=1) * noise
     spread: Float = world_rays(middle + across, camera.matrix, frame.rotation) - world_rays(
         middle, camera.matrix, frame.rotation
     )
     return spread
-
-
-def _weights(kind: Text, corner: Bool, weights: Weights) -> Float:
-    if weights == "ones":
-        return np.ones(len(kind))
-    by_kind = np.array([JUNCTION_WEIGHT[word] for word in kind.tolist()])
-    return by_kind * np.where(corner, CORNER_FACTOR, 1.0)

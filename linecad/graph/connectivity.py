@@ -21,10 +21,9 @@ def components(graph: LineGraph, chosen: Bool | None = None) -> list[Int]:
     Equal sizes are ordered by their smallest index, so that the order is the same on every run.
     """
     edges = graph.edges if chosen is None else graph.edges[chosen]
-    net = nx.Graph()
-    net.add_nodes_from(range(len(graph.segments)))
-    net.add_edges_from(map(tuple, edges.tolist()))
-    parts = [np.array(sorted(part), np.int64) for part in nx.connected_components(net)]
+    group = group_numbers(len(graph.segments), edges)
+    order = np.argsort(group, kind="stable")
+    parts = np.split(order, np.flatnonzero(np.diff(group[order])) + 1) if len(order) else []
     return sorted(parts, key=lambda part: (-len(part), int(part[0])))
 
 
@@ -39,12 +38,24 @@ def spanning_tree(graph: LineGraph, chosen: Bool, residual: Float) -> Bool:
     return tree
 
 
-def hinged_nodes(graph: LineGraph, chosen: Bool) -> Bool:
-    """Mask (N,) of lines whose place hangs on a single crossing: they are in no biconnected block of three or more."""
-    net = nx.Graph()
-    net.add_edges_from(map(tuple, graph.edges[chosen].tolist()))
-    hinged = np.ones(len(graph.segments), bool)
-    for block in nx.biconnected_components(net):
-        if len(block) > 2:
-            hinged[list(block)] = False
-    return hinged
+def as_network(count: int, edges: Int) -> "nx.Graph[int]":
+    """The lines and edges (E, 2) of a graph of `count` lines, for NetworkX."""
+    net: nx.Graph[int] = nx.Graph()
+    net.add_nodes_from(range(count))
+    net.add_edges_from(map(tuple, edges.tolist()))
+    return net
+
+
+def biconnected_blocks(edges: Int) -> list[set[int]]:
+    """The sets of three lines or more that edges (E, 2) tie so that no single line parts them."""
+    net: nx.Graph[int] = nx.Graph()
+    net.add_edges_from(map(tuple, edges.tolist()))
+    return [set(block) for block in nx.biconnected_components(net) if len(block) > 2]
+
+
+def in_no_block(graph: LineGraph, chosen: Bool) -> Bool:
+    """Mask (N,) of lines whose place depends on a single crossing: they are in no biconnected block."""
+    outside = np.ones(len(graph.segments), bool)
+    for block in biconnected_blocks(graph.edges[chosen]):
+        outside[list(block)] = False
+    return outside

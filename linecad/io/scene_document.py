@@ -13,6 +13,7 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     QUALITIES,
+    REASONS,
     Camera,
     CameraSource,
     Certainty,
@@ -71,6 +72,7 @@ def document_of(scene: Scene) -> dict[str, object]:
                 "kind": str(crossings.kind[row]),
                 "pixel": crossings.pixel[row].tolist(),
                 "real": bool(crossings.real[row]),
+                "reason": str(crossings.reason[row]),
                 "in_tree": bool(crossings.in_tree[row]),
                 "weight": float(crossings.weight[row]),
             }
@@ -228,7 +230,13 @@ def _intersections(nodes: list[Node], known: set[int]) -> Intersections:
         real=np.array([node["real"].boolean() for node in nodes], bool),
         in_tree=np.array([node["in_tree"].boolean() for node in nodes], bool),
         weight=np.array([node["weight"].number(LARGEST_NUMBER) for node in nodes], float),
+        reason=np.array([_reason(node.get("reason")) for node in nodes], str),
     )
+
+
+def _reason(node: Node | None) -> str:
+    """Why a crossing is real or not; files written before it was known do not tell."""
+    return "" if node is None else node.one_of((*REASONS, ""))
 
 
 def _planes(nodes: list[Node], known: set[int]) -> tuple[Plane, ...]:

@@ -1,200 +1,145 @@
-"""From a solved line graph to a scene: what hangs together, lifted into space, with planes, faces and doubts."""
+"""From a decided line graph to a scene: lines lifted into space, components with their scales, planes and faces."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int, Text
-from linecad.camera.photo import Photo
-from linecad.decide.resampling import MOST_DOUBT, SUPPORT, SUPPORT_IN_DOUBT, draw, find_supported
-from linecad.decide.rigid_bodies import Held, agreeing, find_held, tied
+from linecad.decide.decision import Decision
 from linecad.errors import ReconstructionError
-from linecad.finding import MIN_COMPONENT, FoundLines, ReconstructOptions
-from linecad.graph.connectivity import components, hinged_nodes, spanning_tree
+from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
 from linecad.model.faces import find_faces
-from linecad.model.lifting import Lifted, lift
+from linecad.model.lifting import Lifted
 from linecad.model.planes import find_planes
 from linecad.model.window_grids import find_grid_ties
-from linecad.scene import Camera, Intersections, Lines, Scene, SolveReport
-from solver.robust import RobustFit
+from linecad.options import MIN_COMPONENT
+from linecad.scene import Camera, Certainty, Intersections, Lines, Scene, SolveReport
 
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
 SHIFT_NOTED = 0.005  # rad; lines that had to move more to become exact are worth a note
-WITNESSES_IN_DOUBT = 2
 
 
-def place(
-    photo: Photo,
-    found: FoundLines,
-    graph: LineGraph,
-    solution: Solution,
-    options: ReconstructOptions,
-    left_out: int = 0,
-    sure: Bool | None = None,
+@dataclass(frozen=True, eq=False)
+class View:
+    """The photo that a scene is seen in."""
+
+    photo: str  # its name
+    camera: Camera
+    frame: ManhattanFrame
+    certainty: Certainty | None  # of both
+    lines: int  # that were found in it, also those that are not in the solved graph
+    notes: tuple[str, ...]  # what is known so far
+
+
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """The lines of a graph that go into the scene, part by part, with the component of each."""
+
+    parts: list[Int]  # lines of each component
+    component: Int  # (N,) -1 for lines of none
+    tied: Bool  # (N,) placed by window grids and not by crossings
+    lifted: Lifted
+
+    @property
+    def kept(self) -> Int:
+        """The lines of all components, ascending."""
+        return np.flatnonzero(self.component >= 0)
+
+
+def build_scene(
+    view: View, graph: LineGraph, solution: Solution, decision: Decision, lifted: Lifted, largest_component: bool
 ) -> Scene:
-    """The scene of a solved graph; `left_out` lines of the photo are not in it. May raise ReconstructionError.
+    """The scene of the `lifted` lines that a real crossing ties to others, each component with its scale.
 
-    Crossings (E,) that a person is `sure` of tie bodies together, however little else does.
+    With `largest_component` that of the largest one alone. Raises ReconstructionError where no group is large enough.
     """
-    notes = list(found.notes)
-    if left_out:
-        notes.append(_left_out(left_out, "touch too few others in the photo", options))
-    solution = _within_groups(graph, solution)
-    held, firm, why = _held(found, graph, solution, options)
-    if held is not None:
-        if options.witnesses is None and found.is_doubtful:
-            notes.append(
-                f"corners in this photo contradict each other often (doubt {found.doubt:.2f}, usual up to "
-                f"{MOST_DOUBT}), as where buildings hide each other: lines reach less far, and more is asked of what "
-                "hangs together"
-            )
-        if sure is not None:
-            held = tied(held, graph.edges[sure & solution.connected & graph.informative])
-        refused = solution.connected & ~held.joins(graph)
-        if (refused & graph.informative).any():
-            notes.append(
-                f"{int(refused.sum())} crossings join bodies of lines that {why}, and are not taken for real: such a "
-                "join is often a near edge before a far wall"
-            )
-        solution = replace(solution, connected=solution.connected & ~refused)
-    lifted = lift(graph, solution)
-    scene = _scene(photo, found.camera, found.frame, graph, solution, lifted, notes, options, held, firm)
-    return replace(scene, certainty=found.certainty)
-
-
-def _within_groups(graph: LineGraph, solution: Solution) -> Solution:
-    """The solution without chosen crossings between groups of lines that nothing else ties.
-
-    Such a crossing lies so near the horizon that it says nothing about depth; the two groups have scales of their own,
-    and a coordinate that they shared would be two numbers.
-    """
-    group = np.empty(len(graph.segments), np.int64)
-    for number, part in enumerate(components(graph, solution.connected & graph.informative)):
-        group[part] = number
-    i, j = graph.edges.T
-    return replace(solution, connected=solution.connected & (group[i] == group[j]))
-
-
-def _held(
-    found: FoundLines, graph: LineGraph, solution: Solution, options: ReconstructOptions
-) -> tuple[Held | None, Bool, str]:
-    """What holds the lines of a solution, which lines (N,) it holds firmly, and in words what it refuses; or None."""
-    witnesses = options.witnesses
-    if witnesses == 1 or (witnesses is None and options.is_paper):
-        return None, np.ones(len(graph.segments), bool), ""
-    agrees = agreeing(graph, solution.connected, solution.log_depth)
-    if witnesses is not None:
-        held = find_held(graph, agrees, witnesses)
-        return held, held.within, f"fewer than {witnesses} lines tie to each other"
-    fit = RobustFit(graph)
-    draws = draw(graph, lambda present: fit.depths(present=present), options.solve.seed)
-    supported = find_supported(graph, agrees, solution.log_depth, draws, found.is_doubtful)
-    if not found.is_doubtful:
-        return supported.held, supported.firm, _unstable(SUPPORT)
-    held = find_held(graph, agrees & supported.held.joins(graph), WITNESSES_IN_DOUBT)
-    why = f"{_unstable(SUPPORT_IN_DOUBT)} or that fewer than {WITNESSES_IN_DOUBT} lines tie to each other"
-    return held, held.within & supported.firm, why
-
-
-def _unstable(asked: float) -> str:
-    return f"keep their place in less than {asked:.0%} of the fits with some lines left out"
-
-
-def _scene(
-    photo: Photo,
-    camera: Camera,
-    frame: ManhattanFrame,
-    graph: LineGraph,
-    solution: Solution,
-    lifted: Lifted,
-    notes: list[str],
-    options: ReconstructOptions,
-    held: Held | None = None,
-    firm: Bool | None = None,
-) -> Scene:
-    """The scene of the lines that a chosen crossing ties to others, each component with its scale."""
-    telling = solution.connected & graph.informative
-    parts = [part for part in components(graph, telling) if len(part) >= MIN_COMPONENT]
-    hinged = hinged_nodes(graph, telling)
-    if firm is not None:
-        hinged |= ~firm
-    if held is not None and parts:
-        parts, lifted, tied = _tie_parts(graph, camera, frame, lifted, parts, held)
-        hinged |= tied
-        if tied[parts[0]].any():
-            notes.append(
-                f"{int(tied[parts[0]].sum())} lines of component 0 are not connected to the rest of it by crossings: "
-                "their place follows from window grids that continue (supported)"
-            )
-    if not parts:
-        raise ReconstructionError(
-            "no group of lines was found whose crossings agree in space; check the camera, or raise --extension"
-        )
-    parts = parts[:1] if options.largest_component else parts
-    dropped = len(graph.segments) - sum(map(len, parts))
+    found = _find_parts(view, graph, decision, lifted)
+    placed = found.parts[:1] if largest_component else found.parts
     component = np.full(len(graph.segments), -1)
-    for number, part in enumerate(parts):
+    for number, part in enumerate(placed):
         component[part] = number
-    kept = np.sort(np.concatenate(parts))
-    scale = _component_scales(graph, lifted, parts)
-    ends = lifted.ends * scale[component][:, None, None]
-    offset = lifted.offset * scale[component][:, None]
-    inside = (component[graph.edges] >= 0).all(axis=1)
-    real = solution.connected & inside
-
+    found = replace(found, parts=placed, component=component)
+    scale = _component_scales(graph, found.lifted, placed)[component]
+    lines = _lines(graph, solution, decision, found, scale)
+    offset = (found.lifted.offset * scale[:, None])[found.kept]
+    planes = find_planes(offset, lifted.shared[found.kept], lines.id)
+    planes = find_faces(planes, lines, view.camera, view.frame.rotation)
     new_id = np.cumsum(component >= 0) - 1
-    lines = Lines(
-        id=np.arange(len(kept)),
-        axis=graph.axis[kept],
-        segment=graph.segments.ends[kept],
-        ends=ends[kept],
-        is_boundary=solution.is_boundary[kept],
-        component=component[kept],
-        confidence=_confidence(solution, component, hinged)[kept],
-    )
-    intersections = Intersections(
-        lines=new_id[graph.edges[inside]],
-        kind=graph.kind[inside],
-        pixel=graph.crossing[inside],
-        real=real[inside],
-        in_tree=spanning_tree(graph, real & telling, lifted.residual)[inside],
-        weight=graph.weight[inside],
-    )
-    planes = find_planes(offset[kept], lifted.shared[kept], lines.id)
-    planes = find_faces(planes, lines, camera, frame.rotation)
-    if dropped:
-        notes.append(_left_out(dropped, "meet too few others in space", options))
-    notes += _doubts(solution, parts, lifted.shift[kept])
-    notes += disagreements(planes, lines, _renumbered(solution.planar_pairs, component, new_id))
+    pairs = _renumbered(decision.planar_pairs, component, new_id)
     return Scene(
-        photo=photo.name,
-        camera=camera,
-        rotation=frame.rotation,
+        photo=view.photo,
+        camera=view.camera,
+        rotation=view.frame.rotation,
         lines=lines,
-        intersections=intersections,
+        intersections=_intersections(graph, decision, found, new_id),
         planes=planes,
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.seconds, solution.cuts, solution.nodes,
         ),
-        notes=tuple(notes),
+        notes=(*_notes(view, graph, solution, found, largest_component), *disagreements(planes, lines, pairs)),
+        certainty=view.certainty,
     )  # fmt: skip
 
 
+def _find_parts(view: View, graph: LineGraph, decision: Decision, lifted: Lifted) -> _Parts:
+    """The groups of lines that real crossings tie, those joined that window grids tie; the most important first."""
+    tied = np.zeros(len(graph.segments), bool)
+    parts = [part for part in components(graph, decision.real & graph.informative) if len(part) >= MIN_COMPONENT]
+    if not parts:
+        raise ReconstructionError(
+            "no group of lines was found whose crossings agree in space; check the camera, or raise "
+            "--option extension=PX"
+        )
+    if decision.bodies is not None:
+        parts, lifted, tied = _tie_parts(view, graph, lifted, parts, decision.bodies.rigid)
+    return _Parts(parts, np.full(len(graph.segments), -1), tied, lifted)
+
+
+def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: _Parts, scale: Float) -> Lines:
+    kept = found.kept
+    sure = "proven" if solution.status == "optimal" else "supported"
+    word = np.where(decision.is_firm & ~found.tied, sure, "supported")
+    confidence: Text = np.asarray(np.where(found.component == 0, word, "weak"), np.str_)
+    return Lines(
+        id=np.arange(len(kept)),
+        axis=graph.axis[kept],
+        segment=graph.segments.ends[kept],
+        ends=(found.lifted.ends * scale[:, None, None])[kept],
+        is_boundary=decision.is_boundary[kept],
+        component=found.component[kept],
+        confidence=confidence[kept],
+    )
+
+
+def _intersections(graph: LineGraph, decision: Decision, found: _Parts, new_id: Int) -> Intersections:
+    inside = (found.component[graph.edges] >= 0).all(axis=1)
+    tree = spanning_tree(graph, decision.real & inside & graph.informative, found.lifted.residual)
+    return Intersections(
+        lines=new_id[graph.edges[inside]],
+        kind=graph.kind[inside],
+        pixel=graph.crossing[inside],
+        real=decision.real[inside],
+        in_tree=tree[inside],
+        weight=graph.weight[inside],
+        reason=decision.reason[inside],
+    )
+
+
 def _tie_parts(
-    graph: LineGraph, camera: Camera, frame: ManhattanFrame, lifted: Lifted, parts: list[Int], held: Held
+    view: View, graph: LineGraph, lifted: Lifted, parts: list[Int], rigid: Bool
 ) -> tuple[list[Int], Lifted, Bool]:
     """The parts joined where window grids tie them, each with one scale.
 
-    The one with the most lines in bodies comes first, also where more lines hang together loosely, the others in the
-    order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The mask
-    (N,) tells the lines of parts that are not the largest of those they were joined with.
+    The one with the most lines of `rigid` bodies (N,) comes first, also where more lines are tied loosely, the others
+    in the order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The
+    mask (N,) tells the lines of parts that are not the largest of those they were joined with.
     """
-    joined = join_bodies(find_grid_ties(graph, camera, frame.rotation, parts, lifted.offset), len(parts))
-    sizes = [(int(held.within[part].sum()), len(part)) for part in parts]
+    joined = join_bodies(find_grid_ties(graph, view.camera, view.frame.rotation, parts, lifted.offset), len(parts))
+    sizes = [(int(rigid[part].sum()), len(part)) for part in parts]
     scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
     groups: list[Int] = []
     for group in np.unique(joined.group).tolist():
@@ -205,7 +150,7 @@ def _tie_parts(
             tied[parts[member]] = member != lead
         groups.append(np.sort(np.concatenate([parts[member] for member in members])))
     groups.sort(key=lambda lines: (-len(lines), int(lines[0])))
-    largest = max(groups, key=lambda lines: int(held.within[lines].sum()))
+    largest = max(groups, key=lambda lines: int(rigid[lines].sum()))
     groups.sort(key=lambda lines: lines is not largest)
     lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
     return groups, lifted, tied
@@ -238,32 +183,45 @@ def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Flo
     return np.array([*scales, 1.0])
 
 
-def _confidence(solution: Solution, component: Int, hinged: Bool) -> Text:
-    """How sure the depth of each line is (N,), in the words of docs/scene-file.md."""
-    sure = "proven" if solution.status == "optimal" else "supported"
-    word = np.where(hinged, "supported", sure)
-    return np.asarray(np.where(component == 0, word, "weak"), np.str_)
-
-
-def _left_out(count: int, why: str, options: ReconstructOptions) -> str:
-    other = ", or not the largest group," if options.largest_component else ""
-    return f"{count} lines {why}{other} and are left out: a group has at least {MIN_COMPONENT}"
-
-
-def _doubts(solution: Solution, parts: list[Int], shift: Float) -> list[str]:
-    notes = []
-    if solution.status == "robust fit":
-        notes.append("depths by a robust fit to all crossings, without a search: nothing is proven, the gap is unknown")
-    elif solution.status == "heuristic":
-        notes.append(f"the time was over before the exact search began; the gap is {solution.gap:.1%}")
-    elif solution.status != "optimal":
-        ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"
-        notes.append(f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal")
-    if len(parts) > 1:
+def _notes(view: View, graph: LineGraph, solution: Solution, found: _Parts, largest_component: bool) -> tuple[str, ...]:
+    """What is known so far, and what a reader of the scene should know of lines and solver."""
+    notes = list(view.notes)
+    other = ", or not the largest group," if largest_component else ""
+    dropped = len(graph.segments) - len(found.kept)
+    tied = int(found.tied[found.parts[0]].sum())
+    for count, why in ((view.lines - len(graph.segments), "in the photo"), (dropped, "in space")):
+        if count:
+            notes.append(
+                f"{count} lines touch too few others {why}{other} and are left out: a group has at least "
+                f"{MIN_COMPONENT}"
+            )
+    if tied:
         notes.append(
-            f"{len(parts) - 1} smaller groups of lines, each with a scale of its own, are placed at the depth of "
+            f"{tied} lines of component 0 are not connected to the rest of it by crossings: their place follows from "
+            "window grids that continue (supported)"
+        )
+    return (*notes, *_solver_notes(solution), *_placing_notes(found))
+
+
+def _solver_notes(solution: Solution) -> list[str]:
+    if solution.status == "optimal":
+        return []
+    if solution.status == "robust fit":
+        return ["depths by a robust fit to all crossings, without a search: nothing is proven, the gap is unknown"]
+    if solution.status == "heuristic":
+        return [f"the time was over before the exact search began; the gap is {solution.gap:.1%}"]
+    ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"
+    return [f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal"]
+
+
+def _placing_notes(found: _Parts) -> list[str]:
+    notes = []
+    if len(found.parts) > 1:
+        notes.append(
+            f"{len(found.parts) - 1} smaller groups of lines, each with a scale of its own, are placed at the depth of "
             "their neighbours in the photo and marked weak"
         )
+    shift = found.lifted.shift[found.kept]
     moved = int((shift > SHIFT_NOTED).sum())
     if moved:
         notes.append(f"{moved} lines moved by up to {np.degrees(shift.max()):.1f} degrees to meet the others exactly")

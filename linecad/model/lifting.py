@@ -14,8 +14,8 @@ from scipy.sparse.linalg import spsolve
 
 from linecad.arrays import Bool, Float, Int
 from linecad.graph.connectivity import group_numbers
-from linecad.line_graph import LineGraph, Solution
-from linecad.model.plane_merging import MIN_TOLERANCE, Merges, find_merges
+from linecad.line_graph import LineDepths, LineGraph
+from linecad.model.plane_merging import MIN_TOLERANCE, NOISE_FACTOR, Merges, find_merges
 
 ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
 
@@ -31,15 +31,15 @@ class Lifted:
     shift: Float  # (N,) rad by which each line moved off the plane of its segment to become exact
 
 
-def lift(graph: LineGraph, solution: Solution) -> Lifted:
+def lift(graph: LineGraph, chosen: Bool, log_depth: Float) -> Lifted:
     """Lines in space for every node of the graph, exact at the chosen crossings (paper, algorithm 1, last steps).
 
-    Planes of one normal that the noise cannot tell apart become one.
+    `chosen` (E,) are the crossings that are real, `log_depth` (N,) depths near which all agree. Planes of one normal
+    that the noise cannot tell apart become one.
     """
-    chosen = solution.connected
-    log_depth = fit_log_depths(graph, chosen, solution.log_depth)
+    log_depth = fit_log_depths(graph, chosen, log_depth)
     shared = _shared_coordinates(graph, chosen)
-    merges = find_merges(graph, chosen, _parts(graph, chosen), shared, log_depth, _normal(graph, chosen))
+    merges = find_merges(graph, chosen, _parts(graph, chosen), shared, log_depth, _normal(graph, chosen, log_depth))
     if len(merges.axis):
         log_depth = fit_log_depths(graph, chosen, log_depth, merges)
         shared = _shared_coordinates(graph, chosen, merges)
@@ -57,9 +57,11 @@ def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float, merges: Merges 
     used = chosen & graph.informative
     incidence = _incidence(graph, used)
     weight = 1 / graph.tolerance[used] ** 2
-    normal = _normal(graph, chosen)
+    normal = _normal(graph, chosen, guess)
     # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
     right = incidence.T @ (weight * (graph.log_ratio[used] - incidence @ guess))
+    told = _told(graph, guess)
+    right = right + np.bincount(told.line, (told.log_depth - guess[told.line]) / _spread(told) ** 2, len(guess))
     if merges is not None:
         normal = normal + merges.rows.T @ merges.rows / MIN_TOLERANCE**2
         right = right + merges.rows.T @ (merges.log_ratio - merges.rows @ guess) / MIN_TOLERANCE**2
@@ -74,12 +76,27 @@ def _incidence(graph: LineGraph, used: Bool) -> csr_matrix:
     return csr_matrix((values, (np.r_[rows, rows], np.r_[i, j])), (len(rows), len(graph.segments)))
 
 
-def _normal(graph: LineGraph, chosen: Bool) -> csr_matrix:
-    """Matrix (N, N) of the normal equations, in units of 1 / tolerance ** 2."""
+def _normal(graph: LineGraph, chosen: Bool, log_depth: Float) -> csr_matrix:
+    """Matrix (N, N) of the normal equations at depths (N,), in units of 1 / tolerance ** 2."""
     used = chosen & graph.informative
     incidence = _incidence(graph, used)
     weight = diags_array(1 / graph.tolerance[used] ** 2)
-    return csr_matrix(incidence.T @ weight @ incidence + ANCHOR * diags_array(np.ones(len(graph.segments))))
+    told = _told(graph, log_depth)
+    known = np.bincount(told.line, 1 / _spread(told) ** 2, len(graph.segments))
+    return csr_matrix(incidence.T @ weight @ incidence + diags_array(ANCHOR + known))
+
+
+def _told(graph: LineGraph, log_depth: Float) -> LineDepths:
+    """What unary cues tell of the depths, without what is an outlier at depths (N,)."""
+    told = graph.depths if graph.depths is not None else LineDepths.none()
+    off = np.abs(told.log_depth - log_depth[told.line]) > _spread(told)
+    return told.chosen(~(told.may_be_outlier & off))
+
+
+def _spread(told: LineDepths) -> Float:
+    """(M,) half width of the interval about each depth that its noise explains, as the tolerance of a crossing."""
+    spread: Float = NOISE_FACTOR * told.sigma
+    return spread
 
 
 def _parts(graph: LineGraph, chosen: Bool) -> Int:

@@ -104,7 +104,7 @@ def search(
     highs: "highspy.Highs", options: SolveOptions, start: Float, reporter: Reporter, stop: threading.Event
 ) -> Answer:
     """Run a model, which has an objective to maximise, within what is left of the limits."""
-    highs.setOptionValue("time_limit", max(LEAST_TIME_S, options.time_limit_s - (time.monotonic() - reporter.began)))
+    highs.setOptionValue("time_limit", max(LEAST_TIME_S, options.seconds - (time.monotonic() - reporter.began)))
     solution = highspy.HighsSolution()
     solution.col_value = start.tolist()
     highs.setSolution(solution)

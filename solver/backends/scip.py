@@ -134,7 +134,7 @@ def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event
     Raises what the progress callback raised, and SolverError when SCIP fails or ends without a meaning.
     """
     reporter = watch.reporter
-    _set_parameters(model, options, options.time_limit_s - (time.monotonic() - reporter.began))
+    _set_parameters(model, options, options.seconds - (time.monotonic() - reporter.began))
     reporter.report()
     with ThreadPoolExecutor(max_workers=1) as pool:
         running = pool.submit(model.optimizeNogil)

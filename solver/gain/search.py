@@ -102,7 +102,7 @@ class _Search:
         stop: threading.Event,
     ) -> None:
         self.graph, self.options, self.backend, self.stop = graph, options, backend, stop
-        self.end = began + options.time_limit_s
+        self.end = began + options.seconds
         ratios = end_ratios(graph)
         self.families: Families = find_families(graph, options.without | {"cycles"})
         self.real, self.fake = read_facts(graph, options)

@@ -21,14 +21,15 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score, score_depth
 from linecad.evaluation.references import Reference, open_case
-from linecad.finding import LONG_REACH, MIDDLE_REACH, SHORT_REACH, FoundLines, ReconstructOptions, connect, find_lines
+from linecad.options import LONG_REACH, MIDDLE_REACH, SHORT_REACH, Options
+from linecad.finding import FoundLines, connect, find_lines
 from linecad.model.body_scales import join_bodies
 from linecad.model.build import place
 from linecad.scene import Scene
 from solver.options import SolveOptions
 from solver.solve import solve
 
-FIT = ReconstructOptions(solve=SolveOptions(fast=True))
+FIT = Options(solve=SolveOptions(fast=True))
 Row = Callable[[Photo, float], Scene]
 
 
@@ -90,7 +91,7 @@ def cell(rows: list[tuple[float, float]], *, with_lowest: bool) -> str:
     return f"{recall.mean():.3f} / {np.nanmean(precision):.3f}{lowest}"
 
 
-def with_options(options: ReconstructOptions) -> Row:
+def with_options(options: Options) -> Row:
     def row(photo: Photo, limit: float) -> Scene:
         timed = replace(options, solve=replace(options.solve, time_limit_s=limit))
         return finished(photo, find_lines(photo, faint=options.faint), timed)
@@ -98,7 +99,7 @@ def with_options(options: ReconstructOptions) -> Row:
     return row
 
 
-def finished(photo: Photo, found: FoundLines, options: ReconstructOptions) -> Scene:
+def finished(photo: Photo, found: FoundLines, options: Options) -> Scene:
     whole, graph = connect(found, options)
     return place(photo, found, graph, solve(graph, options.solve), options, len(whole.segments) - len(graph.segments))
 
@@ -134,9 +135,9 @@ def hulls(photo: Photo, _limit: float) -> Scene:
 
 
 ROWS: dict[str, Row] = {
-    "exact search": with_options(ReconstructOptions()),
+    "exact search": with_options(Options()),
     "exact search without planarity": with_options(
-        ReconstructOptions(solve=SolveOptions(without=frozenset({"planarity"})))
+        Options(solve=SolveOptions(without=frozenset({"planarity"})))
     ),
     "robust fit (`--fast`); all below change one thing of it": with_options(FIT),
     "short reach, as in the paper": with_options(replace(FIT, reach=SHORT_REACH)),

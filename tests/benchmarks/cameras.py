@@ -25,12 +25,12 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.references import Reference, open_case
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 from linecad.scene import QUALITIES, Camera
 from solver.options import SolveOptions
 
-FIT = ReconstructOptions(solve=SolveOptions(fast=True))
+FIT = Options(solve=SolveOptions(fast=True))
 LIMITS = (3.0, 5.0, 10.0)  # degrees
 KNOWN, CROPPED, CROP_NOT_SAID = "plain, K known", "cropped", "cropped, not said"
 KINDS = (PLAIN, KNOWN, *(kind for kind in CHANGES if kind != PLAIN), CROP_NOT_SAID)

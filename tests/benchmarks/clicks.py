@@ -17,7 +17,8 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import DepthScore, score_depth
 from linecad.evaluation.references import Reference, open_case
-from linecad.finding import FoundLines, ReconstructOptions, connect, find_lines
+from linecad.finding import FoundLines, connect, find_lines
+from linecad.options import Options
 from linecad.line_graph import Segments
 from linecad.pipeline import correct_lines, reconstruct_corrected
 from linecad.scene import Scene
@@ -36,10 +37,10 @@ def main() -> None:
     chosen = parser.parse_args()
     for case in find_dataset(chosen.dataset).cases:
         if case.name.startswith(chosen.only):
-            measure(case, ReconstructOptions(solve=SolveOptions(time_limit_s=chosen.time_limit)), chosen.clicks)
+            measure(case, Options(solve=SolveOptions(time_limit_s=chosen.time_limit)), chosen.clicks)
 
 
-def measure(case: Case, options: ReconstructOptions, clicks: int) -> None:
+def measure(case: Case, options: Options, clicks: int) -> None:
     """Print one line before, and one after each click."""
     photo, reference = open_case(case)
     found = find_lines(photo).grouped(options)
@@ -69,7 +70,7 @@ def measure(case: Case, options: ReconstructOptions, clicks: int) -> None:
         )
 
 
-def solved(photo: Photo, found: FoundLines, said: Corrections, options: ReconstructOptions) -> Scene:
+def solved(photo: Photo, found: FoundLines, said: Corrections, options: Options) -> Scene:
     return reconstruct_corrected(photo, found, correct_lines(found, said), options)
 
 
@@ -78,7 +79,7 @@ def scored(scene: Scene, reference: Reference) -> DepthScore:
     return score_depth(scene, reference.edges.pixels, reference.edges.depth, scene.lines.component == 0)
 
 
-def candidates(found: FoundLines, scene: Scene, options: ReconstructOptions) -> list[LabelCrossing]:
+def candidates(found: FoundLines, scene: Scene, options: Options) -> list[LabelCrossing]:
     """Crossings that would tie a large group to component 0, called real: those with the smallest gaps."""
     _, graph = connect(found, options)
     component = {}

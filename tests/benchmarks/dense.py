@@ -26,7 +26,8 @@ from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
 from linecad.evaluation.labels import REAL
 from linecad.evaluation.references import Points, Reference, open_case
-from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.options import Options
+from linecad.finding import connect, find_lines
 from linecad.line_graph import Solution
 from linecad.model.build import place
 from linecad.model.faces import find_faces
@@ -39,11 +40,11 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--only", default="", help="photos with this in DATASET/NAME")
-    parser.add_argument("--extension", type=float, default=ReconstructOptions.extension)
+    parser.add_argument("--extension", type=float, default=Options.extension)
     parser.add_argument("--true-crossings", action="store_true")
     parser.add_argument("--time-limit", type=float, default=60.0)
     arguments = parser.parse_args()
-    options = ReconstructOptions(extension=arguments.extension, solve=SolveOptions(time_limit_s=arguments.time_limit))
+    options = Options(extension=arguments.extension, solve=SolveOptions(time_limit_s=arguments.time_limit))
     print("| photo | lines | faces | holes | s for faces | component 0: hulls | faces | all: hulls | faces |")
     print("| --- " * 9 + "|")
     rows = []
@@ -64,7 +65,7 @@ def main() -> None:
         print("| mean | | | | | " + " | ".join(cell(*pair) for pair in np.mean(rows, axis=0)) + " |")
 
 
-def truly(photo: Photo, reference: Reference, options: ReconstructOptions) -> Scene:
+def truly(photo: Photo, reference: Reference, options: Options) -> Scene:
     """The scene of the crossings that are real by the truth."""
     found = find_lines(photo)
     _, graph = connect(found, options)

@@ -14,7 +14,8 @@ import numpy as np
 from linecad.camera.photo import read_photo
 from linecad.dataset.store import read_list, read_truth
 from linecad.evaluation.labels import REAL, UNDECIDED, depths_at_crossings, find_true_lines, judge_crossings
-from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.options import Options
+from linecad.finding import connect, find_lines
 from solver.options import SolveOptions
 from solver.solve import solve
 
@@ -44,7 +45,7 @@ def look(folder: Path, time_limit: float) -> tuple[np.ndarray, np.ndarray]:
     """The kind of each candidate crossing, an index of KINDS, and which of them the solver calls real."""
     truth, photo = read_truth(folder), read_photo(folder / "photo.jpg", folder / "camera.json")
     found = find_lines(photo)
-    graph = connect(found, ReconstructOptions(collinear=False, largest_component=True))[1]
+    graph = connect(found, Options(collinear=False, largest_component=True))[1]
     lines = find_true_lines(truth, graph.segments, found.frame.rotation)
     label = judge_crossings(truth, graph, lines)
     i, j = graph.edges.T

@@ -18,7 +18,7 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
 from linecad.evaluation.references import Points, open_case
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 from linecad.scene import Scene
 from solver.options import SolveOptions
@@ -41,7 +41,7 @@ def main() -> None:
     parser.add_argument("--time-limit", type=float, default=20.0)
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
-    options = ReconstructOptions(solve=SolveOptions(time_limit_s=chosen.time_limit, fast=chosen.fast))
+    options = Options(solve=SolveOptions(time_limit_s=chosen.time_limit, fast=chosen.fast))
     for folder in chosen.dataset:
         for case in find_dataset(folder).cases:
             if chosen.only in case.name:
@@ -51,7 +51,7 @@ def main() -> None:
                     print(f"{case.name}: {error}")
 
 
-def show(case: Case, options: ReconstructOptions, path: Path) -> None:
+def show(case: Case, options: Options, path: Path) -> None:
     """Draw the picture of one photo."""
     photo, reference = open_case(case)
     scene = reconstruct(photo, options)

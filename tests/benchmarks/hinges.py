@@ -16,7 +16,8 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
-from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.options import Options
+from linecad.finding import connect, find_lines
 from linecad.model.build import place
 from solver.options import SolveOptions
 from solver.solve import solve
@@ -30,13 +31,13 @@ def measure(case: Case, limit: float, variants: list[Variant]) -> dict[Variant, 
     if reference.edges is None:
         return {}
     found = find_lines(photo)
-    _, graph = connect(found, ReconstructOptions())
+    _, graph = connect(found, Options())
     solution = solve(graph, SolveOptions(time_limit_s=limit))
     rows = {}
     for witnesses, hanging in variants:
         linecad.decide.rigid_bodies.HANGING = hanging
         began = time.monotonic()
-        scene = place(photo, found, graph, solution, ReconstructOptions(witnesses=witnesses))
+        scene = place(photo, found, graph, solution, Options(witnesses=witnesses))
         seconds = time.monotonic() - began
         score = score_depth(scene, reference.edges.pixels, reference.edges.depth, scene.lines.component == 0)
         rows[witnesses, hanging] = (score.recall_5, score.precision_5 if score.with_depth else np.nan, seconds)

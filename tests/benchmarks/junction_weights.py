@@ -303,7 +303,7 @@ class Judged:
         largest = np.zeros(len(graph.segments), bool)
         largest[components(graph, telling)[0]] = True
         in_largest = telling & largest[graph.edges].all(axis=1)
-        tree = spanning_tree(graph, in_largest, lift(graph, solution).residual)
+        tree = spanning_tree(graph, in_largest, lift(graph, solution.connected, solution.log_depth).residual)
         taken = solution.connected
         masks = (taken & self.real, taken & self.fake, ~taken & self.real, tree & self.real, tree & self.fake)
         return Score(*(int(mask.sum()) for mask in masks))

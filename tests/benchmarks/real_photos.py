@@ -15,13 +15,13 @@ from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from linecad.lines.segments import find_segments
 from linecad.pipeline import reconstruct
 from solver.options import SolveOptions
 
 
-def measure_depth(truth_file: Path, options: ReconstructOptions) -> tuple[float, ...]:
+def measure_depth(truth_file: Path, options: Options) -> tuple[float, ...]:
     truth = json.loads(truth_file.read_text())
     photo = read_photo(truth_file.with_suffix(".jpg"), truth_file)
     scene = reconstruct(photo, options)
@@ -104,7 +104,7 @@ def main() -> None:
             f"{np.median(seconds) * 1e3:.0f} ms a photo after detection"
         )
         return
-    options = ReconstructOptions(
+    options = Options(
         extension=chosen.extension,
         weights=chosen.weights,
         collinear=chosen.formulation == "gain" if chosen.collinear is None else chosen.collinear,

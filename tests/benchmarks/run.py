@@ -28,7 +28,7 @@ from plot import Dot, draw_growth
 from real_graphs import real_graphs
 
 from linecad.errors import SolverError
-from linecad.graph.build import EXTENSION
+from linecad.options import EXTENSION
 from linecad.line_graph import LineGraph
 from solver.options import SolveOptions
 from solver.solve import solve

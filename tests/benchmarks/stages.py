@@ -16,7 +16,8 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
-from linecad.finding import ReconstructOptions, connect, find_lines
+from linecad.options import Options
+from linecad.finding import connect, find_lines
 from linecad.line_graph import Segments
 from linecad.lines.segments import find_segments, group_segments, label_segments
 from linecad.model.build import place
@@ -32,7 +33,7 @@ def measure(case: Case, limit: float) -> np.ndarray:
     marked = reference.lines
     if marked is None or reference.rotation is None:
         raise LinecadError(f"{case.name} has no marked lines")
-    options = ReconstructOptions(solve=SolveOptions(time_limit_s=limit))
+    options = Options(solve=SolveOptions(time_limit_s=limit))
     raw = find_segments(photo.grey)
     found = find_lines(photo)
     names = true_axes(found.frame.rotation, reference.rotation)
@@ -45,7 +46,7 @@ def measure(case: Case, limit: float) -> np.ndarray:
         stages += [whole.segments, graph.segments]
         solution = solve(graph, options.solve)
         for witnesses in (1, None):
-            scene = place(photo, found, graph, solution, ReconstructOptions(witnesses=witnesses))
+            scene = place(photo, found, graph, solution, Options(witnesses=witnesses))
             stages.append(Segments(scene.lines.segment, scene.lines.axis))
     except LinecadError as error:
         print(f"{case.name}: {error}")

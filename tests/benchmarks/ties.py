@@ -15,7 +15,8 @@ from linecad.decide.rigid_bodies import WITNESSES, agreeing, find_held
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.labels import find_true_lines
 from linecad.evaluation.references import open_case
-from linecad.finding import MIN_COMPONENT, ReconstructOptions, connect, find_lines
+from linecad.finding import MIN_COMPONENT, connect, find_lines
+from linecad.options import Options
 from linecad.graph.connectivity import components
 from linecad.model.lifting import lift
 from linecad.model.window_grids import find_grid_ties
@@ -47,7 +48,7 @@ def errors_of(case, limit):
     """Kind of tie and error of its log scale, for each tie between two bodies whose true scales are known."""
     photo, reference = open_case(case)
     found = find_lines(photo)
-    _, graph = connect(found, ReconstructOptions())
+    _, graph = connect(found, Options())
     solution = solve(graph, SolveOptions(time_limit_s=limit))
     held = find_held(graph, agreeing(graph, solution.connected, solution.log_depth), WITNESSES)
     solution = replace(solution, connected=solution.connected & held.joins(graph))

@@ -14,13 +14,14 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
-from linecad.finding import SHORT_REACH, ReconstructOptions, connect, find_lines
+from linecad.options import SHORT_REACH, Options
+from linecad.finding import connect, find_lines
 from linecad.model.build import place
 from solver.options import SolveOptions
 from solver.solve import solve
 
 
-def measure(case: Case, options: ReconstructOptions) -> tuple[float, float] | None:
+def measure(case: Case, options: Options) -> tuple[float, float] | None:
     """Recall and precision of one photo, NaN where nothing was found; prints them."""
     photo, reference = open_case(case)
     if reference.edges is None:
@@ -57,7 +58,7 @@ def main() -> None:
     parser.add_argument("--extension", type=float)
     parser.add_argument("--short", action="store_true", help="the reach and weights of the paper's graph")
     chosen = parser.parse_args()
-    options = ReconstructOptions(
+    options = Options(
         extension=chosen.extension,
         reach=SHORT_REACH if chosen.short else None,
         weights="junctions" if chosen.short else None,

@@ -11,7 +11,8 @@ import pytest
 from linecad.camera.photo import Photo, read_photo
 from linecad.errors import ReconstructionError
 from linecad.evaluation.frames import rotation_error
-from linecad.finding import SHORT_REACH, ReconstructOptions, find_lines
+from linecad.options import SHORT_REACH, Options
+from linecad.finding import find_lines
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
 from linecad.io.scene_file import read_scene, write_scene
@@ -24,10 +25,10 @@ from solver.options import SolveOptions
 
 # The made scene is two boxes of two faces each. The whole program of the paper cuts them apart at their edges: its
 # 3-cycles forbid a true corner, and mu_2 = 10 outweighs the crossings at an edge that is kept off the boundary.
-WHOLE_BOXES = ReconstructOptions(solve=SolveOptions(without=frozenset({"cycles", "boundary"})))
+WHOLE_BOXES = Options(solve=SolveOptions(without=frozenset({"cycles", "boundary"})))
 
 # At short reach the room is solved to the end; at the usual one a gap remains, and what it stops at hangs on the clock.
-SOLVED = ReconstructOptions(reach=SHORT_REACH, weights="junctions", solve=SolveOptions(time_limit_s=20))
+SOLVED = Options(reach=SHORT_REACH, weights="junctions", solve=SolveOptions(time_limit_s=20))
 
 SAMPLES = Path(__file__).resolve().parents[2] / "samples"
 
@@ -203,9 +204,9 @@ def test_confidence_says_what_the_documentation_promises(any_scene):
 
 
 def test_without_a_proof_nothing_is_called_proven(drawn):
-    stopped = reconstruct(drawn, ReconstructOptions(solve=SolveOptions(gap=0.5)))
+    stopped = reconstruct(drawn, Options(solve=SolveOptions(gap=0.5)))
     if stopped.solve.status == "optimal":
-        stopped = reconstruct(drawn, ReconstructOptions(solve=SolveOptions(time_limit_s=1e-6)))
+        stopped = reconstruct(drawn, Options(solve=SolveOptions(time_limit_s=1e-6)))
     assert stopped.solve.status in ("gap limit", "time limit")
     assert set(stopped.lines.confidence.tolist()) == {"supported", "weak"}
     assert any(stopped.solve.status in note and "not proven" in note for note in stopped.notes)
@@ -235,7 +236,7 @@ def test_two_runs_give_the_same_bytes(room, room_scene, tmp_path):
 
 
 def test_focal_length_comes_from_the_vanishing_points_when_nothing_tells_it(made, drawn):
-    scene = reconstruct(Photo("drawn.png", drawn.pixels, None), ReconstructOptions())
+    scene = reconstruct(Photo("drawn.png", drawn.pixels, None), Options())
     assert scene.camera.source == "vanishing points"
     assert scene.camera.focal == pytest.approx(made.camera.focal, rel=0.02)
     assert any(note.startswith("focal length guessed from the vanishing points") for note in scene.notes)
@@ -251,7 +252,7 @@ def frontal_photo():
 
 
 def test_focal_length_is_assumed_and_noted_when_it_cannot_be_told():
-    scene = reconstruct(frontal_photo(), ReconstructOptions())
+    scene = reconstruct(frontal_photo(), Options())
     assert scene.camera.source == "default"
     assert scene.camera.focal == pytest.approx(28 / 43.27 * 1000)
     assert any("not to be told" in note for note in scene.notes)
@@ -259,7 +260,7 @@ def test_focal_length_is_assumed_and_noted_when_it_cannot_be_told():
 
 def test_stages_are_reported_in_order(drawn):
     stages = []
-    reconstruct(drawn, ReconstructOptions(largest_component=True, faint=True), on_stage=stages.append)
+    reconstruct(drawn, Options(largest_component=True, faint=True), on_stage=stages.append)
     words = [
         "finding segments",
         "finding the Manhattan frame",
@@ -274,7 +275,7 @@ def test_stages_are_reported_in_order(drawn):
 def test_a_flat_photo_holds_too_little():
     flat = Photo("flat.png", np.full((300, 400, 3), 128, np.uint8), None)
     with pytest.raises(ReconstructionError, match="0 straight segments found"):
-        reconstruct(flat, ReconstructOptions())
+        reconstruct(flat, Options())
 
 
 def test_groups_that_only_the_horizon_ties_keep_scales_of_their_own():
@@ -311,7 +312,7 @@ def test_groups_that_only_the_horizon_ties_keep_scales_of_their_own():
     solution = _within_groups(graph, solution)
     assert not solution.connected[tie].any()
     photo = Photo("two.png", np.zeros((2880, 3840, 3), np.uint8), camera)
-    scene = _scene(photo, camera, frame, graph, solution, lift(graph, solution), [], ReconstructOptions())
+    scene = _scene(photo, camera, frame, graph, solution, lift(graph, solution), [], Options())
     assert scene.lines.component.tolist() == [0] * 4 + [1] * 4
     for plane in scene.planes:
         assert (scene.lines.ends[list(plane.lines), :, plane.axis] == plane.offset).all()
@@ -325,7 +326,7 @@ def test_notes_are_plain_text_on_one_line(any_scene):
 
 
 def test_a_fast_scene_says_what_it_is_and_is_the_same_every_time(room, tmp_path):
-    fast = ReconstructOptions(solve=SolveOptions(fast=True))
+    fast = Options(solve=SolveOptions(fast=True))
     scene = reconstruct(room, fast)
     assert scene.solve.status == "robust fit"
     assert set(scene.lines.confidence.tolist()) <= {"supported", "weak"}
@@ -337,9 +338,9 @@ def test_a_fast_scene_says_what_it_is_and_is_the_same_every_time(room, tmp_path)
 
 
 def test_the_paper_keeps_its_reach_and_weights(room):
-    paper = ReconstructOptions(solve=SolveOptions(formulation="paper"))
+    paper = Options(solve=SolveOptions(formulation="paper"))
     found = find_lines(room)
     assert paper.reach_for(found) == SHORT_REACH
     assert paper.weights_used == "junctions"
-    assert ReconstructOptions().reach_for(found) != SHORT_REACH
-    assert ReconstructOptions(extension=40.0).reach_for(found).extension == 40
+    assert Options().reach_for(found) != SHORT_REACH
+    assert Options(extension=40.0).reach_for(found).extension == 40

@@ -11,13 +11,14 @@ from linecad.corrections.apply import correct, said_of
 from linecad.corrections.edits import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
 from linecad.decide.rigid_bodies import find_held, tied
 from linecad.errors import ContradictionError, ReconstructionError
-from linecad.finding import SHORT_REACH, FoundLines, ReconstructOptions, connect, name_lines
+from linecad.options import SHORT_REACH, Options
+from linecad.finding import FoundLines, connect, name_lines
 from linecad.pipeline import correct_lines, measured, reconstruct, reconstruct_corrected
 from solver.options import BACKENDS, FORMULATIONS, SolveOptions
 
 # False crossings too, one of them between the two boxes; their optimum takes long to prove, and is not what is tested.
-NEAR = ReconstructOptions(witnesses=3, weights="junctions")
-FAR = ReconstructOptions(extension=800.0, witnesses=3, weights="junctions", solve=SolveOptions(time_limit_s=1.0))
+NEAR = Options(witnesses=3, weights="junctions")
+FAR = Options(extension=800.0, witnesses=3, weights="junctions", solve=SolveOptions(time_limit_s=1.0))
 
 
 def plain(ends):
@@ -80,7 +81,7 @@ def far_graph(house):
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_crossing_called_fake_or_real_is_so_in_the_scene(house, graph, made, formulation, backend):
     solve = SolveOptions(formulation=formulation, backend=backend, time_limit_s=1)
-    options = ReconstructOptions(witnesses=3, weights="junctions", solve=solve)
+    options = Options(witnesses=3, weights="junctions", solve=solve)
     plain_crossing = (graph.kind != "collinear") & graph.informative
     true = np.flatnonzero(made.truly_real(graph) & plain_crossing)
     edge = int(true[len(true) // 2])
@@ -220,7 +221,7 @@ class TestFrame:
 def test_reconstruct_takes_corrections(made):
     """From pixels to scene: the line that is deleted is found anew, by its place, and left out."""
     photo = Photo("made.jpg", np.repeat(made.image()[:, :, None], 3, axis=2), made.camera)
-    options = ReconstructOptions()
+    options = Options()
     scene = reconstruct(photo, options)
     ends = scene.lines.segment[0]
     gone = Delete(Anchor(plain(ends + 0.7), int(scene.lines.axis[0])))

@@ -9,7 +9,7 @@ import pytest
 from linecad.batch.job import THUMBNAILS, Figures, Job, Limits, Outcome
 from linecad.batch.run import Plan
 from linecad.convert import Conversion
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from solver.options import SolveOptions
 
 SAMPLES = Path(__file__).resolve().parents[3] / "samples"
@@ -51,7 +51,7 @@ def output(tmp_path):
 @pytest.fixture
 def conversion():
     """A quick conversion."""
-    return Conversion(focal=300.0, options=ReconstructOptions(solve=SolveOptions(time_limit_s=30.0)))
+    return Conversion(focal=300.0, options=Options(solve=SolveOptions(time_limit_s=30.0)))
 
 
 @pytest.fixture

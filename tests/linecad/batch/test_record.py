@@ -11,7 +11,7 @@ from linecad.batch.job import STATUSES, Figures, Outcome
 from linecad.batch.record import NAME, Record, Row, options_hash, parse_row, row_line, settled
 from linecad.convert import Conversion
 from linecad.errors import InputError, OutputError
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from linecad.scene import QUALITIES
 from solver.options import SolveOptions
 
@@ -136,10 +136,10 @@ def test_options_hash_changes_with_everything_that_decides(tmp_path):
         options_hash(Conversion(focal=500.0), (".json",)),
         options_hash(Conversion(camera=camera), (".json",)),
         options_hash(Conversion(camera=other), (".json",)),
-        options_hash(Conversion(options=ReconstructOptions(extension=31.0)), (".json",)),
-        options_hash(Conversion(options=ReconstructOptions(solve=SolveOptions(seed=1))), (".json",)),
+        options_hash(Conversion(options=Options(extension=31.0)), (".json",)),
+        options_hash(Conversion(options=Options(solve=SolveOptions(seed=1))), (".json",)),
         options_hash(
-            Conversion(options=ReconstructOptions(solve=SolveOptions(without=frozenset({"cycles"})))), (".json",)
+            Conversion(options=Options(solve=SolveOptions(without=frozenset({"cycles"})))), (".json",)
         ),
     ]
     assert len(set(cases)) == len(cases)

@@ -11,7 +11,8 @@ from linecad.editing.guard import HOST
 from linecad.editing.saving import Saver
 from linecad.editing.server import Editor
 from linecad.editing.session import Session
-from linecad.finding import ReconstructOptions, name_lines
+from linecad.options import Options
+from linecad.finding import name_lines
 from linecad.lines.segments import find_segments
 
 PORT, TOKEN = 8765, "the-token"
@@ -118,7 +119,7 @@ def open_page(made_photo, raw):
         saved = []
         saver = Saver(saved.append)
         savers.append(saver)
-        options = options or ReconstructOptions()
+        options = options or Options()
         corrections = corrections or Corrections("made.jpg", made_photo.width, made_photo.height)
         session = Session(made_photo, raw, options, corrections, saver.save)
         solving = InPlace(made_photo, options)

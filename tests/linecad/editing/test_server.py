@@ -13,7 +13,7 @@ from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.tiles import TILE
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.references import open_case
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 
 
@@ -39,7 +39,7 @@ class TestState:
 
     def test_after_a_solve_it_tells_the_model(self, page, made_photo):
         state = page.solve()
-        scene = reconstruct(made_photo, ReconstructOptions())
+        scene = reconstruct(made_photo, Options())
         assert sum(line["ends"] is not None for line in state["lines"]) == len(scene.lines)
         assert len(crossings(state, real=True)) == scene.intersections.real.sum()
         assert [plane["offset"] for plane in state["planes"]] == [plane.offset for plane in scene.planes]
@@ -296,7 +296,7 @@ class TestSolving:
         assert page.state()["solve"]["solved_version"] is not None
 
     def test_a_contradiction_names_its_lines_and_crossings(self, open_page):
-        page = open_page(options=ReconstructOptions(extension=500))  # so far that many crossings are false
+        page = open_page(options=Options(extension=500))  # so far that many crossings are false
         for crossing in page.state()["crossings"]:
             page.edit(op="label", crossing=crossing["id"], value="real")
         state = page.solve()

@@ -4,12 +4,12 @@ import threading
 import time
 
 from linecad.editing.solving import SolvingProcess
-from linecad.finding import ReconstructOptions
+from linecad.options import Options
 
 
 def test_the_pipe_is_closed_by_the_thread_that_listens_to_it(made_photo):
     """Closed by another one, it once broke in the middle of a read: TypeError in place of an end."""
-    solver = SolvingProcess(made_photo, ReconstructOptions(), lambda _: None, lambda _: None)
+    solver = SolvingProcess(made_photo, Options(), lambda _: None, lambda _: None)
     pipe, closing = solver._pipe, solver._pipe.close
     closed_by = []
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from linecad.camera.photo import Photo
-from linecad.finding import SHORT_REACH, FoundLines, ReconstructOptions, connect
+from linecad.options import SHORT_REACH, Options
+from linecad.finding import FoundLines, connect
 from linecad.geometry import project
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.model.build import place
@@ -39,7 +40,7 @@ def street():
     segments = Segments(project(ends, camera.matrix, frame.rotation), [line[0] for line in lines])
     photo = Photo("two houses.png", np.zeros((2160, 3840, 3), np.uint8), camera)
     found = FoundLines(camera, frame, segments, ())
-    options = ReconstructOptions(collinear=False, reach=SHORT_REACH)
+    options = Options(collinear=False, reach=SHORT_REACH)
     _, graph = connect(found, options)
     assert len(graph.segments) == len(lines)
     scene = place(photo, found, graph, solve(graph, options.solve), options)

@@ -1,29 +1,19 @@
-"""Log-odds that an edge of a line graph is real, from its gap and its two segments: the weights `odds`.
+"""Cue: two pieces of one image line, from how nearly they lie on it and how many others lie near it.
 
-A crossing convinces less the wider the gap that is extended over, and the shorter the segment that spans it; two
-horizontal lines meet by chance more often than a horizontal and a vertical one. The numbers fit 10,750 crossings of
-surveyed buildings (CONTRIBUTING, 2026-11-21). A pair of collinear pieces convinces by how nearly they lie on one image
-line, against the chance that some other parallel segment lies there: among courses of brick every line finds a
-continuation. Lengths are px at the reference width.
+A pair of collinear pieces convinces by how nearly they lie on one image line, against the chance that some other
+parallel segment lies there: among courses of brick every line finds a continuation. Lengths are px at the reference
+width.
 """
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points
+from linecad.graph.cues.cue import Known
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.scene import Camera
 
-AT_ONCE = 5.2  # log-odds of two segments that touch
-PER_ROOT_GAP = 2.1  # for each root of gap over GAP_UNIT
-PER_GAP_OVER_STEM = 0.6
-BOTH_HORIZONTAL = 0.5  # and as much again for each GAP_UNIT of the gap
-GAP_UNIT = 37.5  # px
-# To which all are rounded, and the least of any edge: objectives then have a common measure, by which bounds are
-# rounded, and the search ends sooner. The paper's weights cannot be zero or less.
-STEP = 0.5
-
-COLLINEAR = 4.0  # log-odds of two pieces of exactly one image line where nothing else is near
+AT_ONCE = 4.0  # log-odds of two pieces of exactly one image line where nothing else is near
 PER_GAP_OVER_SHORTER = 0.5
 ACROSS = 0.8  # px, standard deviation of pieces of one line across it
 LONELY = 1 / 60  # parallel segments per px across, where each stands alone
@@ -31,27 +21,17 @@ CROWD_ACROSS = 25.0  # px to both sides, in which the others are counted
 CROWD_ALONG = 40.0  # px to both sides of the end of the gap
 
 
-def log_odds(graph: LineGraph, camera: Camera, frame: ManhattanFrame) -> Float:
-    """Log-odds (E,) of all edges of a graph that they are real, in whole STEPs and at least one."""
-    odds = crossing_odds(graph, camera.width)
-    collinear = np.flatnonzero(graph.kind == "collinear")
-    odds[collinear] = collinear_odds(graph, collinear, camera, frame)
-    return np.asarray(np.maximum(np.round(odds / STEP), 1) * STEP)
+def collinear_log_odds(known: Known) -> Float:
+    """(E,) log-odds that a collinear edge is real; 0 for crossings."""
+    graph = known.graph
+    which = np.flatnonzero(graph.kind == "collinear")
+    log_odds = np.zeros(len(graph.edges))
+    log_odds[which] = _log_odds(graph, which, known.camera, known.frame)
+    return log_odds
 
 
-def crossing_odds(graph: LineGraph, width: int) -> Float:
-    """Log-odds (E,) of all edges of a graph of a photo `width` px wide; those of collinear edges mean nothing."""
-    gap = graph.gap * (REFERENCE_WIDTH / width)
-    widest = gap.max(axis=1)
-    over_stem = (graph.gap / graph.segments.length[graph.edges]).max(axis=1)
-    horizontal = (graph.axis[graph.edges] != 2).all(axis=1)
-    odds: Float = AT_ONCE - PER_ROOT_GAP * np.sqrt(widest / GAP_UNIT) - PER_GAP_OVER_STEM * over_stem
-    odds -= BOTH_HORIZONTAL * horizontal * (1 + widest / GAP_UNIT)
-    return odds
-
-
-def collinear_odds(graph: LineGraph, which: Int, camera: Camera, frame: ManhattanFrame) -> Float:
-    """Log-odds (M,) of the collinear edges `which` (M,) of a graph."""
+def _log_odds(graph: LineGraph, which: Int, camera: Camera, frame: ManhattanFrame) -> Float:
+    """(M,) of the collinear edges `which` (M,) of a graph."""
     scale, segments = REFERENCE_WIDTH / camera.width, graph.segments
     middle = segments.ends.mean(axis=1)
     along = directions_to(middle, vanishing_points(camera.matrix, frame.rotation)[segments.axis])
@@ -67,7 +47,7 @@ def collinear_odds(graph: LineGraph, which: Int, camera: Camera, frame: Manhatta
     crowd = np.maximum(
         _crowd(segments, middle, along, first, place, scale), _crowd(segments, middle, along, second, place, scale)
     )
-    odds: Float = COLLINEAR - PER_GAP_OVER_SHORTER * graph.gap[which].sum(axis=1) / shorter
+    odds: Float = AT_ONCE - PER_GAP_OVER_SHORTER * graph.gap[which].sum(axis=1) / shorter
     odds -= 0.5 * (apart * scale / ACROSS) ** 2 + np.log1p(crowd / LONELY)
     return odds
 

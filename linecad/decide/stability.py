@@ -1,15 +1,15 @@
-"""Which lines keep their place when others are left out: bodies by resampling.
+"""Which lines keep their place when others are left out: rigid bodies by resampling.
 
 The depths of a photo are fitted again and again, each time without a random part of its lines. Where many lines that
-are independent of each other say the same, nothing moves. Where two walls hang together by a few lines, or by crossings
-that contradict others and won by a little, the fit finds another answer as soon as these lines are missing. The
-*support* of a line is the share of the fits, among those in which it is tied to its body at all, that leave it at its
-depth relative to the body.
+are independent of each other agree, nothing moves. Where two walls are joined by a few lines, or by crossings that
+contradict others and won by a little, the fit finds another answer as soon as these lines are missing. The *stability*
+of a line is the share of the fits, among those in which it is tied to its body at all, that leave it at its depth
+relative to the body.
 
-How much support is asked depends on the photo, since agreement is worth less where much is fake. Two figures tell: how
-many wide corners (both lines end well before they would meet) contradict the depths, and how unstable the lines are on
-the whole. Their sum is the *doubt* about the photo: small for one building, whatever its shape, large for streets of
-several buildings that hide each other.
+How much stability is required depends on the photo, since agreement is worth less where much is fake. Two figures tell:
+how many wide corners (both lines end well before they would meet) contradict the depths, and how unstable the lines are
+on the whole. Their sum is the *inconsistency* of the photo: small for one building, whatever its shape, large for
+streets of several buildings that hide each other.
 """
 
 from collections.abc import Callable
@@ -19,36 +19,36 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.decide.rigid_bodies import HANGING, Held
+from linecad.decide.bodies import Bodies, with_hanging
 from linecad.geometry import REFERENCE_WIDTH
 from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineGraph
 from linecad.threads import thread_count
 
 FITS = 30
-FITS_FOR_DOUBT = 9
+FITS_FOR_INCONSISTENCY = 9
 LEFT_OUT = 0.3  # of the lines, in each fit
 SAME_DEPTH = 0.015  # log depth; a line that moves less against its body keeps its place
 LEAST_BODY = 5  # lines
 SEEDS = 60  # lines about which the core of a body is looked for
-LEAST_SEEN = 3  # draws in which two lines of a core are tied and in place
+LEAST_SEEN = 3  # fits in which two lines of a core are tied and in place
 MANY_BODIES = 40  # bodies that are sought; what is left after so many is crumbs
-FIRM = 0.95  # support from which a line is as sure as the solution
+FIRM = 0.95  # stability from which a line is as sure as the solution
 
 WIDE_CORNER = 20.0  # px at the reference width that the wider gap of a corner has at least
 CONTRADICTION = 3.0  # tolerances, and CONTRADICTION times LEAST_TOLERANCE at least, from which a crossing contradicts
 LEAST_TOLERANCE = 0.01  # log depth
 PRIOR_CORNERS, PRIOR_FAKE = 20.0, 0.1  # corners that are taken as seen, with this share of contradictions
-UNSTABLE = 0.3  # of the mean lack of support, that counts as much as one contradiction
-MOST_DOUBT = 0.16  # of a calm photo
-SUPPORT = 0.55  # asked in a calm photo
-SUPPORT_IN_DOUBT = 0.95  # asked in a doubtful one
+UNSTABLE = 0.3  # of the mean lack of stability, that counts as much as one contradiction
+MOST_INCONSISTENT = 0.16  # of a consistent photo
+STABILITY = 0.55  # required in a consistent photo
+STABILITY_IF_INCONSISTENT = 0.95  # required in an inconsistent one
 
 Refit = Callable[[Bool], Float]  # log depths (N,) by the lines that are present (N,) alone
 
 
 @dataclass(frozen=True, eq=False)
-class Draws:
+class Fits:
     """Fits without some lines."""
 
     present: Bool  # (F, N)
@@ -56,7 +56,7 @@ class Draws:
     group: Int  # (F, N) lines of one number are tied by crossings that agree in this fit
 
 
-def draw(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Draws:
+def resample(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Fits:
     """So many fits, each without LEFT_OUT of the lines; in each three of them no line is left out twice."""
     count = len(graph.segments)
     random = np.random.default_rng(seed)
@@ -75,27 +75,28 @@ def draw(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Dra
         ties = graph.informative & present[number, first] & present[number, second]
         ties &= graph.misfit(depth[number]) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
         group[number] = group_numbers(count, graph.edges[ties])
-    return Draws(present, depth, group)
+    return Fits(present, depth, group)
 
 
 @dataclass(frozen=True, eq=False)
-class Supported:
-    """Bodies of lines that keep together, and by how much."""
+class StableBodies:
+    """Rigid bodies of lines that keep together when others are left out."""
 
-    held: Held
-    firm: Bool  # (N,) lines of bodies with a support of FIRM or more: as sure as the solution
+    bodies: Bodies
+    firm: Bool  # (N,) lines of rigid bodies with a stability of FIRM or more: as sure as the solution
 
 
-def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draws, in_doubt: bool) -> Supported:
-    """Part the lines of a solved graph into bodies that keep together in the draws.
+def find_stable_bodies(
+    graph: LineGraph, chosen: Bool, log_depth: Float, fits: Fits, is_inconsistent: bool
+) -> StableBodies:
+    """Part the lines of a solved graph into bodies that keep together in the fits.
 
-    `chosen` (E,) are the crossings that agree with the depths `log_depth` (N,). In doubt more support is asked, and
-    relative to the majority of what hangs together. Groups of up to HANGING lines that fall off a body stay with it:
-    too few to carry a false wall.
+    `chosen` (E,) are the crossings that agree with the depths `log_depth` (N,). In an inconsistent photo more stability
+    is required, and relative to the majority of what is connected. Small groups that fall off a body stay with it.
     """
     count = len(graph.segments)
     edges = graph.edges[chosen & graph.informative]
-    asked = SUPPORT_IN_DOUBT if in_doubt else SUPPORT
+    required = STABILITY_IF_INCONSISTENT if is_inconsistent else STABILITY
     body = np.full(count, -1)
     firm, free, loose = np.zeros(count, bool), np.ones(count, bool), np.zeros(count, bool)
     bodies = 0
@@ -103,10 +104,11 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
         part = _largest_part(count, edges, free)
         if part.sum() < LEAST_BODY:
             break
-        # In doubt against the majority first; where two bodies are of one size, that keeps nothing in place.
-        for core in [part] * in_doubt + [_core(part, log_depth, draws, asked)]:
-            share = support(part, log_depth, draws, core)
-            kept = _largest_part(count, edges, part & (share >= asked))
+        # Where crossings contradict each other, relative to the majority first. Where two bodies are of one size,
+        # that keeps nothing in place.
+        for core in [part] * is_inconsistent + [_core(part, log_depth, fits, required)]:
+            share = stability(part, log_depth, fits, core)
+            kept = _largest_part(count, edges, part & (share >= required))
             if kept.sum() >= LEAST_BODY:
                 break
         else:
@@ -118,18 +120,18 @@ def find_supported(graph: LineGraph, chosen: Bool, log_depth: Float, draws: Draw
         free &= ~kept
         bodies += 1
     edges = edges[~loose[edges].any(axis=1)]
-    return Supported(Held(_with_hanging(body, bodies, edges), bodies, body >= 0), firm)
+    return StableBodies(Bodies(with_hanging(body, bodies, edges), bodies, body >= 0), firm)
 
 
-def support(part: Bool, log_depth: Float, draws: Draws, core: Bool | None = None) -> Float:
-    """(N,) share of the draws that leave a line of `part` (N,) where `log_depth` has it, relative to the others.
+def stability(part: Bool, log_depth: Float, fits: Fits, core: Bool | None = None) -> Float:
+    """(N,) share of the fits that leave a line of `part` (N,) where `log_depth` has it, relative to the others.
 
-    Relative to the lines of `core` (N,) if it is given. Draws in which the line is absent, or not tied to most of
+    Relative to the lines of `core` (N,) if it is given. Fits in which the line is absent, or not tied to most of
     these, say nothing; without any the share is 1.
     """
     core = part if core is None else core
     kept, moved = np.zeros(len(part)), np.zeros(len(part))
-    for present, depth, group in zip(draws.present, draws.depth, draws.group, strict=True):
+    for present, depth, group in zip(fits.present, fits.depth, fits.group, strict=True):
         seen = core & present
         if not seen.any():
             continue
@@ -141,7 +143,7 @@ def support(part: Bool, log_depth: Float, draws: Draws, core: Bool | None = None
     return np.asarray(np.where(kept + moved > 0, kept / np.maximum(kept + moved, 1), 1.0))
 
 
-def _core(part: Bool, log_depth: Float, draws: Draws, asked: float) -> Bool:
+def _core(part: Bool, log_depth: Float, fits: Fits, required: float) -> Bool:
     """Mask (N,) of the most lines of `part` (N,) that keep their place relative to one line of it.
 
     In a photo of two bodies of one size most lines are now of the one, now of the other: the majority is no reference.
@@ -149,20 +151,20 @@ def _core(part: Bool, log_depth: Float, draws: Draws, asked: float) -> Bool:
     lines = np.flatnonzero(part)
     seeds = lines[np.linspace(0, len(lines) - 1, min(SEEDS, len(lines))).astype(np.int64)]
     kept, moved = np.zeros((len(seeds), len(lines))), np.zeros((len(seeds), len(lines)))
-    for present, depth, group in zip(draws.present, draws.depth, draws.group, strict=True):
+    for present, depth, group in zip(fits.present, fits.depth, fits.group, strict=True):
         tied = (group[seeds, None] == group[lines]) & present[seeds, None] & present[lines]
         shift = depth - log_depth
         same = np.abs(shift[seeds, None] - shift[lines]) < SAME_DEPTH
         kept += tied & same
         moved += tied & ~same
-    holds = (kept >= LEAST_SEEN) & (kept >= asked * (kept + moved))
+    holds = (kept >= LEAST_SEEN) & (kept >= required * (kept + moved))
     core = np.zeros(len(part), bool)
     core[lines[holds[holds.sum(axis=1).argmax()]]] = True
     return core
 
 
-def doubt(graph: LineGraph, log_depth: Float, draws: Draws, width: int) -> float:
-    """How little agreement is worth in a photo `width` px wide, from its largest part as fitted depths (N,) tie it."""
+def inconsistency_of(graph: LineGraph, log_depth: Float, fits: Fits, width: int) -> float:
+    """How often crossings contradict each other in the largest part of a photo `width` px wide, by depths (N,)."""
     first, second = graph.edges.T
     off = graph.misfit(log_depth)
     agrees = graph.informative & (off <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
@@ -171,7 +173,7 @@ def doubt(graph: LineGraph, log_depth: Float, draws: Draws, width: int) -> float
     wide = inside & (graph.kind == "L") & (graph.gap.max(axis=1) * REFERENCE_WIDTH / width > WIDE_CORNER)
     against = off > CONTRADICTION * np.maximum(graph.tolerance, LEAST_TOLERANCE)
     fake = (float((wide & against).sum()) + PRIOR_CORNERS * PRIOR_FAKE) / (float(wide.sum()) + PRIOR_CORNERS)
-    lack = float(1 - support(part, log_depth, draws)[part].mean()) if part.any() else 0.0
+    lack = float(1 - stability(part, log_depth, fits)[part].mean()) if part.any() else 0.0
     return fake + UNSTABLE * lack
 
 
@@ -190,24 +192,3 @@ def _largest_part(count: int, edges: Int, lines: Bool) -> Bool:
         return np.zeros(count, bool)
     largest: Bool = lines & (group == np.bincount(group[lines]).argmax())
     return largest
-
-
-def _with_hanging(body: Int, bodies: int, edges: Int) -> Int:
-    """The bodies (N,), with small groups of other lines on the body that most of their edges lead to."""
-    body = body.copy()
-    rest = body < 0
-    group = group_numbers(len(body), edges[rest[edges].all(axis=1)])
-    size = np.bincount(group[rest], minlength=len(body))
-    touched: dict[int, list[int]] = {}
-    for line, other in np.concatenate([edges, edges[:, ::-1]]).tolist():
-        if rest[line] and not rest[other] and size[group[line]] <= HANGING:
-            touched.setdefault(int(group[line]), []).append(int(body[other]))
-    others = bodies
-    for number in np.unique(group[rest]).tolist():
-        own = touched.get(number)
-        if own:
-            body[rest & (group == number)] = max(set(own), key=lambda one: (own.count(one), -one))
-        else:
-            body[rest & (group == number)] = others
-            others += 1
-    return body

@@ -1,0 +1,34 @@
+"""The scale of a scene from the lengths that a person knows of its lines."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from linecad.corrections.apply import CorrectedLines
+from linecad.scene import Scene
+
+LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
+
+
+def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
+    """The scene with the scale that known lengths give it: the geometric mean of what each says.
+
+    Only lengths on component 0 count, since the scales of the others are guesses.
+    """
+    if not corrected.lengths:
+        return scene
+    seen = zip(scene.lines.axis.tolist(), scene.lines.segment, strict=True)
+    row = {(axis, ends.tobytes()): number for number, (axis, ends) in enumerate(seen)}
+    scales, notes = [], []
+    for number, metres in corrected.lengths.items():
+        own = int(np.flatnonzero(corrected.ids == number)[0])
+        key = (int(corrected.segments.axis[own]), corrected.segments.ends[own].tobytes())
+        if key not in row or scene.lines.component[row[key]] != 0:
+            notes.append(f"a line of known length ({metres:g} m) is not on component 0, so its length says nothing")
+            continue
+        ends = scene.lines.ends[row[key]]
+        scales.append(metres / float(np.linalg.norm(ends[1] - ends[0])))
+    if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
+        notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
+    metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
+    return replace(scene, metres_per_unit=metres_per_unit, notes=scene.notes + tuple(notes))
