@@ -132,7 +132,7 @@ class Intersections:
     real: Bool  # (E,)
     in_tree: Bool  # (E,) in the minimum spanning tree of the real ones
     weight: Float  # (E,)
-    reason: Text  # (E,) one of REASONS; "" in scenes that do not tell
+    reason: Text | tuple[()] = ()  # (E,) one of REASONS; "" in scenes that do not tell, as when it is left out
 
     def __post_init__(self) -> None:
         freeze(self, "lines", np.int64, (None, 2))
@@ -142,6 +142,9 @@ class Intersections:
             freeze(self, name, np.bool_, (None,))
         freeze(self, "weight", np.float64, (None,))
         freeze(self, "reason", np.str_, (None,))
+        if len(self.reason) == 0:
+            object.__setattr__(self, "reason", np.full(len(self.lines), ""))
+            freeze(self, "reason", np.str_, (None,))
         check_lengths(self, len(self.lines), ["kind", "pixel", "real", "in_tree", "weight", "reason"])
         check_words(self, "kind", EDGE_KINDS)
         check_words(self, "reason", (*REASONS, ""))

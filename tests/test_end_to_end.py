@@ -17,9 +17,9 @@ from linecad.camera.photo import read_photo
 from linecad.camera.text import summary
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
-from linecad.options import Options
 from linecad.io.scene_file import read_scene
 from linecad.lines.segments import find_segments
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 from solver.options import SolveOptions
 

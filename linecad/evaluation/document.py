@@ -30,7 +30,8 @@ def write_json(
         "tables": [asdict(table) for table in tables],
         "photos": [result.document() for result in results],
     }
-    text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+    # Families left out are a set.
+    text = json.dumps(document, indent=1, allow_nan=False, ensure_ascii=False, default=sorted) + "\n"
     write_text_atomically(path, text)
 
 

@@ -72,7 +72,7 @@ def document_of(scene: Scene) -> dict[str, object]:
                 "kind": str(crossings.kind[row]),
                 "pixel": crossings.pixel[row].tolist(),
                 "real": bool(crossings.real[row]),
-                "reason": str(crossings.reason[row]),
+                **({"reason": str(crossings.reason[row])} if crossings.reason[row] else {}),
                 "in_tree": bool(crossings.in_tree[row]),
                 "weight": float(crossings.weight[row]),
             }

@@ -21,10 +21,10 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score, score_depth
 from linecad.evaluation.references import Reference, open_case
-from linecad.options import LONG_REACH, MIDDLE_REACH, SHORT_REACH, Options
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.model.body_scales import join_bodies
 from linecad.model.build import place
+from linecad.options import LONG_REACH, MIDDLE_REACH, SHORT_REACH, Options
 from linecad.scene import Scene
 from solver.options import SolveOptions
 from solver.solve import solve
@@ -136,9 +136,7 @@ def hulls(photo: Photo, _limit: float) -> Scene:
 
 ROWS: dict[str, Row] = {
     "exact search": with_options(Options()),
-    "exact search without planarity": with_options(
-        Options(solve=SolveOptions(without=frozenset({"planarity"})))
-    ),
+    "exact search without planarity": with_options(Options(solve=SolveOptions(without=frozenset({"planarity"})))),
     "robust fit (`--fast`); all below change one thing of it": with_options(FIT),
     "short reach, as in the paper": with_options(replace(FIT, reach=SHORT_REACH)),
     "long reach in every photo": with_options(replace(FIT, reach=LONG_REACH)),

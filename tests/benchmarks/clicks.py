@@ -18,8 +18,8 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import DepthScore, score_depth
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
-from linecad.options import Options
 from linecad.line_graph import Segments
+from linecad.options import Options
 from linecad.pipeline import correct_lines, reconstruct_corrected
 from linecad.scene import Scene
 from solver.options import SolveOptions

@@ -26,11 +26,11 @@ from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
 from linecad.evaluation.labels import REAL
 from linecad.evaluation.references import Points, Reference, open_case
-from linecad.options import Options
 from linecad.finding import connect, find_lines
 from linecad.line_graph import Solution
 from linecad.model.build import place
 from linecad.model.faces import find_faces
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 from linecad.scene import Face, Plane, Scene
 from solver.options import SolveOptions

@@ -14,8 +14,8 @@ import numpy as np
 from linecad.camera.photo import read_photo
 from linecad.dataset.store import read_list, read_truth
 from linecad.evaluation.labels import REAL, UNDECIDED, depths_at_crossings, find_true_lines, judge_crossings
-from linecad.options import Options
 from linecad.finding import connect, find_lines
+from linecad.options import Options
 from solver.options import SolveOptions
 from solver.solve import solve
 

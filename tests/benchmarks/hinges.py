@@ -9,16 +9,16 @@ import argparse
 import time
 from pathlib import Path
 
+import linecad.decide.rigid_bodies
 import numpy as np
 
-import linecad.decide.rigid_bodies
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
-from linecad.options import Options
 from linecad.finding import connect, find_lines
 from linecad.model.build import place
+from linecad.options import Options
 from solver.options import SolveOptions
 from solver.solve import solve
 

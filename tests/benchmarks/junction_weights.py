@@ -23,11 +23,13 @@ from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.frames import rotation_error
 from linecad.geometry import world_rays
-from linecad.graph.build import CORNER_FACTOR, JUNCTION_WEIGHT, build_line_graph
+from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components, spanning_tree
+from linecad.graph.cues.junctions import CORNER_FACTOR, WEIGHT
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.lines.segments import find_segments, group_segments, label_segments
 from linecad.model.lifting import lift
+from linecad.options import SHORT_REACH, Reach
 from linecad.scene import Camera
 from solver.options import SolveOptions
 from solver.solve import solve
@@ -207,12 +209,18 @@ def count_kinds(photos: Iterable[Surveyed], extension: float) -> Counts:
     """Real, fake and undecided crossings (3,) by kind and corner."""
     counts = {key: np.zeros(3, np.int64) for key in product(KINDS, (False, True))}
     for photo in photos:
-        graph = build_line_graph(photo.segments, photo.camera, photo.frame, extension, "ones")
+        graph = build_line_graph(
+            photo.segments, photo.camera, photo.frame, replace(SHORT_REACH, extension=extension), "ones"
+        )
         judged = judge(graph, photo)
         for (kind, corner), count in counts.items():
             members = (graph.kind == kind) & (graph.corner == corner) & graph.possible
             count += [int((members & mask).sum()) for mask in judged]
     return counts
+
+
+def _reach(extension: float) -> Reach:
+    return replace(SHORT_REACH, extension=extension)
 
 
 def log_odds(count: Int) -> float:
@@ -311,7 +319,9 @@ class Judged:
 
 def judged(photo: Surveyed, extension: float) -> Judged:
     """The part of a photo that the pipeline solves with --largest-component."""
-    whole = build_line_graph(photo.segments, photo.camera, photo.frame, extension, "ones")
+    whole = build_line_graph(
+        photo.segments, photo.camera, photo.frame, replace(SHORT_REACH, extension=extension), "ones"
+    )
     graph = whole.subset(components(whole)[0])
     real, fake, _ = judge(graph, photo)
     return Judged(photo.name, graph, real, fake)
@@ -383,7 +393,7 @@ def main() -> None:
         solved = [judged(photo, chosen.extension) for photo in photos if photo.name in SEARCHED]
         search(solved, candidates, chosen.time_limit)
     if chosen.part == "check":
-        candidates = {"all ones": ONES, "linecad": (*(JUNCTION_WEIGHT[kind] for kind in KINDS), CORNER_FACTOR)}
+        candidates = {"all ones": ONES, "linecad": (*(WEIGHT[kind] for kind in KINDS), CORNER_FACTOR)}
         candidates |= {f"given {number + 1}": tuple(table) for number, table in enumerate(chosen.table)}
         check([judged(photo, chosen.extension) for photo in photos], candidates, chosen.time_limit)
     print(f"{time.perf_counter() - began:.0f} s")

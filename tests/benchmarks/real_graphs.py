@@ -1,6 +1,7 @@
 """Line graphs of real photos as the pipeline builds them, to measure solvers; the photos are not in the project."""
 
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components
 from linecad.line_graph import LineGraph
 from linecad.lines.segments import find_segments, group_segments, label_segments
+from linecad.options import SHORT_REACH
 
 DATASETS = ("castle", "south_building")
 
@@ -35,5 +37,7 @@ def real_graphs(
         segments = group_segments(label_segments(raw, photo.camera, frame), photo.camera, frame)
         if longest is not None:
             segments = segments.subset(np.sort(np.argsort(-segments.length, kind="stable")[:longest]))
-        graph = build_line_graph(segments, photo.camera, frame, extension, "ones", collinear)
+        graph = build_line_graph(
+            segments, photo.camera, frame, replace(SHORT_REACH, extension=extension), "ones", collinear
+        )
         yield f"{file.parent.name}/{file.stem}", graph.subset(np.sort(components(graph)[0]))

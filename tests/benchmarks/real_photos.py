@@ -15,8 +15,8 @@ from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes, rotation_error
-from linecad.options import Options
 from linecad.lines.segments import find_segments
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 from solver.options import SolveOptions
 

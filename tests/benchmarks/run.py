@@ -28,8 +28,8 @@ from plot import Dot, draw_growth
 from real_graphs import real_graphs
 
 from linecad.errors import SolverError
-from linecad.options import EXTENSION
 from linecad.line_graph import LineGraph
+from linecad.options import SHORT_REACH
 from solver.options import SolveOptions
 from solver.solve import solve
 
@@ -70,7 +70,8 @@ def main() -> None:
     parser.add_argument("--mu-boundary", type=float, nargs="+", default=[1.0, 10.0])
     parser.add_argument("--real", type=Path, metavar="DIR", help="folder with castle/ and south_building/")
     parser.add_argument("--only", default="", help="of the real photos, those with this in their name: castle/0012")
-    parser.add_argument("--extension", type=float, default=EXTENSION, help="px at 3840 px width, of real photos")
+    reach = "px at 3840 px width, of real photos"
+    parser.add_argument("--extension", type=float, default=SHORT_REACH.extension, help=reach)
     parser.add_argument("--longest", type=int, help="keep so many of the longest segments of a real photo")
     parser.add_argument("--collinear", action="store_true", help="real photos: with edges between collinear segments")
     parser.add_argument("--plot", type=Path, metavar="FILE.png", help="time and memory over the number of crossings")

@@ -16,11 +16,11 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
-from linecad.options import Options
 from linecad.finding import connect, find_lines
 from linecad.line_graph import Segments
 from linecad.lines.segments import find_segments, group_segments, label_segments
 from linecad.model.build import place
+from linecad.options import Options
 from solver.options import SolveOptions
 from solver.solve import solve
 

@@ -10,16 +10,16 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-
 from linecad.decide.rigid_bodies import WITNESSES, agreeing, find_held
+
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.labels import find_true_lines
 from linecad.evaluation.references import open_case
 from linecad.finding import MIN_COMPONENT, connect, find_lines
-from linecad.options import Options
 from linecad.graph.connectivity import components
 from linecad.model.lifting import lift
 from linecad.model.window_grids import find_grid_ties
+from linecad.options import Options
 from solver.options import SolveOptions
 from solver.solve import solve
 

@@ -14,9 +14,9 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.references import open_case
-from linecad.options import SHORT_REACH, Options
 from linecad.finding import connect, find_lines
 from linecad.model.build import place
+from linecad.options import SHORT_REACH, Options
 from solver.options import SolveOptions
 from solver.solve import solve
 

@@ -1,6 +1,6 @@
 """A made scene: two boxes with a grid of edges on two faces each, seen by a known camera."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -10,6 +10,7 @@ from linecad.arrays import Float, Int
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import ManhattanFrame, Segments
+from linecad.options import SHORT_REACH
 from linecad.scene import Camera
 
 WIDTH, HEIGHT, FOCAL = 1600, 1200, 900.0
@@ -54,7 +55,7 @@ class MadeScene:
         return depth_on_axis_line(self.camera, self.frame.rotation, self.axis[line], self.ends[line, 0], pixel)
 
     def graph(self, extension=30.0):
-        return build_line_graph(self.segments, self.camera, self.frame, extension)
+        return build_line_graph(self.segments, self.camera, self.frame, replace(SHORT_REACH, extension=extension))
 
     def truly_real(self, graph):
         """Mask (E,) of the crossings whose two true lines meet in space; for graphs of all the exact segments."""

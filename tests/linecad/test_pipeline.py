@@ -9,16 +9,18 @@ import numpy as np
 import pytest
 
 from linecad.camera.photo import Photo, read_photo
+from linecad.decide.annotations import annotate
+from linecad.decide.decision import decide
 from linecad.errors import ReconstructionError
 from linecad.evaluation.frames import rotation_error
-from linecad.options import SHORT_REACH, Options
 from linecad.finding import find_lines
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
 from linecad.io.scene_file import read_scene, write_scene
 from linecad.line_graph import ManhattanFrame, Segments, Solution
-from linecad.model.build import TYPICAL_DEPTH, _scene, _within_groups
+from linecad.model.build import TYPICAL_DEPTH, View, build_scene
 from linecad.model.lifting import lift
+from linecad.options import SHORT_REACH, Options
 from linecad.pipeline import reconstruct
 from linecad.scene import Camera
 from solver.options import SolveOptions
@@ -267,6 +269,7 @@ def test_stages_are_reported_in_order(drawn):
         "finding faint",
         "following lines",
         "solving",
+        "deciding",
         "lifting",
     ]
     assert [word for word, stage in zip(words, stages, strict=True) if stage.startswith(word)] == words
@@ -309,10 +312,12 @@ def test_groups_that_only_the_horizon_ties_keep_scales_of_their_own():
         status="optimal", solver="by hand", formulation="paper", objective=0.0, bound=0.0, gap=0.0, seconds=0.0,
         nodes=0, connected=within, is_boundary=np.zeros(len(rows), bool), planar_pairs=[], log_depth=np.log(depth),
     )  # fmt: skip
-    solution = _within_groups(graph, solution)
-    assert not solution.connected[tie].any()
-    photo = Photo("two.png", np.zeros((2880, 3840, 3), np.uint8), camera)
-    scene = _scene(photo, camera, frame, graph, solution, lift(graph, solution), [], Options())
+    said = annotate(graph, None)[1]
+    decision = decide(graph, solution, Options(joins="all"), None, said)
+    assert decision.reason[tie].tolist() == ["uninformative"]
+    lifted = lift(graph, decision.real, solution.log_depth)
+    view = View("two.png", camera, frame, None, len(rows), ())
+    scene = build_scene(view, graph, solution, decision, lifted, largest_component=False)
     assert scene.lines.component.tolist() == [0] * 4 + [1] * 4
     for plane in scene.planes:
         assert (scene.lines.ends[list(plane.lines), :, plane.axis] == plane.offset).all()
@@ -340,7 +345,7 @@ def test_a_fast_scene_says_what_it_is_and_is_the_same_every_time(room, tmp_path)
 def test_the_paper_keeps_its_reach_and_weights(room):
     paper = Options(solve=SolveOptions(formulation="paper"))
     found = find_lines(room)
-    assert paper.reach_for(found) == SHORT_REACH
+    assert found.reach_for(paper) == SHORT_REACH
     assert paper.weights_used == "junctions"
-    assert Options().reach_for(found) != SHORT_REACH
-    assert Options(extension=40.0).reach_for(found).extension == 40
+    assert found.reach_for(Options()) != SHORT_REACH
+    assert found.reach_for(Options(extension=40.0)).extension == 40

@@ -9,16 +9,17 @@ from linecad.camera.photo import Photo
 from linecad.camera.vanishing_points import fit_frame
 from linecad.corrections.apply import correct, said_of
 from linecad.corrections.edits import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
-from linecad.decide.rigid_bodies import find_held, tied
+from linecad.corrections.lengths import measured
+from linecad.decide.blocks import find_blocks
 from linecad.errors import ContradictionError, ReconstructionError
-from linecad.options import SHORT_REACH, Options
 from linecad.finding import FoundLines, connect, name_lines
-from linecad.pipeline import correct_lines, measured, reconstruct, reconstruct_corrected
+from linecad.options import SHORT_REACH, Options
+from linecad.pipeline import reconstruct, reconstruct_lines
 from solver.options import BACKENDS, FORMULATIONS, SolveOptions
 
 # False crossings too, one of them between the two boxes; their optimum takes long to prove, and is not what is tested.
-NEAR = Options(witnesses=3, weights="junctions")
-FAR = Options(extension=800.0, witnesses=3, weights="junctions", solve=SolveOptions(time_limit_s=1.0))
+NEAR = Options(joins="biconnected", weights="junctions")
+FAR = Options(extension=800.0, joins="biconnected", weights="junctions", solve=SolveOptions(time_limit_s=1.0))
 
 
 def plain(ends):
@@ -36,7 +37,7 @@ class Made:
     def found(self, options):
         """The exact lines, grouped already."""
         reach = replace(SHORT_REACH, extension=options.extension or SHORT_REACH.extension)
-        return FoundLines(self.made.camera, self.made.frame, self.made.segments, (), reach, known_doubt=0.0)
+        return FoundLines(self.made.camera, self.made.frame, self.made.segments, (), reach, known_inconsistency=0.0)
 
     def anchor(self, line):
         return Anchor(plain(self.made.pixels[line]), int(self.made.axis[line]))
@@ -47,12 +48,14 @@ class Made:
 
     def corrected(self, *edits):
         camera = self.made.camera
-        return correct_lines(self.found(NEAR), Corrections("made.jpg", camera.width, camera.height, edits))
+        corrections = Corrections("made.jpg", camera.width, camera.height, edits)
+        return correct(self.made.segments, camera, self.made.frame, corrections)
 
     def scene(self, *edits, options=None):
         corrected = self.corrected(*edits)
         options = options or NEAR
-        return measured(reconstruct_corrected(self.photo, self.found(options), corrected, options), corrected)
+        made = reconstruct_lines("made.jpg", self.found(options), options, corrected=corrected)
+        return measured(made.scene, corrected)
 
     def decision(self, scene, graph, edge):
         """Whether a crossing of the graph of all lines is real in a scene; None if the scene does not have it."""
@@ -81,7 +84,7 @@ def far_graph(house):
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 def test_a_crossing_called_fake_or_real_is_so_in_the_scene(house, graph, made, formulation, backend):
     solve = SolveOptions(formulation=formulation, backend=backend, time_limit_s=1)
-    options = Options(witnesses=3, weights="junctions", solve=solve)
+    options = Options(joins="biconnected", weights="junctions", solve=solve)
     plain_crossing = (graph.kind != "collinear") & graph.informative
     true = np.flatnonzero(made.truly_real(graph) & plain_crossing)
     edge = int(true[len(true) // 2])
@@ -90,7 +93,7 @@ def test_a_crossing_called_fake_or_real_is_so_in_the_scene(house, graph, made, f
         assert bool(house.decision(scene, graph, edge)) == (word == "real")  # None where it held a line alone
 
 
-def test_a_crossing_called_real_is_never_refused_for_want_of_witnesses(house, far_graph):
+def test_a_crossing_called_real_is_never_refused(house, far_graph):
     """One crossing alone ties the two boxes: it is refused, but not where a person calls it real."""
     box = house.made.box[far_graph.edges]
     (edge,) = np.flatnonzero((box[:, 0] != box[:, 1]) & far_graph.informative).tolist()
@@ -234,13 +237,13 @@ def test_reconstruct_takes_corrections(made):
 def test_a_sure_crossing_makes_one_body_of_two(far_graph, made):
     graph = far_graph
     chosen = made.truly_real(graph)
-    apart = find_held(graph, chosen)
+    apart = find_blocks(graph, chosen)
     box = made.box[graph.edges]
     across = np.flatnonzero((box[:, 0] != box[:, 1]) & graph.informative)[:1]
     sure = np.zeros(len(graph.edges), bool)
     sure[across] = True
-    one = tied(apart, graph.edges[sure])
-    assert apart.bodies > one.bodies >= 1
+    one = apart.merged(graph.edges[sure])
+    assert apart.count > one.count >= 1
     assert one.joins(graph)[across].all()
     assert (apart.joins(graph) <= one.joins(graph)).all()
     assert np.bincount(one.body)[0] == np.bincount(one.body).max()

@@ -138,9 +138,7 @@ def test_options_hash_changes_with_everything_that_decides(tmp_path):
         options_hash(Conversion(camera=other), (".json",)),
         options_hash(Conversion(options=Options(extension=31.0)), (".json",)),
         options_hash(Conversion(options=Options(solve=SolveOptions(seed=1))), (".json",)),
-        options_hash(
-            Conversion(options=Options(solve=SolveOptions(without=frozenset({"cycles"})))), (".json",)
-        ),
+        options_hash(Conversion(options=Options(solve=SolveOptions(without=frozenset({"cycles"})))), (".json",)),
     ]
     assert len(set(cases)) == len(cases)
 

@@ -1,4 +1,4 @@
-"""Bodies and hinges: a near edge before a far wall is refused, a true corner is kept."""
+"""Biconnected blocks: a near edge before a far wall joins nothing, a true corner is kept."""
 
 from itertools import combinations
 
@@ -8,10 +8,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.decide.rigid_bodies import agreeing as all_agreeing
-from linecad.decide.rigid_bodies import find_bodies, find_held
+from linecad.decide.blocks import find_blocks
+from linecad.decide.bodies import agreeing as all_agreeing
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
+from linecad.graph.connectivity import biconnected_blocks
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
 
@@ -75,46 +76,40 @@ def test_a_near_edge_before_a_far_wall_is_refused(near_and_far):
     edge, courses = 0, np.arange(len(lines)) >= len(near) + 4
     fakes = chosen & (graph.edges[:, 0] == edge) & courses[graph.edges[:, 1]]
     assert fakes.sum() == 5
-    held = find_held(graph, chosen)
-    assert held.bodies == 2
-    assert not held.joins(graph)[fakes].any()
-    assert len(set(held.body[: len(near)])) == len(set(held.body[len(near) :])) == 1
-
-
-def test_one_witness_asks_nothing(near_and_far):
-    near, far = near_and_far
-    graph = graph_of(near + far)
-    assert find_held(graph, graph.informative, witnesses=1).joins(graph)[graph.informative].all()
+    found = find_blocks(graph, chosen)
+    assert found.count == 2
+    assert not found.joins(graph)[fakes].any()
+    assert len(set(found.body[: len(near)])) == len(set(found.body[len(near) :])) == 1
 
 
 def test_a_true_corner_is_kept():
     front, side = wall(Y, 8.0, [-4.0, -3.0, -2.0, -1.0]), wall(X, -1.0, [8.0, 9.0, 10.5, 12.5])
     lines = front + side[1:]  # the corner stands once
     graph = graph_of(lines)
-    held = find_held(graph, agreeing(graph, depths(graph, lines)))
-    assert held.bodies == 1
-    assert (held.body == 0).all()
+    found = find_blocks(graph, agreeing(graph, depths(graph, lines)))
+    assert found.count == 1
+    assert (found.body == 0).all()
 
 
-def test_courses_at_a_corner_are_witnesses_though_not_chosen():
+def test_courses_at_a_corner_connect_it_though_not_chosen():
     front, side = wall(Y, 8.0, [-4.0, -3.0, -2.0, -1.0]), wall(X, -1.0, [8.0, 9.0, 10.5, 12.5])
     lines = front + side[1:]
     graph = graph_of(lines)
     depth = depths(graph, lines)
     chosen = agreeing(graph, depth) & (graph.coordinate != Z)  # no crossing of two courses
-    assert find_held(graph, chosen).bodies == 2
-    assert find_held(graph, all_agreeing(graph, chosen, np.log(depth))).bodies == 1
+    assert find_blocks(graph, chosen).count == 2
+    assert find_blocks(graph, all_agreeing(graph, chosen, np.log(depth))).count == 1
 
 
-def test_a_corner_without_matching_courses_is_a_hinge():
+def test_a_corner_without_matching_courses_is_two_bodies():
     front = wall(Y, 8.0, [-4.0, -3.0, -2.0, -1.0])
     side = wall(X, -1.0, [8.0, 9.0, 10.5, 12.5], up=[-1.1, 0.1, 1.3, 2.5])
     lines = front + side[1:]
     graph = graph_of(lines)
-    assert find_held(graph, agreeing(graph, depths(graph, lines))).bodies == 2
+    assert find_blocks(graph, agreeing(graph, depths(graph, lines))).count == 2
 
 
-def test_pieces_of_one_line_tie_two_bodies():
+def test_pieces_of_one_line_make_one_body_of_two():
     left, right = wall(Y, 8.0, [-4.0, -3.2, -2.4, -1.6]), wall(Y, 8.0, [-1.4, -0.6, 0.2, 1.0])
     lines = left + right
     graph = graph_of(lines)
@@ -123,26 +118,26 @@ def test_pieces_of_one_line_tie_two_bodies():
     one = np.zeros(len(graph.edges), bool)
     one[np.flatnonzero(pieces)[0]] = True
     chosen = graph.informative & (graph.kind != "collinear") & within
-    assert find_held(graph, chosen).bodies == 2
-    assert find_held(graph, chosen | one).bodies == 1
+    assert find_blocks(graph, chosen).count == 2
+    assert find_blocks(graph, chosen | one).count == 1
 
 
 def test_a_few_lines_may_hang_on_a_body():
     grid = wall(Y, 8.0, [-4.0, -3.0, -2.0, -1.0])
-    lines = [*grid, (Y, np.array([-1.0, 8.0, 3.1]), np.array([-1.0, 11.0, 3.1]))]
+    lines = [*grid, (Y, np.array([-1.0, 8.0, 1.3]), np.array([-1.0, 11.0, 1.3]))]
     graph = graph_of(lines)
-    held = find_held(graph, agreeing(graph, depths(graph, lines)))
-    assert (held.body == 0).all()
-    assert held.within.tolist() == [True] * len(grid) + [False]
+    found = find_blocks(graph, agreeing(graph, depths(graph, lines)))
+    assert (found.body == 0).all()
+    assert found.rigid.tolist() == [True] * len(grid) + [False]
 
 
 def test_a_graph_without_a_body_stays_together():
-    lines = wall(Y, 8.0, [-4.0, -1.0], up=[-1.6, 1.9])
+    lines = wall(Y, 8.0, [-4.0, -2.5, -1.0], up=[-1.6, 1.9])[:4]  # three uprights on one course
     graph = graph_of(lines)
-    held = find_held(graph, graph.informative)
-    assert held.bodies == 0
-    assert held.joins(graph).all()
-    assert not held.within.any()
+    found = find_blocks(graph, graph.informative)
+    assert found.count == 0
+    assert found.joins(graph).all()
+    assert not found.rigid.any()
 
 
 edges_of_a_graph = st.sets(
@@ -151,12 +146,20 @@ edges_of_a_graph = st.sets(
 
 
 @settings(max_examples=150)
-@given(edges_of_a_graph, st.integers(2, 4))
-def test_no_fewer_lines_part_two_lines_of_a_body(edges, witnesses):
+@given(edges_of_a_graph)
+def test_no_single_line_parts_two_lines_of_a_block(edges):
     net = nx.Graph(sorted(edges))
-    for body in find_bodies({line: set(net[line]) for line in net}, witnesses):
-        for one, other in combinations(sorted(body), 2):
-            for size in range(witnesses):
-                for gone in combinations(sorted(set(net) - {one, other}), size):
-                    rest = net.subgraph(set(net) - set(gone))
-                    assert nx.has_path(rest, one, other)
+    for block in biconnected_blocks(np.array(sorted(edges), np.int64).reshape(-1, 2)):
+        for one, other in combinations(sorted(block), 2):
+            for gone in sorted(set(net) - {one, other}):
+                assert nx.has_path(net.subgraph(set(net) - {gone}), one, other)
+
+
+@given(edges_of_a_graph)
+def test_what_no_block_holds_depends_on_one_edge(edges):
+    net = nx.Graph(sorted(edges))
+    blocks = biconnected_blocks(np.array(sorted(edges), np.int64).reshape(-1, 2))
+    bridges = set(nx.bridges(net)) if len(net) else set()
+    for line in net:
+        if not any(line in block for block in blocks):
+            assert all((line, other) in bridges or (other, line) in bridges for other in net[line])

@@ -1,9 +1,17 @@
-"""Bodies by resampling: two walls that one line joins, walls that many lines join, and the doubt about a photo."""
+"""Rigid bodies by resampling: walls joined by one line, walls joined by many, inconsistent photos."""
 
 import numpy as np
 import pytest
 
-from linecad.decide.resampling import SUPPORT, SUPPORT_IN_DOUBT, Draws, doubt, draw, find_supported, support
+from linecad.decide.stability import (
+    STABILITY,
+    STABILITY_IF_INCONSISTENT,
+    Fits,
+    find_stable_bodies,
+    inconsistency_of,
+    resample,
+    stability,
+)
 from linecad.line_graph import LineGraph, Segments
 from solver.robust import RobustFit, agreeing_with
 
@@ -42,77 +50,77 @@ def walls(bars, contradiction=0.0, kind="X"):
     )
     fit = RobustFit(graph)
     depth = fit.depths()
-    return graph, depth, draw(graph, lambda present: fit.depths(present=present))
+    return graph, depth, resample(graph, lambda present: fit.depths(present=present))
 
 
-def bodies(graph, depth, draws, in_doubt=False):
-    return find_supported(graph, agreeing_with(graph, depth), depth, draws, in_doubt)
+def bodies(graph, depth, fits, is_inconsistent=False):
+    return find_stable_bodies(graph, agreeing_with(graph, depth), depth, fits, is_inconsistent)
 
 
 def test_walls_that_agree_are_one_body():
     found = bodies(*walls(6))
-    assert found.held.bodies == 1
-    assert (found.held.body == 0).all()
+    assert found.bodies.count == 1
+    assert (found.bodies.body == 0).all()
     assert found.firm.all()
 
 
-def test_walls_joined_by_crossings_that_contradict_each_other_are_two_in_doubt():
-    graph, depth, draws = walls(9, contradiction=0.2)
+def test_walls_joined_by_crossings_that_contradict_each_other_are_two_in_an_inconsistent_photo():
+    graph, depth, fits = walls(9, contradiction=0.2)
     joins = np.arange(len(graph.edges)) >= 2 * GRID**2
-    together = bodies(graph, depth, draws).held.joins(graph)
+    together = bodies(graph, depth, fits).bodies.joins(graph)
     assert together[joins].any()
     assert together[~joins].all()
-    assert not bodies(graph, depth, draws, in_doubt=True).held.joins(graph)[joins].any()
+    assert not bodies(graph, depth, fits, is_inconsistent=True).bodies.joins(graph)[joins].any()
 
 
 def test_every_line_has_one_body():
     found = bodies(*walls(3, contradiction=0.1))
-    assert found.held.body.min() >= 0
-    assert (found.firm <= found.held.within).all()
+    assert found.bodies.body.min() >= 0
+    assert (found.firm <= found.bodies.rigid).all()
 
 
-def test_support_is_the_share_of_draws_that_leave_a_line_in_place():
+def test_stability_is_the_share_of_fits_that_leave_a_line_in_place():
     count = 8
     depth = np.zeros((4, count))
     depth[:, 0] = [0.0, 0.0, 0.5, 0.5]  # moves in two of the four
     depth += np.array([0.0, 1.0, 2.0, 3.0])[:, None]  # the scale of a fit means nothing
     present = np.ones((4, count), bool)
     present[3, 0] = False  # in one of these two it is absent
-    draws = Draws(present, depth, np.zeros((4, count), np.int64))
-    found = support(np.ones(count, bool), np.zeros(count), draws)
+    fits = Fits(present, depth, np.zeros((4, count), np.int64))
+    found = stability(np.ones(count, bool), np.zeros(count), fits)
     assert found[0] == pytest.approx(2 / 3)
     assert (found[1:] == 1).all()
 
 
-def test_a_line_that_is_tied_to_nothing_in_a_draw_says_nothing_there():
+def test_a_line_that_is_tied_to_nothing_in_a_fit_says_nothing_there():
     group = np.zeros((2, 6), np.int64)
     group[1, 0] = 1
     depth = np.zeros((2, 6))
     depth[1, 0] = 0.7
-    draws = Draws(np.ones((2, 6), bool), depth, group)
-    assert support(np.ones(6, bool), np.zeros(6), draws)[0] == 1
+    fits = Fits(np.ones((2, 6), bool), depth, group)
+    assert stability(np.ones(6, bool), np.zeros(6), fits)[0] == 1
 
 
-def test_each_draw_leaves_out_three_lines_of_ten_and_three_running_none_twice():
-    _, _, draws = walls(2)
-    left_out = ~draws.present
+def test_each_fit_leaves_out_three_lines_of_ten_and_three_running_none_twice():
+    _, _, fits = walls(2)
+    left_out = ~fits.present
     assert np.abs(left_out.mean(axis=1) - 0.3).max() < 0.03
     assert (left_out[:3].sum(axis=0) <= 1).all()
 
 
-def test_draws_are_the_same_for_the_same_seed():
+def test_fits_are_the_same_for_the_same_seed():
     graph, _, _ = walls(2)
     fit = RobustFit(graph)
-    one, two = (draw(graph, lambda present: fit.depths(present=present), 5, 3) for _ in range(2))
+    one, two = (resample(graph, lambda present: fit.depths(present=present), 5, 3) for _ in range(2))
     assert (one.present == two.present).all()
     assert (one.depth == two.depth).all()
 
 
-def test_contradicting_corners_make_doubt():
-    calm = doubt(*walls(9, kind="L"), 3840)
-    doubtful = doubt(*walls(9, contradiction=0.2, kind="L"), 3840)
-    assert doubtful > calm + 0.1
+def test_contradicting_corners_make_a_photo_inconsistent():
+    consistent = inconsistency_of(*walls(9, kind="L"), 3840)
+    inconsistent = inconsistency_of(*walls(9, contradiction=0.2, kind="L"), 3840)
+    assert inconsistent > consistent + 0.1
 
 
-def test_in_doubt_more_is_asked():
-    assert SUPPORT < SUPPORT_IN_DOUBT
+def test_an_inconsistent_photo_must_be_more_stable():
+    assert STABILITY < STABILITY_IF_INCONSISTENT

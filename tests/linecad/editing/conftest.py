@@ -11,9 +11,9 @@ from linecad.editing.guard import HOST
 from linecad.editing.saving import Saver
 from linecad.editing.server import Editor
 from linecad.editing.session import Session
-from linecad.options import Options
 from linecad.finding import name_lines
 from linecad.lines.segments import find_segments
+from linecad.options import Options
 
 PORT, TOKEN = 8765, "the-token"
 URL = f"http://{HOST}:{PORT}"

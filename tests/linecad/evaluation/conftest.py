@@ -1,7 +1,7 @@
 """Truth records of small scenes, by brute force: every ray against every quad, every edge sampled densely."""
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -13,6 +13,7 @@ from linecad.dataset.truth import NOTHING, Truth
 from linecad.geometry import project, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import ManhattanFrame, Segments
+from linecad.options import SHORT_REACH
 from linecad.scene import Camera
 
 BIAS = 1e-3  # of the depth; a quad does not hide its own edges
@@ -112,7 +113,9 @@ class Corner:
 
     def graph(self, *lines, collinear=False):
         """The line graph of such lines; axis and direction must agree."""
-        return build_line_graph(self.segments(*lines), self.camera, self.frame, 60.0, "ones", collinear)
+        return build_line_graph(
+            self.segments(*lines), self.camera, self.frame, replace(SHORT_REACH, extension=60.0), "ones", collinear
+        )
 
 
 NEAR = ((-3.0, -0.5), (6.0, 8.0), (-1.5, 1.0))

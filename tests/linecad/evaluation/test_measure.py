@@ -16,10 +16,12 @@ from linecad.evaluation.report import badness, page, worst
 from linecad.evaluation.tables import all_tables
 from linecad.finding import find_lines
 from linecad.geometry import world_rays
+from linecad.options import Options
 from linecad.pipeline import reconstruct
 from linecad.scene import Face, Plane
+from solver.options import SolveOptions
 
-SETTINGS = Settings(time_limit_s=20.0, pictures=True)
+SETTINGS = Settings(reconstruction=Options(solve=SolveOptions(time_limit_s=20.0)), pictures=True)
 
 
 @pytest.fixture(scope="module")
@@ -29,7 +31,7 @@ def result(drawn, made_truth):
 
 @pytest.fixture(scope="module")
 def scene(drawn):
-    return reconstruct(drawn, SETTINGS.whole_photo())
+    return reconstruct(drawn, SETTINGS.reconstruction)
 
 
 def true_scale(scene, made_truth):
@@ -72,7 +74,9 @@ def test_families_are_left_out_by_their_letters():
     assert SETTINGS.options("gain", "none").without == {"cycles", "boundary", "planarity"}
     assert SETTINGS.options("paper", "B").boundary_reward == 10
     assert SETTINGS.options("gain", "B").boundary_reward == 1
-    assert replace(SETTINGS, mu_boundary=3.0).options("gain", "B").boundary_reward == 3
+    assert (
+        Settings(reconstruction=Options(solve=SolveOptions(mu_boundary=3.0))).options("gain", "B").boundary_reward == 3
+    )
 
 
 def test_nothing_known_is_nothing_measured(drawn):

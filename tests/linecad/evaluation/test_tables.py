@@ -90,7 +90,7 @@ def test_files_say_the_same_each_time(tmp_path):
     assert (tmp_path / "a.md").read_bytes() == (tmp_path / "b.md").read_bytes()
     document = json.loads((tmp_path / "a.json").read_text())
     assert (document["format"], document["version"], document["dataset"]) == ("linecad-evaluation", 1, "street")
-    assert document["settings"]["time_limit_s"] == 60
+    assert document["settings"]["reconstruction"]["solve"]["formulation"] == "gain"
     assert [each["name"] for each in document["photos"]] == ["a", "b", "c"]
     assert document["photos"][0]["methods"]["paper"]["B"]["decisions"]["tree_real"] == 9
     assert document["tables"][0]["rows"][1]["cells"][0]["value"] == pytest.approx(10 / 12)

@@ -1,5 +1,6 @@
 """The line graph against brute force and against the true depths of the made scene."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import networkx as nx
@@ -12,8 +13,9 @@ from shapely import LineString
 from linecad.geometry import REFERENCE_WIDTH
 from linecad.graph import build as graph_module
 from linecad.graph.build import MAX_TOLERANCE, build_line_graph
-from linecad.graph.connectivity import components, hinged_nodes, spanning_tree
+from linecad.graph.connectivity import components, in_no_block, spanning_tree
 from linecad.line_graph import ManhattanFrame, Segments
+from linecad.options import SHORT_REACH
 from linecad.scene import Camera
 
 WIDE = Camera(3840, 2880, np.array([[3000.0, 0, 1919.5], [0, 3000, 1439.5], [0, 0, 1]]), "file")
@@ -32,7 +34,12 @@ segment = st.builds(row_of, place, place, st.floats(0, 6.28), st.floats(26, 200)
 def graph_of(rows, extension=30.0):
     """The graph of rows (u0, v0, u1, v1, axis) in a photo at the reference width."""
     rows = np.array(rows, float)
-    return build_line_graph(Segments(rows[:, :4].reshape(-1, 2, 2), rows[:, 4].astype(int)), WIDE, FRONTAL, extension)
+    return build_line_graph(
+        Segments(rows[:, :4].reshape(-1, 2, 2), rows[:, 4].astype(int)),
+        WIDE,
+        FRONTAL,
+        replace(SHORT_REACH, extension=extension),
+    )
 
 
 def extended(row, by):
@@ -171,10 +178,10 @@ def test_tolerance_is_three_standard_deviations_of_pixel_noise(made):
         rays = np.column_stack([moved, np.ones(len(moved))]) @ inverse.T
         draws.append(np.log(rays[j, graph.coordinate] / rays[i, graph.coordinate]))
     spread = 3 * np.std(draws, axis=0)
-    loose = graph.tolerance > 2 * graph_module.MIN_TOLERANCE
+    loose = graph.tolerance > 2 * SHORT_REACH.least_tolerance
     assert loose.sum() > 20
     np.testing.assert_allclose(graph.tolerance[loose], spread[loose], rtol=0.2)
-    assert graph.tolerance.min() >= graph_module.MIN_TOLERANCE
+    assert graph.tolerance.min() >= SHORT_REACH.least_tolerance
 
 
 def test_a_crossing_near_the_horizon_says_nothing_about_depth():
@@ -246,7 +253,7 @@ def test_lines_on_one_crossing_are_hinged():
     ]  # fmt: skip
     graph = graph_of(rows)
     assert len(graph.edges) == 5
-    assert hinged_nodes(graph, np.ones(5, bool)).tolist() == [False] * 4 + [True]
-    assert hinged_nodes(graph, np.zeros(5, bool)).all()
+    assert in_no_block(graph, np.ones(5, bool)).tolist() == [False] * 4 + [True]
+    assert in_no_block(graph, np.zeros(5, bool)).all()
     one_missing = np.arange(5) > 0
-    assert hinged_nodes(graph, one_missing).all()
+    assert in_no_block(graph, one_missing).all()

@@ -1,5 +1,7 @@
 """Line graphs with known depths, lifted: exact at the chosen crossings, right to the noise."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given
@@ -8,8 +10,9 @@ from hypothesis import strategies as st
 from linecad.geometry import directions_to, project, vanishing_points
 from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components
-from linecad.line_graph import ManhattanFrame, Segments, Solution
+from linecad.line_graph import ManhattanFrame, Segments
 from linecad.model.lifting import fit_log_depths, lift
+from linecad.options import SHORT_REACH
 from linecad.scene import Camera
 
 CAMERA = Camera(3840, 2880, np.array([[2500.0, 0, 1919.5], [0, 2500, 1439.5], [0, 0, 1]]), "file")
@@ -20,14 +23,6 @@ SHORTEST = 26.0  # px; shorter ones are no nodes
 grid_line = st.tuples(
     st.integers(0, 2), st.integers(-4, 4), st.integers(7, 11), st.integers(-3, 3), st.integers(-2, 0), st.integers(1, 3)
 )
-
-
-def solution_of(graph, chosen, log_depth):
-    return Solution(
-        status="optimal", solver="by hand", formulation="paper", objective=0.0, bound=0.0, gap=0.0, seconds=0.0,
-        nodes=0, connected=chosen, is_boundary=np.zeros(len(graph.segments), bool), planar_pairs=[],
-        log_depth=log_depth,
-    )  # fmt: skip
 
 
 def in_space(rows):
@@ -58,13 +53,13 @@ def test_chosen_crossings_coincide(rows, seed, noise):
     axis, ends = in_space(rows)
     pixels = project(ends, CAMERA.matrix, FRAME.rotation)
     assume((np.linalg.norm(pixels[:, 1] - pixels[:, 0], axis=1) > SHORTEST).all())
-    graph = build_line_graph(Segments(pixels, axis), CAMERA, FRAME, extension=60)
+    graph = build_line_graph(Segments(pixels, axis), CAMERA, FRAME, replace(SHORT_REACH, extension=60.0))
     i, j = graph.edges.T
     meets = np.abs(ends[i, 0, graph.coordinate] - ends[j, 0, graph.coordinate]) < 1e-9
     rng = np.random.default_rng(seed)
     chosen = meets & (rng.random(len(meets)) < 0.9)
     true = true_log_depths(graph, ends)
-    lifted = lift(graph, solution_of(graph, chosen, true + rng.uniform(-noise, noise, len(rows))))
+    lifted = lift(graph, chosen, true + rng.uniform(-noise, noise, len(rows)))
     size = np.ptp(lifted.ends.reshape(-1, 3), axis=0).max()
     assert apart(graph, chosen, lifted).max(initial=0) <= 1e-9 * size
     # Up to one scale for each group of lines that crossings tie, the true lines come out.
@@ -99,7 +94,7 @@ def noisy(request, made):
     chosen = made.truly_real(graph)
     assert chosen.sum() > 60
     true = np.array([made.depth_at(i, segments.ends[i].mean(axis=0)) for i in range(len(made.axis))])
-    return graph, chosen, lift(graph, solution_of(graph, chosen, np.log(true)))
+    return graph, chosen, lift(graph, chosen, np.log(true))
 
 
 def test_depths_are_right_to_the_noise(made, noisy):
@@ -151,7 +146,7 @@ def test_stems_of_t_junctions_end_on_their_bars_bit_for_bit(noisy):
 def test_a_line_without_chosen_crossings_keeps_the_depth_of_the_solver(made):
     graph = made.graph()
     guess = np.full(len(graph.segments), np.log(5.0))
-    lifted = lift(graph, solution_of(graph, np.zeros(len(graph.edges), bool), guess))
+    lifted = lift(graph, np.zeros(len(graph.edges), bool), guess)
     np.testing.assert_allclose(lifted.ends.mean(axis=(1, 2)).shape, (len(guess),))
     middle = graph.rays * 5.0
     across = np.arange(3) != graph.axis[:, None]
@@ -162,7 +157,7 @@ def test_a_line_without_chosen_crossings_keeps_the_depth_of_the_solver(made):
 def test_ends_are_seen_at_the_ends_of_the_segments(made):
     graph = made.graph()
     true = np.log([made.depth_at(i, ends.mean(axis=0)) for i, ends in enumerate(made.pixels)])
-    lifted = lift(graph, solution_of(graph, made.truly_real(graph), true))
+    lifted = lift(graph, made.truly_real(graph), true)
     back = project(lifted.ends, made.camera.matrix, made.frame.rotation)
     np.testing.assert_allclose(back, made.pixels, atol=1e-6)
     np.testing.assert_allclose(lifted.ends, made.ends, rtol=1e-6, atol=1e-6)

@@ -6,7 +6,7 @@ from scipy.sparse import eye_array
 
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
-from linecad.line_graph import ManhattanFrame, Segments, Solution
+from linecad.line_graph import ManhattanFrame, Segments
 from linecad.model.lifting import lift
 from linecad.model.plane_merging import find_merges
 from linecad.scene import Camera
@@ -44,11 +44,7 @@ def lifted_windows(first, second):
     chosen = np.abs(ends[i, 0, graph.coordinate] - ends[j, 0, graph.coordinate]) < 1e-9
     rays = graph.rays * (np.arange(3) != axis[:, None])
     depth = np.log((rays * ends[:, 0]).sum(axis=1) / (rays**2).sum(axis=1))
-    solution = Solution(
-        status="optimal", solver="by hand", formulation="gain", objective=0.0, bound=0.0, gap=0.0, seconds=0.0,
-        nodes=0, connected=chosen, is_boundary=np.zeros(len(axis), bool), planar_pairs=[], log_depth=depth,
-    )  # fmt: skip
-    return graph, solution, lift(graph, solution)
+    return graph, chosen, depth, lift(graph, chosen, depth)
 
 
 FIRST, SECOND = slice(0, 4), slice(4, 8)
@@ -56,33 +52,33 @@ FIRST, SECOND = slice(0, 4), slice(4, 8)
 
 @pytest.mark.parametrize("apart", [0.0, 0.02])
 def test_planes_within_the_noise_become_one_offset_bit_for_bit(apart):
-    _, _, lifted = lifted_windows(10.0, 10.0 + apart)
+    *_, lifted = lifted_windows(10.0, 10.0 + apart)
     assert len(np.unique(lifted.offset[:8, 1])) == 1
     assert len(np.unique(lifted.shared[:8, 1])) == 1
 
 
 def test_merged_lines_stay_where_they_are_seen():
-    graph, _, lifted = lifted_windows(10.0, 10.02)
+    graph, *_, lifted = lifted_windows(10.0, 10.02)
     back = project(lifted.ends, CAMERA.matrix, FRAME.rotation)
     assert np.abs(back - graph.segments.ends).max() < 1.0
 
 
 @pytest.mark.parametrize("apart", [0.5, 1.0])
 def test_planes_further_apart_than_the_noise_stay_two(apart):
-    _, _, lifted = lifted_windows(10.0, 10.0 + apart)
+    *_, lifted = lifted_windows(10.0, 10.0 + apart)
     ratio = lifted.offset[SECOND, 1].mean() / lifted.offset[FIRST, 1].mean()
     assert ratio == pytest.approx(1 + apart / 10, rel=1e-6)
 
 
 def merges(first, second, component=None, loose=1e-9):
-    graph, solution, _ = lifted_windows(first, second)
+    graph, chosen, depth, _ = lifted_windows(first, second)
     shared = np.arange(3 * len(graph.segments)).reshape(-1, 3)
     shared[FIRST, 1], shared[SECOND, 1] = 1000, 1001
     shared[np.arange(len(shared)), graph.axis] = -1
     count = len(graph.segments)
     group = np.zeros(count, np.int64) if component is None else component
     normal = loose * eye_array(count, format="csr")
-    return find_merges(graph, solution.connected, group, shared, solution.log_depth, normal)
+    return find_merges(graph, chosen, group, shared, depth, normal)
 
 
 def test_what_little_ties_is_merged_up_to_a_limit_only():
@@ -97,7 +93,7 @@ def test_groups_of_lines_with_scales_of_their_own_are_not_merged():
 
 
 def test_a_line_from_one_plane_to_the_other_keeps_them_two():
-    graph, solution, _ = lifted_windows(10.0, 10.0)
+    graph, chosen, depth, _ = lifted_windows(10.0, 10.0)
     shared = np.arange(3 * len(graph.segments)).reshape(-1, 3)
     shared[FIRST, 1], shared[SECOND, 1] = 1000, 1001
     shared[np.arange(len(shared)), graph.axis] = -1
@@ -105,4 +101,4 @@ def test_a_line_from_one_plane_to_the_other_keeps_them_two():
     shared[10, 1] = 1001
     normal = 1e-9 * eye_array(len(shared), format="csr")
     component = np.zeros(len(shared), np.int64)
-    assert len(find_merges(graph, solution.connected, component, shared, solution.log_depth, normal).axis) == 0
+    assert len(find_merges(graph, chosen, component, shared, depth, normal).axis) == 0

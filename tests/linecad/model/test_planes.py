@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from linecad.graph.connectivity import components
-from linecad.line_graph import Solution
 from linecad.model.lifting import lift
 from linecad.model.planes import MIN_LINES, find_planes
 
@@ -53,11 +52,7 @@ def test_the_true_planes_of_the_made_scene_are_found(made):
     graph = made.graph()
     chosen = made.truly_real(graph)
     log_depth = np.log([made.depth_at(i, ends.mean(axis=0)) for i, ends in enumerate(made.pixels)])
-    solution = Solution(
-        status="optimal", solver="by hand", formulation="paper", objective=0.0, bound=0.0, gap=0.0, seconds=0.0,
-        nodes=0, connected=chosen, is_boundary=np.zeros(len(made.axis), bool), planar_pairs=[], log_depth=log_depth,
-    )  # fmt: skip
-    lifted = lift(graph, solution)
+    lifted = lift(graph, chosen, np.array(log_depth))
     planes = find_planes(lifted.offset, lifted.shared, np.arange(len(made.axis)))
     # Every set of three or more lines of one box that share a coordinate other than their own axis.
     expected = set()

@@ -5,14 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from linecad.camera.photo import Photo
-from linecad.options import SHORT_REACH, Options
-from linecad.finding import FoundLines, connect
+from linecad.finding import FoundLines
 from linecad.geometry import project
 from linecad.line_graph import ManhattanFrame, Segments
-from linecad.model.build import place
+from linecad.options import SHORT_REACH, Options
+from linecad.pipeline import reconstruct_lines
 from linecad.scene import Camera
-from solver.solve import solve
 
 X, Y, Z = 0, 1, 2
 SHIFT = 1e-3  # relative; the segments are exact but for rounding
@@ -38,15 +36,14 @@ def street():
     frame = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), 0.0, 1.0)
     ends = np.array([line[1:] for line in lines], float)
     segments = Segments(project(ends, camera.matrix, frame.rotation), [line[0] for line in lines])
-    photo = Photo("two houses.png", np.zeros((2160, 3840, 3), np.uint8), camera)
     found = FoundLines(camera, frame, segments, ())
     options = Options(collinear=False, reach=SHORT_REACH)
-    _, graph = connect(found, options)
-    assert len(graph.segments) == len(lines)
-    scene = place(photo, found, graph, solve(graph, options.solve), options)
+    made = reconstruct_lines("two houses.png", found, options)
+    assert len(made.graph.segments) == len(lines)
+    scene = made.scene
     part = np.repeat(np.arange(4), [len(part) for part in parts])
-    made = segments.ends.mean(axis=1)  # grouping brings the lines into another order
-    order = np.linalg.norm(scene.lines.segment.mean(axis=1)[:, None] - made, axis=2).argmin(axis=1)
+    middle = segments.ends.mean(axis=1)  # grouping brings the lines into another order
+    order = np.linalg.norm(scene.lines.segment.mean(axis=1)[:, None] - middle, axis=2).argmin(axis=1)
     assert sorted(order.tolist()) == list(range(len(lines)))
     return SimpleNamespace(scene=scene, ends=ends[order], part=part[order])
 

@@ -6,8 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.graph.build import build_line_graph
-from linecad.graph.cues.odds import ACROSS, AT_ONCE, BOTH_HORIZONTAL, COLLINEAR, STEP
+from linecad.graph.cues import STEP
+from linecad.graph.cues.collinear import ACROSS
+from linecad.graph.cues.collinear import AT_ONCE as COLLINEAR
+from linecad.graph.cues.gaps import AT_ONCE, BOTH_HORIZONTAL
 from linecad.line_graph import ManhattanFrame, Segments
+from linecad.options import LONG_REACH
 from linecad.scene import Camera
 
 # A frontal camera at the reference width: z lines are vertical in the photo, x lines level.
@@ -25,7 +29,7 @@ def upright(top, bottom, at):
 
 def odds_of(*lines, camera=CAMERA, scale=1.0):
     ends = np.array([ends for ends, _ in lines], float) * scale
-    graph = build_line_graph(Segments(ends, [axis for _, axis in lines]), camera, FRAME, 75.0, "odds", True)
+    graph = build_line_graph(Segments(ends, [axis for _, axis in lines]), camera, FRAME, LONG_REACH, "odds", True)
     return graph.kind.tolist(), graph.weight.tolist()
 
 
