@@ -55,7 +55,7 @@ def places(page, count):
     at = page.evaluate(
         """() => {
           const { left, top } = document.querySelector("#overlay-canvas").getBoundingClientRect();
-          return linecad.store.state.crossings.map(({ pixel }) => linecad.camera.photo.viewport.toScreen(pixel))
+          return linecad.store.state.crossings.map(({ pixel }) => linecad.photo.viewport.toScreen(pixel))
             .map(([x, y]) => [x + left, y + top]);
         }"""
     )

@@ -40,7 +40,7 @@ def correcting(page, folder):
           return state.crossings.find(fits);
         }"""
     )
-    page.evaluate("(pixel) => linecad.camera.photo.change((viewport) => viewport.centre(pixel, 3))", chosen["pixel"])
+    page.evaluate("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel, 3))", chosen["pixel"])
     settle(page)
     box = page.locator("#overlay-canvas").bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)

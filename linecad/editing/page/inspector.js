@@ -4,6 +4,17 @@ import { counted, element, keyButton } from "./dom.js";
 import { isReal } from "./store.js";
 import { fixesFrame } from "./tools.js";
 
+// Why a crossing is real or not, by the key of the state.
+const REASONS = {
+  annotated: "as you said",
+  chosen: "chosen by the program",
+  "not chosen": "left out by the program",
+  impossible: "its lines cannot meet before the camera",
+  uninformative: "too near the horizon to tell a depth",
+  unstable: "joins bodies that do not keep their place when lines are left out",
+  loose: "joins bodies that fewer than two lines tie",
+  "small group": "its group has fewer than four lines",
+};
 const KINDS = { L: "L crossing", T: "T crossing", X: "X crossing", collinear: "collinear pair" };
 const ORIGINS = { found: "", drawn: "drawn by you", split: "split by you", joined: "joined by you" };
 
@@ -63,15 +74,15 @@ export class Inspector {
   }
 
   #crossing(crossing) {
-    const said =
-      crossing.label === null ? "as the solver has it" : crossing.label === "unsure" ? "you are unsure" : "as you said";
+    const found = REASONS[crossing.reason] ?? "not solved yet";
+    const why = crossing.label === null ? found : crossing.label === "unsure" ? `you are unsure; ${found}` : "as you said";
     const names = crossing.lines.map((id) => `${id} (${this.store.lines.get(id)?.axis ?? "gone"})`);
     const changed = crossing.changed ? ", changed by the last solve" : "";
     const text = element(
       "p",
       {},
       element("strong", {}, isReal(crossing) ? "Real" : "Fake"),
-      `, ${said}${changed} · ${KINDS[crossing.kind] ?? crossing.kind} of lines ${names.join(" and ")}`,
+      `, ${why}${changed} · ${KINDS[crossing.kind] ?? crossing.kind} of lines ${names.join(" and ")}`,
     );
     const label = (value, name, key) =>
       keyButton(name, key, () => this.actions.label(value, crossing), {

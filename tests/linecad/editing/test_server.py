@@ -15,6 +15,7 @@ from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.references import open_case
 from linecad.options import Options
 from linecad.pipeline import reconstruct
+from linecad.scene import REASONS
 
 
 def crossings(state, **wanted):
@@ -264,6 +265,16 @@ class TestSolving:
         assert all(
             one["id"] == real or not one["real"] or one["label"] is None for one in crossings(state, changed=True)
         )
+
+    def test_every_crossing_of_the_model_says_why(self, page):
+        assert {one["reason"] for one in page.state()["crossings"]} == {None}
+        solved = page.solve()
+        page.edit(op="label", crossing=crossings(solved, real=True)[0]["id"], value="fake")
+        state = page.solve()
+        assert {one["reason"] for one in state["crossings"]} <= set(REASONS)
+        assert {one["reason"] for one in crossings(state, real=True)} <= {"chosen", "annotated"}
+        (named,) = crossings(state, label="fake")
+        assert (named["real"], named["reason"]) == (False, "annotated")
 
     def test_the_second_solve_of_the_same_changes_nothing(self, page):
         page.solve()

@@ -173,12 +173,12 @@ class Screen:
 
     def on_screen(self, pixel) -> tuple[float, float]:
         """Where a pixel of the photo is on the screen, for the mouse."""
-        x, y = self.run("(pixel) => linecad.camera.photo.viewport.toScreen(pixel)", list(pixel))
+        x, y = self.run("(pixel) => linecad.photo.viewport.toScreen(pixel)", list(pixel))
         return self.stage["x"] + x, self.stage["y"] + y
 
     def in_photo(self, place) -> tuple[float, float]:
         at = [place[0] - self.stage["x"], place[1] - self.stage["y"]]
-        return tuple(self.run("(at) => linecad.camera.photo.viewport.toPhoto(at)", at))
+        return tuple(self.run("(at) => linecad.photo.viewport.toPhoto(at)", at))
 
     def click(self, pixel) -> None:
         self.page.mouse.click(*self.on_screen(pixel))

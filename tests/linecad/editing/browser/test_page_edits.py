@@ -49,10 +49,26 @@ def test_a_click_turns_a_crossing_from_real_to_fake_and_back(screen):
     assert "as you said" in screen.page.locator("#inspector").inner_text()
 
 
+def test_the_inspector_says_why_a_crossing_is_real_or_not(screen):
+    words = {
+        "chosen": "chosen by the program",
+        "not chosen": "left out by the program",
+        "small group": "fewer than four",
+    }
+    seen = set()
+    screen.press("v")  # to select and not to correct
+    for crossing in apart(screen.state["crossings"]):
+        if crossing["reason"] in words and crossing["reason"] not in seen:
+            seen.add(crossing["reason"])
+            screen.click(crossing["pixel"])
+            assert words[crossing["reason"]] in screen.page.locator("#inspector").inner_text()
+    assert "chosen" in seen
+
+
 def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
     crossing = next(each for each in apart(screen.state["crossings"]) if each["real"])
-    screen.run("linecad.camera.photo.change((viewport) => viewport.zoom(2))")
-    screen.run("(pixel) => linecad.camera.photo.change((viewport) => viewport.centre(pixel))", crossing["pixel"])
+    screen.run("linecad.photo.change((viewport) => viewport.zoom(2))")
+    screen.run("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel))", crossing["pixel"])
     read = """() => {
       const canvas = document.querySelector("#drawing-canvas");
       const [x, y] = [canvas.width >> 1, canvas.height >> 1];
@@ -61,12 +77,12 @@ def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
       return [...data].map((value, at) => (at % 4 === 3 ? value : (value * data[at - (at % 4) + 3]) / 255));
     }"""
     screen.run(read)  # the first reading changes how the browser draws
-    screen.run("linecad.camera.photo.redraw('drawing')")
+    screen.run("linecad.photo.redraw('drawing')")
     screen.settle()
     before = np.array(screen.run(read))
     screen.click(crossing["pixel"])
     clicked = np.array(screen.run(read))
-    screen.run("linecad.camera.photo.redraw('drawing')")
+    screen.run("linecad.photo.redraw('drawing')")
     screen.settle()
     anew = np.array(screen.run(read))
     assert np.count_nonzero(clicked != before) > 50

@@ -18,7 +18,7 @@ def test_it_shows_the_photo_where_the_viewport_says(screen):
     shown = screen.run(
         """([u, v]) => {
           const canvas = document.querySelector("#photo-canvas");
-          const [x, y] = linecad.camera.photo.viewport.toScreen([u, v]).map((at) => Math.round(at * devicePixelRatio));
+          const [x, y] = linecad.photo.viewport.toScreen([u, v]).map((at) => Math.round(at * devicePixelRatio));
           return [...canvas.getContext("2d").getImageData(x, y, 1, 1).data].slice(0, 3);
         }""",
         [u, v],
@@ -63,11 +63,11 @@ def test_through_the_camera_the_faces_carry_their_own_part_of_the_photo(screen):
 def test_the_wheel_keeps_what_is_under_the_pointer(screen):
     place = (screen.stage["x"] + 211, screen.stage["y"] + 333)
     screen.page.mouse.move(*place)
-    before, scale = screen.in_photo(place), screen.run("linecad.camera.photo.viewport.scale")
+    before, scale = screen.in_photo(place), screen.run("linecad.photo.viewport.scale")
     for _ in range(3):
         screen.page.mouse.wheel(0, -240)
     screen.settle()
-    assert screen.run("linecad.camera.photo.viewport.scale") > 2 * scale
+    assert screen.run("linecad.photo.viewport.scale") > 2 * scale
     assert screen.in_photo(place) == pytest.approx(before, abs=1e-6)
 
 
@@ -78,7 +78,7 @@ def test_the_wheel_goes_far_beyond_one_to_one(screen):
     for _ in range(8):
         screen.page.mouse.wheel(0, -1000)
     screen.settle()
-    assert screen.run("linecad.camera.photo.viewport.scale") >= 32
+    assert screen.run("linecad.photo.viewport.scale") >= 32
     assert screen.in_photo(place) == pytest.approx(before, abs=1e-6)
 
 
@@ -104,7 +104,7 @@ def test_keys_zoom_move_and_fit(screen):
     fitted = screen.run("({...linecad.photo.viewport})")
     screen.press("+")
     screen.press("+")
-    assert screen.run("linecad.camera.photo.viewport.scale") == pytest.approx(fitted["scale"] * 1.25**2)
+    assert screen.run("linecad.photo.viewport.scale") == pytest.approx(fitted["scale"] * 1.25**2)
     screen.press("ArrowRight")
     screen.press("ArrowDown")
     screen.press("0")
@@ -137,7 +137,7 @@ def test_marks_have_one_size_at_every_zoom(screen):
     for layer in ("fake", "changed", "x", "y", "z", "faces"):
         screen.page.locator(f"[data-layer={layer}]").click()
     count = """(pixel) => {
-      const [x, y] = linecad.camera.photo.viewport.toScreen(pixel);
+      const [x, y] = linecad.photo.viewport.toScreen(pixel);
       const canvas = document.querySelector("#drawing-canvas").getContext("2d");
       const { data } = canvas.getImageData(x - 9, y - 9, 19, 19);
       return data.filter((value, index) => index % 4 === 3 && value > 100).length;
@@ -145,7 +145,7 @@ def test_marks_have_one_size_at_every_zoom(screen):
     sizes = []
     for scale in (4.0, 40.0):
         screen.run(
-            "([pixel, scale]) => linecad.camera.photo.change((viewport) => viewport.centre(pixel, scale))",
+            "([pixel, scale]) => linecad.photo.change((viewport) => viewport.centre(pixel, scale))",
             [crossing["pixel"], scale],
         )
         screen.settle()
