@@ -1,4 +1,4 @@
-"""The scene file: reads back exactly, refuses every damage with one line, and is what docs/scene-file.md says."""
+"""The scene file: reads back exactly, refuses every damage in one line, is what docs/reference/scene-file.md says."""
 
 import copy
 import json
@@ -33,7 +33,7 @@ from linecad.scene import (
     SolveReport,
 )
 
-PAGE = Path(__file__).parents[3] / "docs" / "scene-file.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "scene-file.md"
 EXAMPLE = re.search(r"```json\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL).group(1)
 
 
@@ -294,7 +294,7 @@ def refusal(text: str) -> str:
 
 @pytest.mark.parametrize("place", REQUIRED)
 def test_missing_key_is_named_with_its_place(place: str) -> None:
-    assert refusal(without(place)) == f"{place} is missing; see docs/scene-file.md"
+    assert refusal(without(place)) == f"{place} is missing; see docs/reference/scene-file.md"
 
 
 @pytest.mark.parametrize("place", OPTIONAL)
@@ -403,7 +403,7 @@ WRONG = [
 def test_wrong_value_is_refused_with_its_place(place: str, value: Any, line: str) -> None:
     message = refusal(changed(place, value))
     assert line in message
-    assert message.endswith("; see docs/scene-file.md")
+    assert message.endswith("; see docs/reference/scene-file.md")
 
 
 def test_two_planes_may_not_share_an_id_nor_two_faces() -> None:

@@ -1,9 +1,9 @@
-"""The pictures of docs/into-freecad.md, into-blender.md and usd-stage.md, made without a screen.
+"""The pictures of docs/guide/freecad.md, blender.md and usd.md, made without a screen.
 
-    python docs/screenshots/make.py [freecad] [blender] [usd] [--bpy PYTHON]
+    python docs/guide/screenshots/make.py [freecad] [blender] [usd] [--bpy PYTHON]
 
 Needs linecad, FreeCAD with xvfb-run, and Blender on the path; for the USD stage a Python with the module bpy, because
-Debian's Blender was built without USD. Without a word all three pictures are made, in docs/.
+Debian's Blender was built without USD. Without a word all three pictures are made, in docs/guide/.
 """
 
 import argparse
@@ -16,8 +16,8 @@ from pathlib import Path
 
 from PIL import Image
 
-DOCS = Path(__file__).resolve().parents[1]
-ROOT = DOCS.parent
+GUIDE = Path(__file__).resolve().parents[1]
+ROOT = GUIDE.parents[1]
 HERE = Path(__file__).parent
 SAMPLE = ROOT / "samples" / "street.jpg"
 SCREEN = "1500x900x24"
@@ -51,7 +51,7 @@ def main() -> None:
                 run([*blender, "--python", viewer, "--", str(files["glb"]), photo, str(picture)])
             else:
                 run([parsed.bpy, viewer, str(files["usdz"]), photo, str(picture)])
-            save(picture, DOCS / f"into-{name}.jpg" if name != "usd" else DOCS / "usd-stage.jpg")
+            save(picture, GUIDE / f"{name}.jpg")
 
 
 def freecad(folder: Path, step: Path, picture: Path) -> None:

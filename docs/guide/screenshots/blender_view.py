@@ -3,7 +3,7 @@
     blender --background --factory-startup --python blender_view.py -- FILE PHOTO PICTURE
 
 The picture has two halves: the model through the imported camera, half over the photo, and the model from the left.
-The camera's lens and shift are set from its properties as docs/into-blender.md says.
+The camera's lens and shift are set from its properties as docs/guide/blender.md says.
 """
 
 import math

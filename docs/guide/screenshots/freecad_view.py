@@ -1,4 +1,4 @@
-"""Run by FreeCAD itself: open a STEP file as docs/into-freecad.md says and save a picture of the window.
+"""Run by FreeCAD itself: open a STEP file as docs/guide/freecad.md says and save a picture of the window.
 
 Arguments come by the environment, because FreeCAD takes every word of its command line for a file to open.
 """
@@ -12,7 +12,7 @@ import FreeCADGui
 import ImportGui
 from PySide2 import QtWidgets
 
-WIDTH, HEIGHT = 1500, 900  # px, as large as the screen that docs/screenshots/make.py gives it
+WIDTH, HEIGHT = 1500, 900  # px, as large as the screen that docs/guide/screenshots/make.py gives it
 ZOOM = 0.55  # of the view's height that fits the sphere around everything
 
 

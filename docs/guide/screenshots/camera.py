@@ -1,4 +1,7 @@
-"""The picture of docs/camera.md, what `linecad camera` draws of a sample: python docs/screenshots/camera.py"""
+"""The picture of docs/guide/camera.md, what `linecad camera` draws of a sample.
+
+python docs/guide/screenshots/camera.py
+"""
 
 import tempfile
 from pathlib import Path
@@ -7,8 +10,8 @@ from PIL import Image
 
 from linecad.cli.main import main
 
-DOCS = Path(__file__).resolve().parent.parent
-PHOTO = DOCS.parent / "samples" / "street.jpg"
+GUIDE = Path(__file__).resolve().parents[1]
+PHOTO = GUIDE.parents[1] / "samples" / "street.jpg"
 WIDTH, QUALITY = 1200, 85  # px and out of 100: legible, and small in the repository
 
 with tempfile.TemporaryDirectory() as folder:
@@ -17,4 +20,4 @@ with tempfile.TemporaryDirectory() as folder:
         raise SystemExit(1)
     with Image.open(drawn) as picture:
         size = (WIDTH, round(picture.height * WIDTH / picture.width))
-        picture.resize(size, Image.Resampling.LANCZOS).save(DOCS / "camera.jpg", quality=QUALITY, optimize=True)
+        picture.resize(size, Image.Resampling.LANCZOS).save(GUIDE / "camera.jpg", quality=QUALITY, optimize=True)
