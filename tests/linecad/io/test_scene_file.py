@@ -23,6 +23,7 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     QUALITIES,
+    REASONS,
     Camera,
     Certainty,
     Face,
@@ -130,6 +131,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             real=real,
             in_tree=[each and draw(st.booleans()) for each in real],
             weight=several(m, numbers),
+            reason=several(m, st.sampled_from(REASONS)),
         ),
         planes=draw(planes(line_ids)),
         solve=SolveReport(
@@ -257,7 +259,7 @@ REQUIRED = [
 ]
 OPTIONAL = [
     *("camera.distortion", "metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
-    *("solve.cuts", "solve.nodes"),
+    *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
 ]
 
@@ -603,7 +605,7 @@ def named_in_tables(heading: str) -> list[str]:
         ("`camera`", "camera", CAMERA_SOURCES),
         ("`certainty`", "certainty", QUALITIES),
         ("`lines[]`", "lines[0]", CONFIDENCES),
-        ("`intersections[]`", "intersections[0]", ()),
+        ("`intersections[]`", "intersections[0]", REASONS),
         ("`planes[]`", "planes[0]", ()),
         ("`planes[].faces[]`", "planes[0].faces[0]", ()),
         ("`solve`", "solve", STATUSES),
