@@ -1,5 +1,5 @@
 # `make` says what can be made. Each target prepares the clone by itself: a virtual environment in .venv with the
-# versions of constraints.txt, made again when they or pyproject.toml change. Needed: Python 3.11 or newer.
+# versions of constraints.txt, made again when they or pyproject.toml change. Requires Python 3.11.
 
 VENV := .venv
 BIN := $(VENV)/bin
@@ -21,7 +21,7 @@ help:
 	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap"; in one process: PROCESSES=)'
 	@echo 'make lint    ruff and mypy'
 	@echo 'make check   lint and test, what every change must pass'
-	@echo 'make results measure datasets (DATASETS="folders", WORKERS=2): docs/tables/, and more in results/'
+	@echo 'make results measure datasets (DATASETS="folders", WORKERS=2): docs/results/tables/, and more in results/'
 	@echo 'make clean   remove what was made, except .venv'
 	@echo
 	@echo 'Each prepares .venv on its first run: about 1.6 GB, a minute or two.'
@@ -41,19 +41,16 @@ lint: $(READY)
 
 check: lint test
 
-# Tables as Markdown into docs/tables/, everything else into results/; the weights that were fitted beside the default.
+# Tables as Markdown into docs/results/tables/, everything else into results/.
 results: $(READY)
-	@mkdir -p results docs/tables
+	@mkdir -p results docs/results/tables
 	@set -e; for dataset in $(DATASETS); do \
-	for how in "junctions" "fitted --formulation gain"; do \
-	    name=$$(basename $$dataset)-$${how%% *}; echo "$$dataset, --weights $$how"; \
-	    $(BIN)/linecad evaluate $$dataset --weights $$how --workers $(WORKERS) --time-limit $(SECONDS) \
-	        --markdown docs/tables/$$name.md --json results/$$name.json --report results/$$name.html $(ARGS); \
-	done; \
-	name=$$(basename $$dataset); \
-	$(BIN)/python tests/benchmarks/paired.py results/$$name-junctions.json results/$$name-fitted.json \
-	    > docs/tables/$$name-paired.md; \
-	$(BIN)/python tests/benchmarks/fakes.py $$dataset > docs/tables/$$name-fakes.md; \
+	    name=$$(basename $$dataset)-junctions; echo "$$dataset, weights by junction"; \
+	    $(BIN)/linecad evaluate $$dataset --option weights=junctions --workers $(WORKERS) --time-limit $(SECONDS) \
+	        --markdown docs/results/tables/$$name.md --json results/$$name.json --report results/$$name.html $(ARGS); \
+	    $(BIN)/python tests/benchmarks/paired.py results/$$name.json \
+	        > docs/results/tables/$$(basename $$dataset)-paired.md; \
+	    $(BIN)/python tests/benchmarks/fakes.py $$dataset > docs/results/tables/$$(basename $$dataset)-fakes.md; \
 	done
 
 clean:

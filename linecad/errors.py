@@ -37,15 +37,15 @@ class CameraError(InputError):
 
 
 class SceneFileError(InputError):
-    """The scene file breaks the promises of docs/scene-file.md."""
+    """The scene file breaks the promises of docs/reference/scene-file.md."""
 
 
 class DatasetError(InputError):
-    """A dataset breaks the promises of docs/dataset.md, or was begun with other options."""
+    """A dataset breaks the promises of docs/reference/datasets.md, or was begun with other options."""
 
 
 class CorrectionsFileError(InputError):
-    """The corrections file breaks the promises of docs/corrections.md, or was made for another photo."""
+    """The corrections file breaks the promises of docs/reference/corrections.md, or was made for another photo."""
 
 
 class OptionError(LinecadError):

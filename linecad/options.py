@@ -41,7 +41,7 @@ class Reach:
 
 
 SHORT_REACH = Reach(30.0, 31.0, 25.0, 0.002)  # as in the paper
-# 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (CONTRIBUTING, 2026-11-21).
+# 60, 100 and 15 px on photos 3072 px wide: what measured best on real photos (docs/decisions/0023).
 LONG_REACH = Reach(75.0, 125.0, 18.75, 0.0035)
 MIDDLE_REACH = Reach(37.5, 62.5, 18.75, 0.002)  # for photos whose crossings contradict each other
 

@@ -24,7 +24,7 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
-# Why a crossing is real or not (linecad.decide.decision, docs/scene-file.md). Real: annotated, chosen.
+# Why a crossing is real or not (linecad.decide.decision, docs/reference/scene-file.md). Real: annotated, chosen.
 Reason = Literal[
     "annotated", "chosen", "not chosen", "impossible", "uninformative", "unstable", "loose", "small group"
 ]  # fmt: skip

@@ -10,7 +10,7 @@ from linecad.line_graph import Formulation
 
 Family = Literal["cycles", "planarity", "boundary"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
-# The paper's mu_2 keeps so many lines off the boundary that one wall remains of most buildings (CONTRIBUTING).
+# The paper's mu_2 keeps so many lines off the boundary that one wall remains of most buildings (docs/decisions/0019).
 DEFAULT_MU_BOUNDARY: dict[Formulation, float] = {"gain": 1.0, "paper": 10.0}
 # s; gain starts near its end, the paper's program does not.
 DEFAULT_TIME_LIMIT_S: dict[Formulation, float] = {"gain": 10.0, "paper": 60.0}

@@ -28,7 +28,7 @@ LEAST_RADIAL = 0.01  # what bends less is left alone: real photos of lenses with
 LEAST_LINES = 8  # whole ones along the second axis; with less, a wrong frame may be bent to fit
 HIGHER_ORDERS = 0.02  # of the distortion: what one coefficient cannot tell of a real lens
 # Beyond these the lens is a fisheye, which one coefficient does not describe. With a barrel from 0.15 on the corners of
-# the photo have no place in a straight one; one of 0.2 is still found as it is, of 0.3 only 0.22 (CONTRIBUTING).
+# the photo have no place in a straight one; one of 0.2 is still found as it is, of 0.3 only 0.22 (docs/decisions/0010).
 LARGEST_BARREL, LARGEST_PINCUSHION = 0.2, 0.25
 
 

@@ -77,7 +77,7 @@ def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segme
     """The same from those segments alone that lie on `lines`, which a first calibration let meet in space.
 
     What meets nothing is mostly no line of the scene. For a focal length from the vanishing points alone: cameras that
-    were given, or that EXIF tells of, get no better by it (CONTRIBUTING, 2026-11-21).
+    were given, or that EXIF tells of, get no better by it (docs/decisions/0009).
     """
     if first.prior is None:
         return first

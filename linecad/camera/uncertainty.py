@@ -20,7 +20,7 @@ POOR_TURN = np.radians(5.0)
 GOOD_SHARE = 0.5  # of the segment length that runs along the axes; below it other lines may have made the frame
 POOR_SHARE = 0.3
 # Whole lines along the axis that has fewest: with less, one cable or joint in the paving may have made that axis. The
-# figures are from 300 made photos (CONTRIBUTING, 2026-11-21).
+# figures are from 300 made photos (docs/decisions/0012).
 ENOUGH_LINES = 20
 ENOUGH_TOGETHER = 120  # along all three: a few kerbs that are not parallel to the house outweigh it else
 ENOUGH_LINES_KNOWN = 12  # along the second axis, where the camera was given: the third follows from two

@@ -113,7 +113,7 @@ def _add_camera_command(commands: "argparse._SubParsersAction[_Parser]") -> None
     command = commands.add_parser(
         "camera",
         help="the camera of a photo alone, and how sure it is",
-        description="Find the camera and the Manhattan frame of a photo, print them, or write them (docs/camera.md).",
+        description="Find the camera and the Manhattan frame of a photo, print or write them (docs/guide/camera.md).",
         epilog="example: linecad camera facade.jpg -o facade.camera.json -o facade.camera.png",
     )
     command.set_defaults(run=_camera)
@@ -209,7 +209,7 @@ def _add_batch(commands: "argparse._SubParsersAction[_Parser]") -> None:
     batch = commands.add_parser(
         "batch",
         help="many photos, on all cores or a cluster; goes on where it was stopped",
-        description="Convert many photos into a folder, with a record, a page and a summary (docs/batch.md).",
+        description="Convert many photos into a folder, with a record, a page and a summary (docs/guide/batch.md).",
         epilog="example: linecad batch survey/ -o models --format step,usdz,png --camera camera.json",
     )
     batch.set_defaults(run=_batch)
@@ -264,7 +264,7 @@ def _add_evaluate(commands: "argparse._SubParsersAction[_Parser]") -> None:
     evaluate = commands.add_parser(
         "evaluate",
         help="the paper's tables and more on photos with ground truth",
-        description="Measure reconstructions of the photos of a dataset against their truth (docs/evaluation.md).",
+        description="Measure reconstructions of a dataset against its truth (docs/reference/evaluation.md).",
         epilog="example: linecad evaluate streets --json streets.json --report streets.html --workers 4",
     )
     evaluate.set_defaults(run=_evaluate)
@@ -800,7 +800,7 @@ def _check_distinct(outputs: list[Path]) -> None:
 def _print_formats() -> int:
     from exporters.formats import FORMATS
 
-    print(f"{SCENE_SUFFIX:6} the scene file, which `linecad export` reads (docs/scene-file.md)")
+    print(f"{SCENE_SUFFIX:6} the scene file, which `linecad export` reads (docs/reference/scene-file.md)")
     for suffix, row in FORMATS.items():
         print(f"{suffix:6} {row.phrase} (in {row.unit})")
         for option in row.options:

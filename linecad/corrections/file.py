@@ -1,4 +1,4 @@
-"""Corrections as a file: JSON, described in docs/corrections.md, that reads back as exactly the same edits."""
+"""Corrections as a file: JSON (docs/reference/corrections.md) that reads back as exactly the same edits."""
 
 import json
 import os
@@ -41,7 +41,7 @@ OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "fra
 
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
-    """The corrections in a file; CorrectionsFileError when it cannot be read or breaks docs/corrections.md."""
+    """The corrections in a file; CorrectionsFileError if it cannot be read or breaks docs/reference/corrections.md."""
     text = read_text(path, LARGEST_FILE, "corrections file", CorrectionsFileError)
     try:
         return corrections_from_json(text)
@@ -68,7 +68,7 @@ def corrections_from_json(text: str) -> Corrections:
     try:
         return _corrections(parse(text))
     except JsonError as error:
-        raise CorrectionsFileError(f"{error}; see docs/corrections.md") from None
+        raise CorrectionsFileError(f"{error}; see docs/reference/corrections.md") from None
 
 
 def corrections_to_json(corrections: Corrections) -> str:

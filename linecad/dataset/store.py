@@ -1,4 +1,4 @@
-"""Made scenes on disk: one folder a scene with its photo, camera and truth, and a list of them (docs/dataset.md).
+"""Made scenes on disk: one folder a scene with its photo, camera and truth, and a list (docs/reference/datasets.md).
 
 A folder appears whole or not at all: it is filled under a hidden name and then renamed.
 """

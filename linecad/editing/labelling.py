@@ -1,4 +1,4 @@
-"""A person's labels of crossings as a file that `linecad evaluate` reads (docs/evaluation.md).
+"""A person's labels of crossings as a file that `linecad evaluate` reads (docs/reference/evaluation.md).
 
 Only what a person said is written: what the solver proposes is no label.
 """

@@ -1,4 +1,4 @@
-"""Which photos a dataset folder holds, and of which of the known formats it is (docs/evaluation.md)."""
+"""Which photos a dataset folder holds, and of which of the known formats it is (docs/reference/evaluation.md)."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -111,7 +111,7 @@ def _labelled_photo(path: Path) -> Path:
     try:
         name = read_json(path)["photo"].text()
     except JsonError as error:
-        raise DatasetError(f"{path}: {error}; see docs/evaluation.md") from error
+        raise DatasetError(f"{path}: {error}; see docs/reference/evaluation.md") from error
     if Path(name).is_absolute() or ".." in Path(name).parts:
         raise DatasetError(f"{path} names the photo {name!r}; put the photo beside the labels and name it alone")
     return path.parent / name

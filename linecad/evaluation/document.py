@@ -1,4 +1,4 @@
-"""The results of an evaluation as JSON and as Markdown (docs/evaluation.md)."""
+"""The results of an evaluation as JSON and as Markdown (docs/reference/evaluation.md)."""
 
 import json
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""Which crossings of a line graph are real, by the exact truth of a made photo (docs/labels.md).
+"""Which crossings of a line graph are real, by the exact truth of a made photo (docs/reference/labels.md).
 
 A segment of the photo is an *edge* of the scene, a *surface* line (both sides show one plane: a shadow, paint, mortar)
 or *spurious*; edges and surface lines have a true line in space. A crossing is real where the two true lines meet.

@@ -1,4 +1,4 @@
-"""Reconstructed planes against the true ones of a made photo (docs/evaluation.md)."""
+"""Reconstructed planes against the true ones of a made photo (docs/reference/evaluation.md)."""
 
 from dataclasses import dataclass
 

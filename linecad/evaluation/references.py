@@ -97,7 +97,7 @@ def open_case(case: Case) -> tuple[Photo, Reference]:
             case _:
                 assert_never(case.kind)
     except JsonError as error:
-        raise DatasetError(f"{case.truth}: {error}; see docs/evaluation.md") from error
+        raise DatasetError(f"{case.truth}: {error}; see docs/reference/evaluation.md") from error
 
 
 def _made(case: Case) -> tuple[Photo, Reference]:

@@ -1,4 +1,4 @@
-"""A Scene as plain JSON values and back, with everything checked that docs/scene-file.md promises."""
+"""A Scene as plain JSON values and back, with everything checked that docs/reference/scene-file.md promises."""
 
 import math
 from typing import cast

@@ -1,4 +1,4 @@
-"""A Scene as a file: JSON, described in docs/scene-file.md, that reads back as exactly the same numbers."""
+"""A Scene as a file: JSON, described in docs/reference/scene-file.md, that reads back as exactly the same numbers."""
 
 import json
 import os
@@ -16,7 +16,7 @@ LARGEST_FILE = 256 * 2**20  # bytes; a scene of 2,000 lines takes about one hund
 
 
 def read_scene(path: str | os.PathLike[str]) -> Scene:
-    """The scene in a file; SceneFileError when it cannot be read or breaks a promise of docs/scene-file.md."""
+    """The scene in a file; SceneFileError if it cannot be read or breaks a promise of docs/reference/scene-file.md."""
     text = read_text(path, LARGEST_FILE, "scene file", SceneFileError)
     try:
         return scene_from_json(text)
@@ -30,11 +30,11 @@ def write_scene(scene: Scene, path: str | os.PathLike[str]) -> None:
 
 
 def scene_from_json(text: str) -> Scene:
-    """The scene that a JSON text tells; SceneFileError with one line when it breaks docs/scene-file.md."""
+    """The scene that a JSON text tells; SceneFileError with one line when it breaks docs/reference/scene-file.md."""
     try:
         return scene_of(parse(text))
     except ValueError as error:  # a JsonError, or a record that refuses its values
-        raise SceneFileError(f"{error}; see docs/scene-file.md") from None
+        raise SceneFileError(f"{error}; see docs/reference/scene-file.md") from None
 
 
 def scene_to_json(scene: Scene) -> str:

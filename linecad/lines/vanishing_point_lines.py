@@ -56,7 +56,7 @@ def least_evidence(width: int) -> float:
     """Nats asked of a line in a photo of that width, px: 24 up to 640, 40 at 800, 72 at 960, infinite from 1280 on.
 
     Continuous in the width. In wide photos the fragments carry the graph, and what is found here beside them brought
-    more false joins than true ones (CONTRIBUTING, "lines along vanishing points").
+    more false joins than true ones (docs/decisions/0015).
     """
     room = WIDE / width - 1
     return LEAST_EVIDENCE / min(room * SMALL_WIDTH / (WIDE - SMALL_WIDTH), 1.0) if room > 0 else np.inf

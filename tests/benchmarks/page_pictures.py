@@ -1,4 +1,4 @@
-"""The pictures of docs/edit.md, of the sample street: python tests/benchmarks/page_pictures.py [FOLDER]"""
+"""The pictures of docs/guide/page.md, of the sample street: python tests/benchmarks/page_pictures.py [FOLDER]"""
 
 import io
 import shutil
@@ -26,7 +26,7 @@ def picture(page, path):
 
 def overview(page, folder):
     """All of the photo, and the model from the side."""
-    picture(page, folder / "edit.jpg")
+    picture(page, folder / "page.jpg")
 
 
 def correcting(page, folder):
@@ -45,7 +45,7 @@ def correcting(page, folder):
     box = page.locator("#overlay-canvas").bounding_box()
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.move(box["x"] + box["width"] / 2 + 60, box["y"] + box["height"] - 30)
-    picture(page, folder / "edit-correct.jpg")
+    picture(page, folder / "page-correct.jpg")
     page.keyboard.press("Control+z")
     page.keyboard.press("Escape")
     page.keyboard.press("0")
@@ -61,11 +61,11 @@ def labelling(page, folder):
         page.wait_for_timeout(500)
     page.keyboard.press("t")
     page.mouse.move(5, 5)
-    picture(page, folder / "edit-label.jpg")
+    picture(page, folder / "page-label.jpg")
 
 
 def main():
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs"
+    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "guide"
     with tempfile.TemporaryDirectory() as folder:
         for name in ("street.jpg", "street.json"):
             shutil.copy(ROOT / "samples" / name, folder)

@@ -2,7 +2,7 @@
 
 A crossing convinces less the wider the gap, and the shorter the segment that spans it; two horizontal lines meet by
 chance more often than a horizontal and a vertical one. The numbers fit 10,750 crossings of surveyed buildings
-(CONTRIBUTING, 2026-11-21). Lengths are px at the reference width.
+(docs/decisions/0018). Lengths are px at the reference width.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Cue: the kind of a junction, as a table in place of log-odds: the paper's weights w_ij.
 
 The paper took its weights from an earlier work that did not print them. These follow the log-odds that a crossing of
-each kind is real in surveyed photos, X = 1 (tests/benchmarks/junction_weights.py; CONTRIBUTING, 2026-11-21).
+each kind is real in surveyed photos, X = 1 (tests/benchmarks/junction_weights.py; docs/decisions/0016).
 """
 
 import numpy as np

@@ -95,7 +95,7 @@ def test_the_picture_is_told_errors_only_of_what_was_estimated():
 
 
 def test_the_page_explains_every_word():
-    page = (Path(__file__).parents[3] / "docs" / "camera.md").read_text(encoding="utf-8")
+    page = (Path(__file__).parents[3] / "docs" / "guide" / "camera.md").read_text(encoding="utf-8")
     for name in filter(None, rows(report(GIVEN, "file"))):
         assert f"`{name}`" in page
     for word in ("good", "doubtful", "poor"):

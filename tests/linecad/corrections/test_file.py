@@ -104,7 +104,7 @@ def test_what_is_wrong_is_said_in_one_line(document, message):
     with pytest.raises(CorrectionsFileError, match=message) as refused:
         corrections_from_json(json.dumps(document))
     assert "\n" not in str(refused.value)
-    assert str(refused.value).endswith("see docs/corrections.md")
+    assert str(refused.value).endswith("see docs/reference/corrections.md")
 
 
 @pytest.mark.parametrize("token", ["NaN", "Infinity", "-Infinity", "1e999", "9" * 5000])

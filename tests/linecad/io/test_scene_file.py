@@ -1,4 +1,4 @@
-"""The scene file: reads back exactly, refuses every damage with one line, and is what docs/scene-file.md says."""
+"""The scene file: reads back exactly, refuses every damage in one line, is what docs/reference/scene-file.md says."""
 
 import copy
 import json
@@ -23,6 +23,7 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     QUALITIES,
+    REASONS,
     Camera,
     Certainty,
     Face,
@@ -33,7 +34,7 @@ from linecad.scene import (
     SolveReport,
 )
 
-PAGE = Path(__file__).parents[3] / "docs" / "scene-file.md"
+PAGE = Path(__file__).parents[3] / "docs" / "reference" / "scene-file.md"
 EXAMPLE = re.search(r"```json\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL).group(1)
 
 
@@ -130,6 +131,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             real=real,
             in_tree=[each and draw(st.booleans()) for each in real],
             weight=several(m, numbers),
+            reason=several(m, st.sampled_from(REASONS)),
         ),
         planes=draw(planes(line_ids)),
         solve=SolveReport(
@@ -257,7 +259,7 @@ REQUIRED = [
 ]
 OPTIONAL = [
     *("camera.distortion", "metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
-    *("solve.cuts", "solve.nodes"),
+    *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
 ]
 
@@ -294,7 +296,7 @@ def refusal(text: str) -> str:
 
 @pytest.mark.parametrize("place", REQUIRED)
 def test_missing_key_is_named_with_its_place(place: str) -> None:
-    assert refusal(without(place)) == f"{place} is missing; see docs/scene-file.md"
+    assert refusal(without(place)) == f"{place} is missing; see docs/reference/scene-file.md"
 
 
 @pytest.mark.parametrize("place", OPTIONAL)
@@ -403,7 +405,7 @@ WRONG = [
 def test_wrong_value_is_refused_with_its_place(place: str, value: Any, line: str) -> None:
     message = refusal(changed(place, value))
     assert line in message
-    assert message.endswith("; see docs/scene-file.md")
+    assert message.endswith("; see docs/reference/scene-file.md")
 
 
 def test_two_planes_may_not_share_an_id_nor_two_faces() -> None:
@@ -603,7 +605,7 @@ def named_in_tables(heading: str) -> list[str]:
         ("`camera`", "camera", CAMERA_SOURCES),
         ("`certainty`", "certainty", QUALITIES),
         ("`lines[]`", "lines[0]", CONFIDENCES),
-        ("`intersections[]`", "intersections[0]", ()),
+        ("`intersections[]`", "intersections[0]", REASONS),
         ("`planes[]`", "planes[0]", ()),
         ("`planes[].faces[]`", "planes[0].faces[0]", ()),
         ("`solve`", "solve", STATUSES),
