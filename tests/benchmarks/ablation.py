@@ -21,13 +21,12 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score, score_depth
 from linecad.evaluation.references import Reference, open_case
-from linecad.finding import FoundLines, connect, find_lines
+from linecad.finding import FoundLines, find_lines
 from linecad.model.body_scales import join_bodies
-from linecad.model.build import place
 from linecad.options import LONG_REACH, MIDDLE_REACH, SHORT_REACH, Options
+from linecad.pipeline import reconstruct_lines
 from linecad.scene import Scene
 from solver.options import SolveOptions
-from solver.solve import solve
 
 FIT = Options(solve=SolveOptions(fast=True))
 Row = Callable[[Photo, float], Scene]
@@ -100,16 +99,15 @@ def with_options(options: Options) -> Row:
 
 
 def finished(photo: Photo, found: FoundLines, options: Options) -> Scene:
-    whole, graph = connect(found, options)
-    return place(photo, found, graph, solve(graph, options.solve), options, len(whole.segments) - len(graph.segments))
+    return reconstruct_lines(photo.name, found, options).scene
 
 
-def judged(doubtful: bool) -> Row:
-    """Every photo taken for calm, or for doubtful."""
+def judged(inconsistent: bool) -> Row:
+    """Every photo taken for consistent, or for inconsistent."""
 
     def row(photo: Photo, _limit: float) -> Scene:
         found = find_lines(photo)
-        found.__dict__["doubt"] = np.inf if doubtful else 0.0  # what the cached property would compute
+        found.__dict__["inconsistency"] = np.inf if inconsistent else 0.0  # what the cached property would compute
         return finished(photo, found, FIT)
 
     return row
@@ -141,17 +139,17 @@ ROWS: dict[str, Row] = {
     "short reach, as in the paper": with_options(replace(FIT, reach=SHORT_REACH)),
     "long reach in every photo": with_options(replace(FIT, reach=LONG_REACH)),
     "middle reach in every photo": with_options(replace(FIT, reach=MIDDLE_REACH)),
-    "every photo taken for calm": judged(False),
-    "every photo taken for doubtful": judged(True),
+    "every photo taken for consistent": judged(False),
+    "every photo taken for inconsistent": judged(True),
     "no collinear edges": with_options(replace(FIT, collinear=False)),
     "weights by kind of junction": with_options(replace(FIT, weights="junctions")),
     "all weights one": with_options(replace(FIT, weights="ones")),
-    "nothing refused": with_options(replace(FIT, witnesses=1)),
-    "three witnesses instead of resampling": with_options(replace(FIT, witnesses=3)),
+    "nothing refused": with_options(replace(FIT, joins="all")),
+    "biconnected blocks instead of resampling": with_options(replace(FIT, joins="biconnected")),
     "no window grids that continue": patched(
         linecad.model.build, "join_bodies", functools.partial(join_bodies, enough=np.inf)
     ),
-    "a second look for faint segments (`--faint`)": with_options(replace(FIT, faint=True)),
+    "a second look for faint segments (`faint=on`)": with_options(replace(FIT, faint=True)),
     "hulls instead of faces": hulls,
 }
 

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from linecad.camera.photo import Photo
+from linecad.corrections.apply import correct
 from linecad.corrections.edits import Anchor, Corrections, LabelCrossing
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
@@ -20,7 +21,7 @@ from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import Segments
 from linecad.options import Options
-from linecad.pipeline import correct_lines, reconstruct_corrected
+from linecad.pipeline import reconstruct_lines
 from linecad.scene import Scene
 from solver.options import SolveOptions
 
@@ -71,7 +72,8 @@ def measure(case: Case, options: Options, clicks: int) -> None:
 
 
 def solved(photo: Photo, found: FoundLines, said: Corrections, options: Options) -> Scene:
-    return reconstruct_corrected(photo, found, correct_lines(found, said), options)
+    corrected = correct(found.segments, found.camera, found.frame, said)
+    return reconstruct_lines(photo.name, found, options, corrected=corrected).scene
 
 
 def scored(scene: Scene, reference: Reference) -> DepthScore:

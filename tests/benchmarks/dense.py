@@ -21,6 +21,8 @@ ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT))
 
 from linecad.camera.photo import Photo
+from linecad.decide.annotations import annotate
+from linecad.decide.decision import decide
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.depth import face_depths, line_depths, score
@@ -28,8 +30,9 @@ from linecad.evaluation.labels import REAL
 from linecad.evaluation.references import Points, Reference, open_case
 from linecad.finding import connect, find_lines
 from linecad.line_graph import Solution
-from linecad.model.build import place
+from linecad.model.build import View, build_scene
 from linecad.model.faces import find_faces
+from linecad.model.lifting import lift
 from linecad.options import Options
 from linecad.pipeline import reconstruct
 from linecad.scene import Face, Plane, Scene
@@ -75,7 +78,10 @@ def truly(photo: Photo, reference: Reference, options: Options) -> Scene:
         status="optimal", solver="truth", formulation="gain", objective=0.0, bound=0.0, gap=0.0, seconds=0.0, nodes=0,
         connected=real, is_boundary=np.zeros(count, bool), planar_pairs=[], log_depth=np.zeros(count),
     )  # fmt: skip
-    return place(photo, found, graph, solution, options)
+    decision = decide(graph, solution, replace(options, joins="all"), None, annotate(graph, None)[1])
+    view = View(photo.name, found.camera, found.frame, found.certainty, count, found.notes)
+    lifted = lift(graph, decision.real, solution.log_depth)
+    return build_scene(view, graph, solution, decision, lifted, largest_component=False)
 
 
 def measure(name: str, scene: Scene, points: Points) -> list[tuple[float, float]]:

@@ -107,7 +107,7 @@ def main() -> None:
     options = Options(
         extension=chosen.extension,
         weights=chosen.weights,
-        collinear=chosen.formulation == "gain" if chosen.collinear is None else chosen.collinear,
+        collinear=chosen.collinear,
         largest_component=True,
         solve=SolveOptions(
             formulation=chosen.formulation,

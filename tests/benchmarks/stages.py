@@ -3,10 +3,11 @@
 For each dataset with marked lines (York Urban) prints the share of the marked length along which the lines of each
 stage run, as `linecad evaluate` measures it for the scene: all segments, the labelled ones, the grouped ones, those
 that are long enough for the line graph, those that touch enough others to be solved, those that the chosen crossings
-tie to a group, and those left when bodies with too few witnesses are parted. In front, how many lines a stage has.
+tie to a group, and those left when joins that are not stable are refused. In front, how many lines a stage has.
 """
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -16,13 +17,12 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.frames import true_axes
 from linecad.evaluation.measure import covered_length
 from linecad.evaluation.references import open_case
-from linecad.finding import connect, find_lines
+from linecad.finding import find_lines
 from linecad.line_graph import Segments
 from linecad.lines.segments import find_segments, group_segments, label_segments
-from linecad.model.build import place
 from linecad.options import Options
+from linecad.pipeline import reconstruct_lines
 from solver.options import SolveOptions
-from solver.solve import solve
 
 STAGES = ("detected", "labelled", "grouped", "long enough", "solved", "tied", "in the scene")
 
@@ -42,12 +42,10 @@ def measure(case: Case, limit: float) -> np.ndarray:
     anything = covered_length(marked.ends, np.zeros(len(marked.axis), int), raw.ends, np.zeros(len(raw), int))
     rows = [(len(raw), anything, length)]
     try:
-        whole, graph = connect(found, options)
-        stages += [whole.segments, graph.segments]
-        solution = solve(graph, options.solve)
-        for witnesses in (1, None):
-            scene = place(photo, found, graph, solution, Options(witnesses=witnesses))
-            stages.append(Segments(scene.lines.segment, scene.lines.axis))
+        for joins in ("all", "stable"):
+            made = reconstruct_lines(photo.name, found, replace(options, joins=joins))
+            stages += [made.whole.segments, made.graph.segments] if joins == "all" else []
+            stages.append(Segments(made.scene.lines.segment, made.scene.lines.axis))
     except LinecadError as error:
         print(f"{case.name}: {error}")
     rows += [

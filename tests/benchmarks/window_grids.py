@@ -1,27 +1,24 @@
-"""How often each kind of tie between bodies is right: `PYTHONPATH=. python tests/benchmarks/ties.py DATASET ...`.
+"""How often scale cues between bodies are right: `PYTHONPATH=. python tests/benchmarks/window_grids.py DATASET ...`.
 
 Made scenes only. Each photo is solved with the default settings and parted into bodies; the true scale of a body is
-the median ratio of true to found depth of its lines. Prints, for ties by window grids (by evidence) and for crossings
+the median ratio of true to found depth of its lines. Prints, for cues from window grids (by evidence) and for crossings
 between bodies that are not taken for real, how many relative scales are within 5 % and the median error.
 """
 
 import argparse
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from linecad.decide.rigid_bodies import WITNESSES, agreeing, find_held
 
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.labels import find_true_lines
 from linecad.evaluation.references import open_case
-from linecad.finding import MIN_COMPONENT, connect, find_lines
+from linecad.finding import find_lines
 from linecad.graph.connectivity import components
-from linecad.model.lifting import lift
 from linecad.model.window_grids import find_grid_ties
-from linecad.options import Options
+from linecad.options import MIN_COMPONENT, Options
+from linecad.pipeline import reconstruct_lines
 from solver.options import SolveOptions
-from solver.solve import solve
 
 EVIDENCE = [0.0, 0.3, 0.6, 1.0, 1.3, 1.6, 2.0, 3.0, np.inf]  # decades
 RIGHT = 0.05  # log scale
@@ -37,7 +34,7 @@ def main() -> None:
         for case in find_dataset(folder).cases:
             for kind, error in errors_of(case, arguments.time_limit):
                 found.setdefault(kind, []).append(error)
-    print("| tie | number | within 5 % | median error % |")
+    print("| cue | number | within 5 % | median error % |")
     print("| --- | --- | --- | --- |")
     for kind in sorted(found):
         error = np.abs(found[kind])
@@ -48,14 +45,11 @@ def errors_of(case, limit):
     """Kind of tie and error of its log scale, for each tie between two bodies whose true scales are known."""
     photo, reference = open_case(case)
     found = find_lines(photo)
-    _, graph = connect(found, Options())
-    solution = solve(graph, SolveOptions(time_limit_s=limit))
-    held = find_held(graph, agreeing(graph, solution.connected, solution.log_depth), WITNESSES)
-    solution = replace(solution, connected=solution.connected & held.joins(graph))
-    offset = lift(graph, solution).offset
+    made = reconstruct_lines(photo.name, found, Options(solve=SolveOptions(time_limit_s=limit)))
+    graph, real, offset = made.graph, made.decision.real, made.lifted.offset
     rays = np.where(np.isnan(offset), 0, graph.rays)
     log_depth = np.log(np.maximum((rays * np.nan_to_num(offset)).sum(axis=1) / (rays**2).sum(axis=1), 1e-9))
-    parts = [p for p in components(graph, solution.connected & graph.informative) if len(p) >= MIN_COMPONENT]
+    parts = [p for p in components(graph, real & graph.informative) if len(p) >= MIN_COMPONENT]
     ratio = log_true_depths(reference.truth, graph, found.frame.rotation) - log_depth
     parts = [part for part in parts if np.isfinite(ratio[part]).any()]
     grow = np.array([np.nanmedian(ratio[part]) for part in parts])
@@ -67,7 +61,7 @@ def errors_of(case, limit):
     for number, part in enumerate(parts):
         body[part] = number
     joins: dict[tuple[int, int], list[float]] = {}
-    for edge in np.flatnonzero(graph.informative & ~solution.connected):
+    for edge in np.flatnonzero(graph.informative & ~real):
         i, j = graph.edges[edge]
         one, other = body[i], body[j]
         if one >= 0 and other >= 0 and one != other:
