@@ -1,4 +1,4 @@
-"""What a person said about crossings: checked before a search, so that a contradiction has a name."""
+"""Annotations of crossings by a person: checked before a search, so that a contradiction has a name."""
 
 from collections.abc import Callable
 from typing import NoReturn
@@ -16,8 +16,8 @@ from solver.options import SolveOptions
 from solver.potentials import fit_near_depths
 
 
-def read_facts(graph: LineGraph, options: SolveOptions) -> tuple[Bool, Bool]:
-    """(E,) crossings that are real and that are fake by a person's word; SolverError for one that cannot be."""
+def read_annotations(graph: LineGraph, options: SolveOptions) -> tuple[Bool, Bool]:
+    """(E,) crossings annotated as real and as fake; SolverError for one that cannot be."""
     flags = []
     for name, edges in (("real", options.real), ("fake", options.fake)):
         beyond = [edge for edge in edges if not 0 <= edge < len(graph.edges)]
@@ -36,7 +36,7 @@ def read_facts(graph: LineGraph, options: SolveOptions) -> tuple[Bool, Bool]:
     return real, fake
 
 
-def check_facts(graph: LineGraph, families: Families, options: SolveOptions, real: Bool, ratios: Float) -> None:
+def check_annotations(graph: LineGraph, families: Families, options: SolveOptions, real: Bool, ratios: Float) -> None:
     """Raise ContradictionError, naming the shortest one found, unless some answer has all of these crossings real.
 
     None of the crossings that are named can be left out: without any one of them the others fit depths. They are the

@@ -99,7 +99,7 @@ def recheck(graph: LineGraph, families: Families, options: SolveOptions, choice:
         edge for edge in options.fake if connected[edge]
     ]
     if against:
-        _fail(f"goes against what was said about edge {against[0]}")
+        _fail(f"goes against the annotation of edge {against[0]}")
     off = graph.misfit(choice.log_depth) - graph.tolerance
     off = np.where(connected & graph.informative, off, -np.inf)
     if (off > RECHECK_TOLERANCE).any():

@@ -1,6 +1,6 @@
 """Which cycles of a line graph are unbalanced, and how to find those that a fractional or integer choice breaks.
 
-An edge (i, j) says t_i - t_j = c within a tolerance, t the log depth of a line. Around a cycle the c, signed by the
+An edge (i, j) states t_i - t_j = c within a tolerance, t the log depth of a line. Around a cycle the c, signed by the
 direction of travel, would sum to zero; the cycle is *unbalanced* when they miss zero by more than the summed
 tolerances, and then not all of its edges can be real.
 
@@ -34,7 +34,7 @@ Cycle = tuple[int, ...]  # edges, ascending
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """The edges of a line graph that say something about depth and can be real: those that stand in cycles."""
+    """The edges of a line graph that tell about depth and can be real: those that stand in cycles."""
 
     lines: int
     edge: Int  # (M,) index in the line graph
@@ -45,7 +45,7 @@ class Network:
 
 
 def build_network(graph: LineGraph, barred: Bool) -> Network:
-    """The network of a line graph without the edges in `barred` (E,), which a person called fake."""
+    """The network of a line graph without the edges in `barred` (E,), which are annotated as fake."""
     edge = np.flatnonzero(graph.possible & graph.informative & ~barred)
     head, tail = graph.edges[edge].T
     return Network(len(graph.segments), edge, head, tail, graph.log_ratio[edge], graph.tolerance[edge] + SLACK)

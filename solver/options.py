@@ -40,8 +40,8 @@ class SolveOptions:
     node_limit: int | None = None  # branch-and-bound nodes
     backend: BackendName = "scip"  # the solver; HiGHS is the extra `highs`
     fast: bool = False  # a robust fit instead of a search: tenths of a second, nothing proven
-    real: tuple[int, ...] = ()  # edges of the graph that a person called real: every answer has them
-    fake: tuple[int, ...] = ()  # edges that a person called fake: no answer has them
+    real: tuple[int, ...] = ()  # edges annotated as real: every answer has them
+    fake: tuple[int, ...] = ()  # edges annotated as fake: no answer has them
 
     def __post_init__(self) -> None:
         if self.formulation not in FORMULATIONS:

@@ -52,7 +52,7 @@ class RobustFit:
         self.starts = np.searchsorted(cells // max(1, self.count), np.arange(self.count + 1)).astype(np.int32)
 
     def depths(self, weight: Float | None = None, present: Bool | None = None) -> Float:
-        """(N,) log depths, by `weight` (E,) if given else the graph's; lines that are not `present` (N,) have no say.
+        """(N,) log depths, by `weight` (E,) if given else the graph's; lines that are not `present` (N,) do not count.
 
         Groups of lines that no crossing ties have unrelated scales.
         """
@@ -112,12 +112,12 @@ class RobustFit:
 def solve_robust(graph: LineGraph, options: SolveOptions, on_progress: Callable[[Progress], None] | None) -> Solution:
     """The crossings that agree with a robust fit, as the answer: no search, no proof, so neither bound nor gap.
 
-    The objective counts crossings alone. A person's word about crossings is law to a search and cannot be to a fit:
+    The objective counts crossings alone. A search keeps to annotations of crossings; a fit cannot:
     SolverError.
     """
     began = time.monotonic()
     if options.real or options.fake:
-        raise SolverError("a fit cannot promise what was said about single crossings; solve without `fast`")
+        raise SolverError("a robust fit cannot keep to annotations of single crossings; leave out --fast")
     end_ratios(graph)  # ValueError for a graph that breaks the promises of LineGraph
     depth = RobustFit(graph).depths()
     connected = agreeing_with(graph, depth)

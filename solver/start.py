@@ -20,7 +20,7 @@ from solver.robust import RobustFit
 SAFETY = 1e-9  # log depth, kept from every limit so that rounding cannot push the start over it
 HALF = 0.5  # of a crossing in a relaxation, from which a choice begins with it
 MOST_REPAIRS = 60  # rounds in which edges of contradicting cycles are given up
-CERTAIN = 1e6  # evidence of a crossing that a person called real
+CERTAIN = 1e6  # evidence of a crossing annotated as real
 
 
 class Starter:
@@ -31,7 +31,7 @@ class Starter:
     ) -> None:
         """`ratios` as `solver.depths.end_ratios` returns them.
 
-        `real` and `fake` (E,) are a person's word; the real ones must not contradict each other (`solver.annotations`).
+        `real` and `fake` (E,) are annotations; the real ones must not contradict each other (`solver.annotations`).
         """
         self.graph, self.families = graph, families
         self.real, self.fake = real, fake

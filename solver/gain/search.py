@@ -27,7 +27,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float
 from linecad.line_graph import LineGraph, Solution, Status
-from solver.annotations import check_facts, read_facts
+from solver.annotations import check_annotations, read_annotations
 from solver.choice import (
     BOUND_ROUNDING,
     Choice,
@@ -105,8 +105,8 @@ class _Search:
         self.end = began + options.seconds
         ratios = end_ratios(graph)
         self.families: Families = find_families(graph, options.without | {"cycles"})
-        self.real, self.fake = read_facts(graph, options)
-        check_facts(graph, self.families, options, self.real, ratios)
+        self.real, self.fake = read_annotations(graph, options)
+        check_annotations(graph, self.families, options, self.real, ratios)
         self.starter = Starter(graph, self.families, options, ratios, self.real, self.fake)
         self.best: Choice = self.starter.find()
         self.value = objective_of(graph, options, self.best)

@@ -27,7 +27,7 @@ class Separation:
     """Knows the rows that a program has, and finds more."""
 
     def __init__(self, graph: LineGraph, families: Families, options: SolveOptions, barred: Bool) -> None:
-        """`barred` (E,) are edges that a person called fake: no cycle through them matters."""
+        """`barred` (E,) are edges annotated as fake: no cycle through them matters."""
         self.graph = graph
         self.edges = len(graph.edges)
         self.planes = Planes(families, options.mu_planarity)

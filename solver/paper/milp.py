@@ -21,7 +21,7 @@ brackets are the paper's equations.
 What the paper leaves open, and how it is settled here:
 
 - lambda has an upper bound (the near end of a line lies at most at `options.depth_range`), without which no L exists.
-- What a person called real or fake is a bound of b.
+- An annotation, real or fake, is a bound of b.
 - The paper writes "(j, m) in E" above (13); it must read "(l, m)".
 - A pi exists only for pairs with a neighbour that both lines can meet; else it would be a reward for nothing.
 - An edge whose two lines lie on opposite sides of the camera (`possible` False) has b = 0. One that says nothing about
@@ -39,7 +39,7 @@ from linecad.arrays import Bool, Float, Int
 from linecad.errors import SolverError
 from linecad.line_graph import LineGraph
 from linecad.scene import AXES
-from solver.annotations import read_facts
+from solver.annotations import read_annotations
 from solver.choice import Choice, boundaries, objective_of
 from solver.depths import near_log_ratio
 from solver.families import Families
@@ -77,7 +77,7 @@ def _add_variables(graph: LineGraph, families: Families, options: SolveOptions, 
     """All variables; (6), lambda_ia >= 1, is the lower bound of the depths."""
     model = Model("linecad")
     model.hideOutput()
-    known_real, known_fake = read_facts(graph, options)
+    known_real, known_fake = read_annotations(graph, options)
     near = np.argmin(ratios, axis=1).tolist()
     largest = options.depth_range * ratios / ratios.min(axis=1, keepdims=True)
     depth = [
@@ -131,7 +131,7 @@ def add_connectivity(paper: PaperModel, graph: LineGraph, options: SolveOptions,
 def add_manhattan(paper: PaperModel, ratios: Float) -> None:
     """(5): a line runs along its axis, lambda_i1 d_i1,beta = lambda_i2 d_i2,beta for the two other coordinates beta.
 
-    Both rows say the same about a segment that passes through the vanishing point of its axis, and `end_ratios` has
+    Both rows are the same for a segment that passes through the vanishing point of its axis, and `end_ratios` has
     checked that it does. One is written, with the far end alone on the left; two that differ by rounding alone would
     allow no depth but zero.
     """

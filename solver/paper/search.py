@@ -11,7 +11,7 @@ from pyscipopt import Model
 
 from linecad.arrays import Float
 from linecad.line_graph import LineGraph, Solution
-from solver.annotations import check_facts, read_facts
+from solver.annotations import check_annotations, read_annotations
 from solver.backends.scip import Outcome, Watch, run, version
 from solver.choice import Choice, objective_of, recheck, trivial_bound
 from solver.depths import end_ratios, near_log_ratio
@@ -30,8 +30,8 @@ def solve_paper(graph: LineGraph, options: SolveOptions, on_progress: Callable[[
     with catch_interrupt() as stop:
         ratios = end_ratios(graph)
         families = find_families(graph, options.without)
-        real, fake = read_facts(graph, options)
-        check_facts(graph, families, options, real, ratios)
+        real, fake = read_annotations(graph, options)
+        check_annotations(graph, families, options, real, ratios)
         start = Starter(graph, families, options, ratios, real, fake).find()
         recheck(graph, families, options, start)
         paper = build_model(graph, families, options, ratios)
