@@ -1,0 +1,70 @@
+"""Open a STEP or DXF in FreeCAD: check_freecad.py FILE.step|FILE.dxf EXPECTATION.json [--gui]
+
+With --gui the window is loaded too, on no screen, and colours are looked at; they are no part of the model itself.
+"""
+
+import argparse
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from verdict import judge, passed
+
+INSIDE = Path(__file__).with_name("inside_freecad.py")
+MOST_SECONDS = 280
+LAST_WORDS = 400  # characters of FreeCAD's own output to show where it said nothing else
+
+
+def report_of(path, expectation, gui, program="freecadcmd"):
+    """What the checker says that runs inside FreeCAD, line by line."""
+    with tempfile.TemporaryDirectory(prefix="freecad-") as folder:
+        report = Path(folder) / "report.txt"
+        # freecadcmd takes every word for a file to open, so arguments come by the environment. Its own settings, and
+        # those of whoever runs this, must not matter.
+        environment = os.environ | {
+            "HOME": folder,
+            "XDG_RUNTIME_DIR": folder,
+            "CHECK_FILE": str(path.resolve()),
+            "CHECK_EXPECTATION": str(expectation.resolve()),
+            "CHECK_REPORT": str(report),
+            "CHECK_GUI": "1" if gui else "",
+            "PYTHONPATH": str(INSIDE.parent),
+            "QT_QPA_PLATFORM": "offscreen",
+            "QTWEBENGINE_DISABLE_SANDBOX": "1",
+        }
+        command = [program, "-u", f"{folder}/user.cfg", "-s", f"{folder}/system.cfg", str(INSIDE)]
+        ended = subprocess.run(
+            command,
+            env=environment,
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            timeout=MOST_SECONDS,
+            check=False,
+        )
+        if report.is_file():
+            return report.read_text(encoding="utf-8").splitlines()
+
+    def give_up(_):
+        # A script's exception ends freecadcmd with 0.
+        said = ended.stdout.decode(errors="replace").strip()[-LAST_WORDS:]
+        raise RuntimeError(f"{program} ended with {ended.returncode} and gave no verdict: {said!r}")
+
+    return judge(give_up)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("expectation", type=Path)
+    parser.add_argument("--gui", action="store_true")
+    chosen = parser.parse_args()
+    report = report_of(chosen.file, chosen.expectation, chosen.gui)
+    print("\n".join(report))
+    return 0 if passed(report) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

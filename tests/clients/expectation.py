@@ -1,0 +1,140 @@
+"""What a program must see that opens an export, from the scene file alone: expectation.py SCENE.json EXPECTATION.json
+
+Reads the file as docs/scene-file.md promises it and uses no code of linecad, so that a mistake there is not made twice.
+Lengths are metres, 1 unit being 1 m where the scale is not known; pixels count from the top left corner of the photo.
+"""
+
+import json
+import math
+import sys
+from pathlib import Path
+
+SHORTEST_LINE = 1e-9  # m; a shorter line is a point, and no format has it
+HALF_A_PIXEL = 0.5  # from the centre of the first pixel, where the scene counts from, to the corner
+UNITARY = 1e-6  # how far the rotation times its transpose may be from the identity
+
+# sRGB. They are part of what users get; whoever changes them in the exporters changes them here, knowingly.
+AXIS_COLOUR = {"x": (0.87, 0.16, 0.16), "y": (0.10, 0.62, 0.22), "z": (0.15, 0.36, 0.92)}
+WHITE_WHERE_NO_BOUNDARY = 0.5  # share
+FACE_COLOUR = (0.80, 0.79, 0.74)
+
+
+def build_expectation(scene):
+    """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file of version 1."""
+    if (scene.get("format"), scene.get("version")) != ("linecad-scene", 1):
+        raise ValueError(f"format {scene.get('format')}, version {scene.get('version')}: not a scene file of version 1")
+    metres = scene.get("metres_per_unit") or 1.0
+    camera = _camera(scene["camera"])
+    lines = []
+    for line in sorted(scene["lines"], key=lambda line: line["id"]):
+        ends = [_scaled(end, metres) for end in line["ends"]]
+        if math.dist(*ends) > SHORTEST_LINE:
+            group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
+            pixels = [_project(end, camera) for end in ends]
+            lines.append({"id": line["id"], "group": group, "ends": ends, "pixels": pixels})
+    faces = [_face(plane, face, metres) for plane in scene["planes"] for face in plane.get("faces", [])]
+    points = [end for line in lines for end in line["ends"]] + [c for face in faces for c in face["corners"]]
+    return {
+        "camera": camera,
+        "frame": _centred_frame(camera),
+        "lines": lines,
+        "groups": _groups(scene["lines"], lines),
+        "planes": [{"id": p["id"], "axis": p["axis"], "offset": p["offset"] * metres} for p in scene["planes"]],
+        "faces": sorted(faces, key=lambda face: face["id"]),
+        "face_colour": {"srgb": FACE_COLOUR, "linear": [_linear(value) for value in FACE_COLOUR]},
+        "box": [[choose(values) for values in zip(*points, strict=True)] for choose in (min, max)],
+    }
+
+
+def _camera(camera):
+    (fx, skew, cx), (zero, fy, cy), last = camera["K"]
+    if skew or zero or last != [0, 0, 1] or not math.isclose(fx, fy, rel_tol=1e-9):
+        raise ValueError(f"K is {camera['K']}, expected square pixels without skew")
+    R = camera["R_cam_from_world"]
+    for i, row in enumerate(R):
+        for j, other in enumerate(R):
+            if abs(_dot(row, other) - (i == j)) > UNITARY:
+                raise ValueError("R_cam_from_world is no rotation")
+    centre = [cx + HALF_A_PIXEL, cy + HALF_A_PIXEL]
+    size = {"width": camera["width"], "height": camera["height"]}
+    return {**size, "focal": fx, "principal_point": centre, "rotation": R}
+
+
+def _project(point, camera):
+    x, y, z = (_dot(row, point) for row in camera["rotation"])
+    if z <= 0:
+        raise ValueError(f"{point} lies behind the camera")
+    cx, cy = camera["principal_point"]
+    return [camera["focal"] * x / z + cx, camera["focal"] * y / z + cy]
+
+
+def _centred_frame(camera):
+    """The smallest frame of even size about the principal point that holds the photo; where the photo lies in it."""
+    cx, cy = camera["principal_point"]
+    width = 2 * math.ceil(max(cx, camera["width"] - cx))
+    height = 2 * math.ceil(max(cy, camera["height"] - cy))
+    return {"width": width, "height": height, "left": width / 2 - cx, "top": height / 2 - cy}
+
+
+def _groups(told, lines):
+    groups = {}
+    kind = {line["id"]: (line["axis"], line["boundary"]) for line in told}
+    for line in lines:
+        axis, boundary = kind[line["id"]]
+        group = groups.setdefault(line["group"], {"axis": axis, "boundary": boundary, "ids": []})
+        group["ids"].append(line["id"])
+    for group in groups.values():
+        white = 0.0 if group["boundary"] else WHITE_WHERE_NO_BOUNDARY
+        group["srgb"] = [white + (1 - white) * value for value in AXIS_COLOUR[group["axis"]]]
+        group["linear"] = [_linear(value) for value in group["srgb"]]
+    return groups
+
+
+def _face(plane, face, metres):
+    """A face by its corners, each place once, and its rings as indices of them."""
+    rings = [[_scaled(point, metres) for point in ring] for ring in (face["outline"], *face.get("holes", []))]
+    corners = list(dict.fromkeys(tuple(point) for ring in rings for point in ring))
+    number = {corner: index for index, corner in enumerate(corners)}
+    outline, *holes = map(_area, rings)
+    return {
+        "id": face["id"],
+        "name": f"face_{face['id']:04d}",
+        "axis": plane["axis"],
+        "offset": plane["offset"] * metres,
+        "area": outline - sum(holes),
+        "corners": corners,
+        "rings": [[number[tuple(point)] for point in ring] for ring in rings],
+    }
+
+
+def _area(ring):
+    total = [0.0, 0.0, 0.0]
+    base = ring[0]
+    for a, b in zip(ring, [*ring[1:], base], strict=True):
+        p, q = [x - y for x, y in zip(a, base, strict=True)], [x - y for x, y in zip(b, base, strict=True)]
+        cross = (p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0])
+        total = [sum(pair) for pair in zip(total, cross, strict=True)]
+    return math.hypot(*total) / 2
+
+
+def _linear(value):
+    """Linear light from a channel of sRGB, IEC 61966-2-1."""
+    return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
+
+
+def _scaled(point, factor):
+    return [value * factor for value in point]
+
+
+def _dot(a, b):
+    return sum(x * y for x, y in zip(a, b, strict=True))
+
+
+def main(scene_file, target):
+    """Read a scene file and write its expectation."""
+    scene = json.loads(Path(scene_file).read_text(encoding="utf-8"))
+    Path(target).write_text(json.dumps(build_expectation(scene), indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
