@@ -1,23 +1,23 @@
 #!/usr/bin/env bash
 # Export every sample and open the files in FreeCAD, Blender, its newer module bpy, ezdxf, usd-core and Khronos's glTF
-# validator, by the checkers in ../shared/clients. Needs .venv, as `make test` leaves it. Arguments: other photos to
+# validator, by the checkers in tests/clients. Then show that the checkers notice faults. Arguments: other photos to
 # check in place of the samples, each with its camera beside it as .json. The last line counts what passed and failed.
+# Needs .venv, as `make test` leaves it, or another Python with linecad's libraries in PYTHON; LINECAD names another
+# linecad than that Python's, BPY_PYTHON a Python that has bpy.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
-checkers=../shared/clients
+checkers=tests/clients
 out=build/clients
-python=.venv/bin/python
-linecad=${LINECAD:-.venv/bin/linecad}
+python=${PYTHON:-.venv/bin/python}
+linecad=("$python" -m linecad)
+if [ -n "${LINECAD:-}" ]; then
+    linecad=("$LINECAD")
+fi
 validator_version=2.0.0-dev.3.10
 bpy_version=4.5.15
 bpy_python=python3.11 # the only one that this bpy is made for
 seconds_per_check=300
-
-if [ ! -d "$checkers" ]; then
-    echo "clients: left out, there is no folder $checkers"
-    exit 0
-fi
 
 # --- the programs ----------------------------------------------------------------------------------------------------
 
@@ -62,79 +62,121 @@ passed=0
 failed=0
 log=$out/log.txt
 
+report_pass() {
+    passed=$((passed + 1))
+    echo "ok      $1"
+}
+
+report_failure() {
+    failed=$((failed + 1))
+    echo "FAILED  $1"
+    tail -n 30 "$log"
+}
+
 # check NAME COMMAND...: a checker has passed when it exits with 0 and says CHECK OK.
 check() {
     local name=$1 verdict
     shift
-    if timeout "$seconds_per_check" "$@" >"$log" 2>&1 </dev/null && verdict=$(tr -d '\r' <"$log" | grep -a '^CHECK OK'); then
-        passed=$((passed + 1))
-        echo "ok      $name: ${verdict#CHECK OK }"
+    if timeout "$seconds_per_check" "$@" >"$log" 2>&1 </dev/null && verdict=$(grep -a '^CHECK OK' "$log"); then
+        report_pass "$name: ${verdict#CHECK OK }"
     else
-        failed=$((failed + 1))
-        echo "FAILED  $name"
-        tail -n 30 "$log"
+        report_failure "$name"
     fi
 }
 
-check_sample() {
-    local photo=$1 name folder camera=() suffix outputs=() again="" expected picture textures render
+# check_fault NAME COMMAND...: a checker has noticed a fault when it fails and says CHECK FAILED.
+check_fault() {
+    local name=$1 verdict
+    shift
+    if timeout "$seconds_per_check" "$@" >"$log" 2>&1 </dev/null; then
+        report_failure "$name was not noticed"
+    elif verdict=$(grep -a '^CHECK FAILED' "$log"); then
+        report_pass "$name is noticed: $(cut -c 15-110 <<<"$verdict")"
+    else
+        report_failure "$name"
+    fi
+}
+
+in_blender=(blender -b --factory-startup --python-exit-code 3 --python "$checkers/check_blender.py" --)
+in_bpy=("$bpy" "$checkers/check_blender.py")
+in_freecad=("$python" "$checkers/check_freecad.py")
+by_khronos=(node "$checkers/check_gltf.mjs")
+
+check_photo() {
+    local photo=$1 name folder made camera=() suffix outputs=() again=() expected textures=() render_glb=() render_usd=()
     name=$(basename "${photo%.*}")
     folder=$out/$name
-    expected=$folder/expect.json
+    made=$folder/$name
+    expected=$folder/expectation.json
     rm -rf "$folder"
     mkdir -p "$folder"
     if [ -f "${photo%.*}.json" ]; then
         camera=(--camera "${photo%.*}.json")
     fi
     for suffix in json dxf step glb usda usdc usdz obj ply stl fspy png; do
-        outputs+=(-o "$folder/$name.$suffix")
-        again+=" -o '{OUT}/$name.$suffix'"
+        outputs+=(-o "$made.$suffix")
+        again+=(-o "{OUT}/$name.$suffix")
     done
-    if ! timeout "$seconds_per_check" "$linecad" convert "$photo" "${camera[@]}" "${outputs[@]}" >"$log" 2>&1; then
-        failed=$((failed + 1))
-        echo "FAILED  $name: linecad convert"
-        tail -n 30 "$log"
+    if ! timeout "$seconds_per_check" "${linecad[@]}" convert "$photo" "${camera[@]}" "${outputs[@]}" >"$log" 2>&1; then
+        report_failure "$name: linecad convert"
         return
     fi
-    "$python" "$checkers/expect.py" "$folder/$name.json" "$expected"
-    # The photo as linecad measured it, straightened, is what a render through the camera must look like.
-    picture=$folder/photo.jpg
-    "$python" - "$folder/$name.fspy" "$picture" <<'PYTHON'
-import struct, sys
-data = open(sys.argv[1], "rb").read()
-open(sys.argv[2], "wb").write(data[16 + struct.unpack_from("<I", data, 8)[0] :])
-PYTHON
-    # Textures are looked for where there are any; without them nothing can be rendered that looks like the photo.
-    textures=(--textures no)
-    render=()
-    if grep -aq '"images"' "$folder/$name.glb"; then
-        textures=(--textures yes)
-        render=(--photo "$picture" --render)
+    if ! "$python" "$checkers/expectation.py" "$made.json" "$expected" >"$log" 2>&1; then
+        report_failure "$name: its scene file"
+        return
+    fi
+    # Textures are looked for where there are any; without them nothing can be rendered that looks like the photo. The
+    # photo as linecad measured it, straightened, is what a render through the camera must look like.
+    if grep -aq '"images"' "$made.glb"; then
+        "$python" "$checkers/fspy_photo.py" "$made.fspy" "$folder/photo.jpg"
+        textures=(--textures)
+        render_glb=(--photo "$folder/photo.jpg" --render "$folder/render-glb.png")
+        render_usd=(--photo "$folder/photo.jpg" --render "$folder/render-usd.png")
     fi
 
-    check "$name.dxf, ezdxf" "$python" "$checkers/check_dxf.py" "$folder/$name.dxf" "$expected"
+    check "$name.dxf, ezdxf" "$python" "$checkers/check_dxf.py" "$made.dxf" "$expected"
     for suffix in usda usdc usdz; do
-        check "$name.$suffix, usd-core" "$python" "$checkers/check_usd.py" "$folder/$name.$suffix" "$expected"
+        check "$name.$suffix, usd-core" "$python" "$checkers/check_usd.py" "$made.$suffix" "$expected"
     done
-    check "$name.glb, Khronos" node "$checkers/check_gltf.mjs" "$folder/$name.glb" "$expected"
-    check "$name.step, FreeCAD" bash "$checkers/check_freecad.sh" "$folder/$name.step" "$expected" --gui
-    check "$name.dxf, FreeCAD" bash "$checkers/check_freecad.sh" "$folder/$name.dxf" "$expected"
-    check "$name.glb, Blender" blender -b --factory-startup --python-exit-code 3 \
-        --python "$checkers/check_blender.py" -- "$folder/$name.glb" "$expected" "${textures[@]}" \
-        "${render[@]}" ${render:+"$folder/render-glb.png"}
+    check "$name.glb, Khronos" "${by_khronos[@]}" "$made.glb" "$expected"
+    check "$name.step, FreeCAD" "${in_freecad[@]}" "$made.step" "$expected"
+    check "$name.step, FreeCAD" "${in_freecad[@]}" "$made.step" "$expected" --gui
+    check "$name.dxf, FreeCAD" "${in_freecad[@]}" "$made.dxf" "$expected"
+    check "$name.glb, Blender" "${in_blender[@]}" "$made.glb" "$expected" "${textures[@]}" "${render_glb[@]}"
     if [ -n "$bpy" ]; then
-        check "$name.glb, bpy" "$bpy" "$checkers/check_blender.py" "$folder/$name.glb" "$expected" "${textures[@]}"
-        for suffix in usda usdc usdz; do
-            local shown=()
-            if [ $suffix = usdz ]; then
-                shown=("${render[@]}" ${render:+"$folder/render-usd.png"})
-            fi
-            check "$name.$suffix, bpy" "$bpy" "$checkers/check_blender.py" "$folder/$name.$suffix" "$expected" \
-                "${textures[@]}" "${shown[@]}"
-        done
+        check "$name.glb, bpy" "${in_bpy[@]}" "$made.glb" "$expected" "${textures[@]}"
+        check "$name.usda, bpy" "${in_bpy[@]}" "$made.usda" "$expected" "${textures[@]}"
+        check "$name.usdc, bpy" "${in_bpy[@]}" "$made.usdc" "$expected" "${textures[@]}"
+        check "$name.usdz, bpy" "${in_bpy[@]}" "$made.usdz" "$expected" "${textures[@]}" "${render_usd[@]}"
     fi
-    check "$name, every format three times" bash "$checkers/check_determinism.sh" \
-        "'$linecad' export '$folder/$name.json' --photo '$photo' ${camera[*]} $again"
+    check "$name, every format three times" "$python" "$checkers/check_same.py" \
+        "${linecad[@]}" export "$made.json" --photo "$photo" "${camera[@]}" "${again[@]}"
+}
+
+# A checker that never fails shows nothing. Those of ezdxf and usd-core have tests of their own in tests/clients.
+check_faults() {
+    local name folder made fault wrong broken
+    name=$(basename "${1%.*}")
+    folder=$out/$name
+    made=$folder/$name
+    wrong=$folder/wrong.json
+    broken=$folder/broken.glb
+    if [ ! -f "$folder/expectation.json" ]; then
+        return
+    fi
+    for fault in moved-line missing-face wrong-camera wrong-colour; do
+        "$python" "$checkers/faults.py" $fault "$folder/expectation.json" "$wrong"
+        check_fault "$fault, Khronos" "${by_khronos[@]}" "$made.glb" "$wrong"
+        check_fault "$fault, Blender" "${in_blender[@]}" "$made.glb" "$wrong"
+        if [ $fault != wrong-camera ]; then # it is no part of a STEP file
+            check_fault "$fault, FreeCAD" "${in_freecad[@]}" "$made.step" "$wrong" --gui
+        fi
+        if [ -n "$bpy" ] && [ $fault != wrong-colour ]; then # Blender leaves out the colours of USD's lines
+            check_fault "$fault, bpy" "${in_bpy[@]}" "$made.usdc" "$wrong"
+        fi
+    done
+    "$python" "$checkers/faults.py" wrong-bounds "$made.glb" "$broken"
+    check_fault "wrong-bounds, Khronos" "${by_khronos[@]}" "$broken" "$folder/expectation.json"
 }
 
 shopt -s nullglob
@@ -143,8 +185,9 @@ if [ $# = 0 ]; then
     photos=(samples/*.jpg samples/*.jpeg samples/*.png samples/*.tif)
 fi
 for photo in "${photos[@]}"; do
-    check_sample "$photo"
+    check_photo "$photo"
 done
+check_faults "${photos[0]}"
 
 echo "clients: $passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]
