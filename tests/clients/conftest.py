@@ -1,0 +1,86 @@
+"""A made scene file: a wall with a window and the ground before it, and its exports."""
+
+import json
+
+import pytest
+
+from expectation import build_expectation
+from exporters.formats import export
+from linecad.io.scene_file import read_scene
+
+WALL, GROUND = 10.0, -1.6  # where the planes cut y and z
+LEFT, RIGHT, TOP, NEAR = -4.0, 5.0, 6.0, 6.0
+WINDOW = [[0.0, WALL, 1.0], [2.0, WALL, 1.0], [2.0, WALL, 3.0], [0.0, WALL, 3.0]]
+CORNERS = [[LEFT, WALL, GROUND], [RIGHT, WALL, GROUND], [RIGHT, WALL, TOP], [LEFT, WALL, TOP]]
+FLOOR = [[LEFT, NEAR, GROUND], [RIGHT, NEAR, GROUND], [RIGHT, WALL, GROUND], [LEFT, WALL, GROUND]]
+FOCAL, CENTRE = 800.0, (390.3, 310.8)  # px
+
+
+def line(number, start, end, boundary):
+    axis = "xyz"[[a != b for a, b in zip(start, end, strict=True)].index(True)]
+    segment = [[FOCAL * x / y + CENTRE[0], -FOCAL * z / y + CENTRE[1]] for x, y, z in (start, end)]
+    return {"id": number, "axis": axis, "segment": segment, "ends": [start, end], "boundary": boundary,
+            "component": 0, "confidence": "proven"}  # fmt: skip
+
+
+def build_scene():
+    """As docs/scene-file.md has it; the camera looks along y."""
+    edges = [
+        (start, end, ring is not WINDOW)
+        for ring in (CORNERS, WINDOW, FLOOR)
+        for start, end in zip(ring, ring[1:] + ring[:1], strict=True)
+        if ring is not FLOOR or start[1] != end[1]
+    ]
+    edges.append(([LEFT, 8.0, GROUND], [RIGHT, 8.0, GROUND], False))
+    return {
+        "format": "linecad-scene",
+        "version": 1,
+        "photo": "wall.jpg",
+        "camera": {
+            "width": 800,
+            "height": 600,
+            "K": [[FOCAL, 0.0, CENTRE[0]], [0.0, FOCAL, CENTRE[1]], [0.0, 0.0, 1.0]],
+            "source": "file",
+            "R_cam_from_world": [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]],
+        },
+        "metres_per_unit": 2.5,
+        "lines": [line(3 * number + 5, *edge) for number, edge in enumerate(edges)],
+        "intersections": [],
+        "planes": [
+            {"id": 1, "axis": "y", "offset": WALL, "lines": [],
+             "faces": [{"id": 4, "outline": CORNERS, "holes": [WINDOW]}]},
+            {"id": 2, "axis": "z", "offset": GROUND, "lines": [], "faces": [{"id": 7, "outline": FLOOR, "holes": []}]},
+        ],
+        "solve": {"solver": "none", "formulation": "gain", "status": "optimal", "objective": 0.0, "bound": 0.0,
+                  "gap": 0.0, "seconds": 0.0},
+        "notes": [],
+    }  # fmt: skip
+
+
+@pytest.fixture
+def document():
+    return json.loads(json.dumps(build_scene()))  # which a test may change
+
+
+@pytest.fixture
+def expected():
+    return json.loads(json.dumps(build_expectation(build_scene())))  # as a checker has it, from a file
+
+
+@pytest.fixture(scope="session")
+def scene_file(tmp_path_factory):
+    path = tmp_path_factory.mktemp("scene") / "wall.json"
+    path.write_text(json.dumps(build_scene()))
+    return path
+
+
+@pytest.fixture
+def export_to(scene_file, tmp_path):
+    """Write the scene in the format of a suffix; returns the file."""
+
+    def write(suffix):
+        path = tmp_path / f"wall{suffix}"
+        export(read_scene(scene_file), path)
+        return path
+
+    return write

@@ -1,0 +1,45 @@
+import pytest
+
+from expectation import build_expectation
+from faults import IN_EXPECTATION
+
+
+def test_lengths_are_metres_and_pixels_count_from_the_corner(expected):
+    floor = next(line for line in expected["lines"] if line["group"] == "lines_x_nonboundary" and line["id"] > 30)
+    assert floor["ends"] == [[-10.0, 20.0, -4.0], [12.5, 20.0, -4.0]]
+    assert floor["pixels"][0] == pytest.approx([800 * -10 / 20 + 390.8, 800 * 4 / 20 + 311.3])
+    assert expected["frame"] == {"width": 820, "height": 624, "left": pytest.approx(19.2), "top": pytest.approx(0.7)}
+
+
+def test_a_face_is_its_corners_and_its_area_without_the_holes(expected):
+    wall = expected["faces"][0]
+    assert (wall["name"], wall["axis"], wall["offset"]) == ("face_0004", "y", 25.0)
+    assert wall["area"] == pytest.approx((9 * 7.6 - 4) * 2.5**2)
+    assert wall["rings"] == [[0, 1, 2, 3], [4, 5, 6, 7]]
+
+
+def test_lines_of_a_group_are_red_green_and_blue_or_paler(expected):
+    assert expected["groups"]["lines_x_boundary"]["srgb"] == pytest.approx([0.87, 0.16, 0.16])
+    assert expected["groups"]["lines_x_nonboundary"]["srgb"] == pytest.approx([0.935, 0.58, 0.58])
+    assert expected["groups"]["lines_x_boundary"]["linear"][0] == pytest.approx(0.7294, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        (lambda scene: scene.update(version=2), "not a scene file"),
+        (lambda scene: scene["camera"]["K"][0].__setitem__(1, 0.5), "without skew"),
+        (lambda scene: scene["camera"]["R_cam_from_world"][0].__setitem__(0, 0.9), "no rotation"),
+        (lambda scene: scene["lines"][0]["ends"][0].__setitem__(1, -1.0), "behind the camera"),
+    ],
+)
+def test_what_no_program_could_show_is_refused(document, change, reason):
+    change(document)
+    with pytest.raises(ValueError, match=reason):
+        build_expectation(document)
+
+
+@pytest.mark.parametrize("fault", IN_EXPECTATION)
+def test_every_fault_changes_the_expectation(expected, document, fault):
+    fault(expected)
+    assert expected != build_expectation(document)
