@@ -18,10 +18,10 @@ SKIPPING = {
 }
 
 
-def run(folder: Path, text: str, no_skips: str, *options: str) -> subprocess.CompletedProcess[str]:
+def run(folder: Path, text: str, no_skips: str, *options: str, data: str = "") -> subprocess.CompletedProcess[str]:
     (folder / "conftest.py").write_text(CONFTEST.read_text())
     (folder / "test_it.py").write_text(text)
-    environment = os.environ | {"LINECAD_NO_SKIPS": no_skips}
+    environment = os.environ | {"LINECAD_NO_SKIPS": no_skips, "LINECAD_DATA": data}
     command = [
         sys.executable,
         "-m",
@@ -62,6 +62,32 @@ def test_expected_failure_is_no_skip(tmp_path: Path) -> None:
     result = run(tmp_path, "import pytest\n@pytest.mark.xfail\ndef test_it():\n    assert False\n", "1")
     assert result.returncode == 0
     assert "1 xfailed" in result.stdout
+
+
+NEEDS_PHOTOGRAPHS = "def test_it(photographs):\n    assert (photographs / 'castle').is_dir()\n"
+
+
+@pytest.mark.parametrize("options", [(), ("--numprocesses", "1")])
+def test_without_photographs_a_test_is_skipped_and_says_why_even_where_no_skip_is_allowed(
+    tmp_path: Path, options: tuple[str, ...]
+) -> None:
+    result = run(tmp_path, NEEDS_PHOTOGRAPHS, "1", "-rs", *options)
+    assert result.returncode == 0
+    assert "1 skipped" in result.stdout
+    assert "LINECAD_DATA" in result.stdout
+
+
+def test_photographs_are_where_the_caller_says(tmp_path: Path) -> None:
+    (tmp_path / "photographs" / "castle").mkdir(parents=True)
+    result = run(tmp_path, NEEDS_PHOTOGRAPHS, "1", data=str(tmp_path / "photographs"))
+    assert result.returncode == 0
+    assert "1 passed" in result.stdout
+
+
+def test_a_folder_of_photographs_that_is_not_there_is_a_failure(tmp_path: Path) -> None:
+    result = run(tmp_path, NEEDS_PHOTOGRAPHS, "", data=str(tmp_path / "nowhere"))
+    assert result.returncode != 0
+    assert "nowhere, which is not a folder" in result.stdout
 
 
 @pytest.mark.usefixtures("bound_by_permissions")

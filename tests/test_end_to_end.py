@@ -158,8 +158,8 @@ YORK_URBAN = {"P1020177": 0.5, "P1020819": 0.6, "P1020833": 0.7, "P1020867": 0.7
 
 
 @pytest.mark.parametrize("name", YORK_URBAN)
-def test_frames_of_york_urban(shared_data, name):
-    file = shared_data / "york_urban" / f"{name}.json"
+def test_frames_of_york_urban(photographs, name):
+    file = photographs / "york_urban" / f"{name}.json"
     truth = json.loads(file.read_text())
     K = np.array(truth["K"])
     photo = read_photo(file.with_suffix(".jpg"), file)
@@ -172,8 +172,8 @@ def test_frames_of_york_urban(shared_data, name):
     assert np.mean(labels == [line["label"] for line in truth["lines"]]) > 0.95
 
 
-def test_depths_of_a_castle_photo(shared_data):
-    file = shared_data / "castle" / "0021.json"
+def test_depths_of_a_castle_photo(photographs):
+    file = photographs / "castle" / "0021.json"
     truth = json.loads(file.read_text())
     photo = read_photo(file.with_suffix(".jpg"), file)
     scene = reconstruct(photo, replace(OPTIONS["paper"], largest_component=True))

@@ -15,7 +15,7 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from real_photos import surveyed_points
+from real_photos import add_data_option, surveyed_points
 
 from linecad.arrays import Bool, Float, Int
 from linecad.camera.intrinsics import undistort_points
@@ -371,7 +371,7 @@ def _print_part(title: str, scores: list[Score]) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("part", choices=["count", "search", "check"], nargs="?", default="search")
-    parser.add_argument("--data", type=Path, default=Path(__file__).resolve().parents[3] / "shared" / "data")
+    add_data_option(parser)
     parser.add_argument("--extension", type=float, default=30.0, help="of the graphs that are solved")
     parser.add_argument("--time-limit", type=float, default=5.0, help="s a photo")
     parser.add_argument(

@@ -5,6 +5,7 @@ The photos are not part of the project; --data names their folder. Prints one li
 
 import argparse
 import json
+import os
 import time
 from pathlib import Path
 
@@ -79,10 +80,17 @@ def measure_frame(truth_file: Path) -> tuple[float, float, float]:
     return float(np.degrees(error)), float(np.mean(right)), seconds
 
 
+def add_data_option(parser: argparse.ArgumentParser) -> None:
+    """Let the user name the folder with the photographs for measuring; LINECAD_DATA does so for every run."""
+    usual = os.environ.get("LINECAD_DATA")
+    phrase = "the folder with castle, york_urban and south_building; LINECAD_DATA, where that is set"
+    parser.add_argument("--data", type=Path, default=usual, required=not usual, help=phrase)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("dataset", choices=["castle", "york_urban", "south_building"])
-    parser.add_argument("--data", type=Path, default=Path(__file__).resolve().parents[3] / "shared" / "data")
+    add_data_option(parser)
     parser.add_argument("--extension", type=float, default=30.0)
     parser.add_argument("--weights", default="junctions")
     parser.add_argument("--formulation", default="gain")

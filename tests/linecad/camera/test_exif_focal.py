@@ -246,8 +246,8 @@ def test_any_exif_gives_a_sensible_hint_or_none(exif: dict[int, Any], turned: bo
     assert hint is None or notes
 
 
-def test_hint_of_york_urban_is_within_two_standard_errors(shared_data: Path) -> None:
-    photos = sorted((shared_data / "york_urban").glob("*.jpg"))
+def test_hint_of_york_urban_is_within_two_standard_errors(photographs: Path) -> None:
+    photos = sorted((photographs / "york_urban").glob("*.jpg"))
     assert photos
     for path in photos[::10]:  # one camera at one focal length took them all
         photo = read_photo(path)

@@ -240,9 +240,9 @@ def test_alpha_note_reaches_the_photo(tmp_path: Path) -> None:
         ("york_urban/P1020177", ()),
     ],
 )
-def test_ground_truth_files_serve_as_camera_files(shared_data: Path, name: str, notes: tuple[str, ...]) -> None:
-    photo = read_photo(shared_data / f"{name}.jpg", shared_data / f"{name}.json")
-    truth = json.loads((shared_data / f"{name}.json").read_text())
+def test_ground_truth_files_serve_as_camera_files(photographs: Path, name: str, notes: tuple[str, ...]) -> None:
+    photo = read_photo(photographs / f"{name}.jpg", photographs / f"{name}.json")
+    truth = json.loads((photographs / f"{name}.json").read_text())
     assert photo.camera is not None
     assert photo.camera.focal == truth["K"][0][0]
     assert photo.notes == notes

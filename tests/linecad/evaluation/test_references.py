@@ -289,8 +289,8 @@ def test_points_of_a_made_photo_lie_where_the_truth_says(made, made_truth):
     )
 
 
-def test_the_datasets_that_we_measure_on_are_recognised(shared_data):
-    kinds = {name: find_dataset(shared_data / name) for name in ("castle", "york_urban", "south_building")}
+def test_the_datasets_that_we_measure_on_are_recognised(photographs):
+    kinds = {name: find_dataset(photographs / name) for name in ("castle", "york_urban", "south_building")}
     assert {name: dataset.cases[0].kind for name, dataset in kinds.items()} == {
         "castle": "points", "york_urban": "york-json", "south_building": "lines",
     }  # fmt: skip

@@ -139,9 +139,9 @@ def _worth(places: np.ndarray, course: tuple[int, ...]) -> float:
     return float(places[np.array(course, bool)].sum() - START * switched.sum())
 
 
-def test_faint_lines_of_a_small_photo_reach_the_line_graph(shared_data):
+def test_faint_lines_of_a_small_photo_reach_the_line_graph(photographs):
     photo, reference = open_case(
-        next(c for c in find_dataset(shared_data / "york_urban").cases if c.name == "P1020867")
+        next(c for c in find_dataset(photographs / "york_urban").cases if c.name == "P1020867")
     )
     found = find_lines(photo)
     axis = true_axes(found.frame.rotation, reference.rotation)[found.segments.axis]
