@@ -35,24 +35,33 @@ def report_of(path, expectation, gui, program="freecadcmd"):
             "QTWEBENGINE_DISABLE_SANDBOX": "1",
         }
         command = [program, "-u", f"{folder}/user.cfg", "-s", f"{folder}/system.cfg", str(INSIDE)]
-        ended = subprocess.run(
-            command,
-            env=environment,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            timeout=MOST_SECONDS,
-            check=False,
-        )
+        try:
+            ended = subprocess.run(
+                command,
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                timeout=MOST_SECONDS,
+                check=False,
+            )
+        except (OSError, subprocess.TimeoutExpired) as error:
+            return failure(str(error))
         if report.is_file():
             return report.read_text(encoding="utf-8").splitlines()
+    # A script's exception ends freecadcmd with 0.
+    said = ended.stdout.decode(errors="replace").strip()[-LAST_WORDS:]
+    return failure(f"{program} ended with {ended.returncode} and gave no verdict: {said!r}")
 
-    def give_up(_):
-        # A script's exception ends freecadcmd with 0.
-        said = ended.stdout.decode(errors="replace").strip()[-LAST_WORDS:]
-        raise RuntimeError(f"{program} ended with {ended.returncode} and gave no verdict: {said!r}")
 
-    return judge(give_up)
+def failure(problem):
+    """The report of a check that FreeCAD did not come to."""
+
+    def check(findings):
+        findings.need(False, problem)
+        return "FreeCAD"
+
+    return judge(check)
 
 
 def main():

@@ -30,3 +30,9 @@ def test_without_a_verdict_it_has_failed_whatever_its_exit_status(program, statu
     assert last.startswith("CHECK FAILED")
     assert f"ended with {status} and gave no verdict" in last
     assert "Segmentation fault" in last
+
+
+def test_without_freecad_it_has_failed():
+    last = report_of(Path("a.step"), Path("b.json"), False, "no-such-program")[-1]
+    assert last.startswith("CHECK FAILED")
+    assert "no-such-program" in last
