@@ -71,7 +71,7 @@ import sys
 from pathlib import Path
 import numpy as np
 from exporters.formats import FORMATS, export
-from linecad.scenefile import read_scene
+from linecad.io.scene_file import read_scene
 scene = read_scene(Path(sys.argv[1]))
 black = np.zeros((scene.camera.height, scene.camera.width, 3), np.uint8)
 for suffix, row in FORMATS.items():
@@ -158,7 +158,7 @@ from pathlib import Path
 import numpy as np
 from exporters.formats import FORMATS, export
 from linecad.errors import OutputError
-from linecad.scenefile import read_scene
+from linecad.io.scene_file import read_scene
 scene = read_scene(Path(sys.argv[1]))
 folder = Path(sys.argv[2])
 black = np.zeros((scene.camera.height, scene.camera.width, 3), np.uint8)

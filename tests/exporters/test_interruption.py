@@ -23,7 +23,7 @@ COMMON = """
 import json, os, signal, sys, time
 from pathlib import Path
 from exporters.formats import export
-from linecad.scenefile import read_scene
+from linecad.io.scene_file import read_scene
 scenes = [read_scene(Path(sys.argv[1]) / name) for name in ("old.json", "new.json")]
 folder, suffix = Path(sys.argv[2]), sys.argv[3]
 path = folder / ("a" + suffix)

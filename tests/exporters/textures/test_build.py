@@ -295,7 +295,7 @@ import sys
 from pathlib import Path
 import cv2
 from exporters.formats import export
-from linecad.scenefile import read_scene
+from linecad.io.scene_file import read_scene
 folder, *suffixes = sys.argv[1:]
 scene = read_scene(Path(folder) / "scene.json")
 photo = cv2.imread(folder + "/photo.png")[..., ::-1].copy()
