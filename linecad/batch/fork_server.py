@@ -2,7 +2,7 @@
 
 Loading all libraries takes seconds, a fork of them milliseconds, so each photo has a process of its own, with its own
 limits, whose death harms no other, and whose memory is gone when it ends. The process at the other end of the pipe
-says what to do:
+gives the orders:
 
     ("start", ticket, job)   work on a job
     ("kill", ticket)         end it, if it has not ended yet
@@ -22,6 +22,7 @@ from multiprocessing.connection import Connection, wait
 from typing import Any, NoReturn
 
 from linecad.batch.job import Job, Outcome
+from linecad.threads import compute_with_one_thread
 
 MIB = 2**20
 KILLED_WITH_PARENT = 1  # Linux's PR_SET_PDEATHSIG
@@ -41,20 +42,12 @@ def main(arguments: list[str]) -> None:
     control: Connection[Any, Any] = Connection(int(arguments[0]))
     for name in (*NEEDED, *arguments[1:]):
         importlib.import_module(name)
-    _one_thread()
+    compute_with_one_thread()
     gc.freeze()  # what is loaded is never collected, so that its pages stay shared with the forks
-    _Nursery(control).serve()
+    _ForkServer(control).serve()
 
 
-def _one_thread() -> None:
-    """OpenCV and OpenCL without threads; BLAS was told by the environment."""
-    import cv2
-
-    cv2.setNumThreads(1)
-    cv2.ocl.setUseOpenCL(False)
-
-
-class _Nursery:
+class _ForkServer:
     """The forked processes, by ticket."""
 
     def __init__(self, control: "Connection[Any, Any]") -> None:
@@ -63,7 +56,7 @@ class _Nursery:
         self.pipes: dict[Connection[Any, Any], int] = {}
 
     def serve(self) -> None:
-        """Do what the pipe says until it closes."""
+        """Obey the orders from the pipe until it closes."""
         try:
             self.control.send(("ready",))
             while True:

@@ -17,7 +17,7 @@ from typing import Any
 from exporters.formats import FORMATS
 from linecad.batch.job import Job, Outcome, Status
 from linecad.errors import LinecadError
-from linecad.threads import THREADS
+from linecad.threads import ONE_THREAD
 
 START_SECONDS = 300.0  # in which all libraries are loaded, from a network disk that is busy too
 END_SECONDS = 10.0
@@ -57,7 +57,7 @@ class LocalExecutor:
         if self._control is None:
             self._start()
         self._running[ticket] = _Running(job, time.monotonic())
-        with contextlib.suppress(OSError):  # the nursery is gone: `wait` will notice, and say so of every job
+        with contextlib.suppress(OSError):  # the fork server is gone: `wait` notices, and answers for every job
             self._send(("start", ticket, job))
 
     def wait(self, seconds: float) -> list[tuple[int, Outcome]]:
@@ -89,16 +89,15 @@ class LocalExecutor:
         self._running.clear()
 
     def _start(self) -> None:
-        """Start the nursery and wait until it has loaded everything."""
+        """Start the fork server and wait until it has loaded everything."""
         ours, theirs = Pipe()
         command = [sys.executable, "-m", "linecad.batch.fork_server", str(theirs.fileno()), *self._modules]
-        # One thread a process: several processes would fight for the cores.
-        environment = {**os.environ, **dict.fromkeys(THREADS, "1")}
         # The packages are found there as they were found here, also where the working folder made the difference.
-        environment["PYTHONPATH"] = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)
-        with theirs, tempfile.TemporaryFile() as said:
+        path = os.pathsep.join(path or str(Path.cwd()) for path in sys.path)
+        environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": path}
+        with theirs, tempfile.TemporaryFile() as errors:
             self._process = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=said, env=environment,
+                command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=errors, env=environment,
                 pass_fds=(theirs.fileno(), *self._inherited), start_new_session=True,
             )  # fmt: skip
             theirs.close()
@@ -110,8 +109,8 @@ class LocalExecutor:
             if not is_ready:
                 self._process.kill()
                 self.close()
-                said.seek(0)
-                lines = said.read().decode(errors="replace").splitlines() or ["it said nothing"]
+                errors.seek(0)
+                lines = errors.read().decode(errors="replace").splitlines() or ["no reason was given"]
                 raise LinecadError(f"the processes of the batch cannot be started: {lines[-1]}; check the installation")
 
     def _send(self, message: tuple[Any, ...]) -> None:
@@ -144,7 +143,7 @@ class LocalExecutor:
                 self._send(("kill", ticket))
 
     def _all_lost(self) -> list[tuple[int, Outcome]]:
-        """The nursery is gone, and with it everything that was being worked on; the next job starts another one."""
+        """The fork server is gone, and with it everything that was being worked on; the next job starts another one."""
         lost = Outcome("killed", "the process that all others come from was killed; run the batch again", is_lost=True)
         tickets = list(self._running)
         self.close()

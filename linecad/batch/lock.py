@@ -1,4 +1,4 @@
-"""A lock on the output folder of a batch, held until the last of its processes is gone."""
+"""A lock on the output folder of a batch, which lasts until the last of its processes is gone."""
 
 import contextlib
 import os
@@ -14,7 +14,7 @@ PATIENCE = 5.0  # s, in which the processes of a batch that was killed have time
 
 @contextlib.contextmanager
 def locked(folder: Path, patience: float | None = None) -> Iterator[int]:
-    """Hold the lock; gives the descriptor that processes must inherit, so that they hold it too.
+    """Lock the folder; gives the descriptor that processes must inherit, so that they have the lock too.
 
     The system frees the lock when the last of them ends, in whatever way. Raises LinecadError when another batch works
     in the folder, and OutputError when the folder cannot be written.

@@ -63,7 +63,7 @@ def _plain(value: object) -> object:
         return [_plain(member) for member in value]
     if value is None or isinstance(value, bool | int | float | str):
         return value
-    raise TypeError(f"a conversion holds a {type(value).__name__}, which has no lasting hash")
+    raise TypeError(f"a conversion has a {type(value).__name__}, which has no lasting hash")
 
 
 class Record:

@@ -1,4 +1,4 @@
-"""From what the command line says to a plan and an executor for it."""
+"""From the arguments of `linecad batch` to a plan and an executor for it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What a batch says to people: a bar or lines while it runs, and a table at its end."""
+"""What a batch shows to people: a bar or lines while it runs, and a table at its end."""
 
 import statistics
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What changes saved as it changes: at once, whole or not at all, by a thread that never holds the page up."""
+"""What changes saved as it changes: at once, whole or not at all, by a thread that never delays the page."""
 
 import threading
 import time

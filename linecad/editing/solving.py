@@ -88,7 +88,7 @@ class SolvingProcess:
         self._process, self._pipe = self._launch()
 
     def start(self, task: Task) -> None:
-        """Solve this next; what is being solved is stopped, and its answer still told."""
+        """Solve this next; what is being solved is stopped, and its answer is still delivered."""
         with self._lock:
             self._waiting = task
             if self._running is None:
@@ -125,13 +125,13 @@ class SolvingProcess:
         return process, ours
 
     def _next(self) -> None:
-        """Hand over what waits; the lock is held."""
+        """Hand over what waits; call it with the lock."""
         self._running, self._waiting = self._waiting, None
         if self._running is None or self._closed:
             return
         try:
             self._pipe.send(self._running)
-        except OSError:  # the process has died; its listener tells so, or has done it
+        except OSError:  # the process has died; its listener reports it, or has done so
             self._process, self._pipe = self._launch()
             self._pipe.send(self._running)
 

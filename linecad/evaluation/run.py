@@ -1,18 +1,16 @@
 """A dataset evaluated photo by photo, in one process each, with the same figures whatever their number."""
 
-import os
 import signal
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from multiprocessing import active_children, get_context
 
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.measure import PhotoResult, measure_photo
 from linecad.evaluation.methods import Settings
-from linecad.threads import THREADS
+from linecad.threads import compute_with_one_thread, start_with_one_thread
 
 PhotoReport = Callable[[int, int, PhotoResult], None]  # how many are done, of how many, the last one
 
@@ -26,7 +24,8 @@ def evaluate(
     """
     results: dict[int, PhotoResult] = {}
     others = set(active_children())
-    with _one_thread(), ProcessPoolExecutor(min(workers, len(cases)), get_context("spawn"), _set_up) as pool:
+    spawn = get_context("spawn")
+    with start_with_one_thread(), ProcessPoolExecutor(min(workers, len(cases)), spawn, _set_up) as pool:
         pending = {pool.submit(measure_photo, case, settings): index for index, case in enumerate(cases)}
         try:
             for done in as_completed(pending):
@@ -45,27 +44,6 @@ def evaluate(
     return [results[index] for index in range(len(cases))]
 
 
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes that start in here compute with one thread each.
-
-    Several would fight for the cores, and sums would come out in another order.
-    """
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
-
-
 def _set_up() -> None:
-    import cv2
-
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process that waits for this one ends it
-    cv2.setNumThreads(1)
-    cv2.ocl.setUseOpenCL(False)
+    compute_with_one_thread()

@@ -33,7 +33,7 @@ AT_WORK = 0.8  # share of the kills that wait until a photo was begun; the other
 LONGEST_BATCH = 600.0  # s without an end: it hangs
 FEWEST_KILLS = 1 / 3  # a round, on average; where fewer succeed, the waits are wrong
 LOOK = 0.002  # s between two looks at the processes
-KINDS = ["parent", "nursery", "worker", "worker"]
+KINDS = ["parent", "fork server", "worker", "worker"]
 
 
 def make_photos(folder: Path, count: int) -> list[Path]:
@@ -86,7 +86,7 @@ def run_calm(photos: list[Path], output: Path) -> Calm:
 def family(parent: int) -> dict[str, list[int]]:
     """The processes of a batch by what they do."""
     forks = children(parent)
-    return {"parent": [parent], "nursery": forks, "worker": [child for fork in forks for child in children(fork)]}
+    return {"parent": [parent], "fork server": forks, "worker": [child for fork in forks for child in children(fork)]}
 
 
 def children(process: int) -> list[int]:

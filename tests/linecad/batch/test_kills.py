@@ -73,7 +73,7 @@ def test_all_processes_die_with_the_one_that_gives_out_photos(kills, undisturbed
     batch.kill()
     batch.wait()
     batch.stderr.close()
-    others = [*family["nursery"], *family["worker"]]
+    others = [*family["fork server"], *family["worker"]]
     while any(state(process) not in (GONE, ZOMBIE) for process in others):  # who reaps them is not the batch's affair
         assert time.monotonic() < end, "processes are left"
         time.sleep(0.01)
@@ -89,10 +89,10 @@ def test_ctrl_c_ends_the_batch_in_one_line_and_leaves_it_ready_to_go_on(kills, u
         assert time.monotonic() < end, "no photo was done"
         time.sleep(0.01)
     batch.send_signal(signal.SIGINT)
-    said = batch.communicate(timeout=60)[1].decode()
+    errors = batch.communicate(timeout=60)[1].decode()
     assert batch.returncode == 1
-    assert len(said.splitlines()) == 1
-    assert "interrupted" in said
+    assert len(errors.splitlines()) == 1
+    assert "interrupted" in errors
     assert (output / "index.html").is_file()
     again = kills.start(photos[0].parent, output)
     again.communicate(timeout=100)

@@ -46,7 +46,7 @@ def children_of(process):
     return [int(word) for word in listed.stdout.split()]
 
 
-def nursery(executor):
+def fork_server(executor):
     return executor._process.pid
 
 
@@ -159,8 +159,8 @@ def test_the_memory_limit_ends_a_photo_and_no_other(executor, slow, slow_job, su
 
 def test_a_killed_process_is_an_outcome_and_harms_no_other(executor, slow, slow_job, survey, job_of):
     executor.submit(0, slow_job(slow))
-    wait_until(lambda: children_of(nursery(executor)))
-    victim = children_of(nursery(executor))[0]
+    wait_until(lambda: children_of(fork_server(executor)))
+    victim = children_of(fork_server(executor))[0]
     executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))
     os.kill(victim, signal.SIGKILL)
     found = outcomes(executor, 2)
@@ -170,13 +170,13 @@ def test_a_killed_process_is_an_outcome_and_harms_no_other(executor, slow, slow_
     assert found[1].status == "done"
 
 
-def test_when_the_nursery_dies_its_photos_are_lost_and_the_next_one_starts_another(
+def test_when_the_fork_server_dies_its_photos_are_lost_and_the_next_one_starts_another(
     executor, slow, slow_job, survey, job_of
 ):
     executor.submit(0, slow_job(slow))
-    wait_until(lambda: children_of(nursery(executor)))
-    orphan = children_of(nursery(executor))[0]
-    os.kill(nursery(executor), signal.SIGKILL)
+    wait_until(lambda: children_of(fork_server(executor)))
+    orphan = children_of(fork_server(executor))[0]
+    os.kill(fork_server(executor), signal.SIGKILL)
     assert outcomes(executor, 1)[0].is_lost
     wait_until(lambda: not is_running(orphan))
     executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))
@@ -193,7 +193,7 @@ def is_running(process):
 def test_all_processes_are_gone_after_close(slow, slow_job):
     executor = LocalExecutor(2, (".json",))
     executor.submit(0, slow_job(slow))
-    parent = nursery(executor)
+    parent = fork_server(executor)
     wait_until(lambda: children_of(parent))
     child = children_of(parent)[0]
     executor.close()
@@ -203,8 +203,8 @@ def test_all_processes_are_gone_after_close(slow, slow_job):
 
 def test_one_thread_a_process(executor, slow, slow_job):
     executor.submit(0, slow_job(slow, seconds=2.0))
-    wait_until(lambda: children_of(nursery(executor)))
-    threads, found, seen = Path(f"/proc/{children_of(nursery(executor))[0]}/task"), [], set()
+    wait_until(lambda: children_of(fork_server(executor)))
+    threads, found, seen = Path(f"/proc/{children_of(fork_server(executor))[0]}/task"), [], set()
     while not found:
         with contextlib.suppress(FileNotFoundError, ProcessLookupError):  # it has just ended
             seen.add(len(list(threads.iterdir())))
