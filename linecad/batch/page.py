@@ -1,44 +1,41 @@
 """The page of a batch, `index.html`: every photo with its lines, figures and files; one file that needs no network."""
 
 import base64
-import html
 import statistics
 import urllib.parse
 from collections.abc import Iterable, Iterator
+from html import escape
 from pathlib import Path
 
 from linecad.batch.job import THUMBNAILS, Figures
 from linecad.batch.record import Row
+from linecad.io import html
 from linecad.io.files import write_bytes_atomically
 
 NAME = "index.html"
 LARGEST_THUMBNAIL = 200_000  # bytes; ours take about a tenth of it
-STYLE = """
-body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem; color: #222; background: #f7f7f8; }
+STYLE = """\
+body { margin: 2rem; background: #f7f7f8; }
 main { display: grid; grid-template-columns: repeat(auto-fill, minmax(22rem, 1fr)); gap: 1rem; }
 article { background: #fff; border: 1px solid #ddd; border-radius: 6px; padding: .8rem; overflow-wrap: anywhere; }
 article.bad { border-color: #c33; }
 img { width: 100%; height: auto; display: block; background: #eee; }
 h2 { font-size: 1rem; margin: .5rem 0 .2rem; }
-p { margin: .2rem 0; } .quiet { color: #666; font-size: .85rem; } .error { color: #a11; }
+p { margin: .2rem 0; } .quiet { font-size: .85rem; }
 """
 
 
-def write_sheet(folder: Path, rows: tuple[Row, ...]) -> None:
+def write_page(folder: Path, rows: tuple[Row, ...]) -> None:
     """Write the page of these rows into the output folder. Raises OutputError."""
-    text = "".join(_page(folder, rows))
+    text = html.page("linecad batch", STYLE, _body(folder, rows))
     write_bytes_atomically(folder / NAME, text.encode("utf-8", "replace"))  # names may hold lone surrogates
 
 
-def _page(folder: Path, rows: tuple[Row, ...]) -> Iterator[str]:
-    yield '<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>linecad batch</title>\n'
-    # Nothing in the page can load or run anything, whatever a file name says.
-    policy = "default-src 'none'; img-src data:; style-src 'unsafe-inline'"
-    yield f'<meta http-equiv="Content-Security-Policy" content="{policy}">\n'
-    yield f"<style>{STYLE}</style>\n<h1>linecad batch</h1>\n<p>{html.escape(_summary(rows))}</p>\n<main>\n"
+def _body(folder: Path, rows: tuple[Row, ...]) -> Iterator[str]:
+    yield f"<h1>linecad batch</h1>\n<p>{escape(_summary(rows))}</p>\n<main>"
     for row in rows:
         yield from _article(folder, row)
-    yield "</main>\n</html>\n"
+    yield "</main>"
 
 
 def _summary(rows: tuple[Row, ...]) -> str:
@@ -51,21 +48,21 @@ def _summary(rows: tuple[Row, ...]) -> str:
 
 def _article(folder: Path, row: Row) -> Iterator[str]:
     outcome = row.outcome
-    yield f'<article class="{"good" if outcome.status == "done" else "bad"}">\n'
+    yield f'<article class="{"good" if outcome.status == "done" else "bad"}">'
     picture = _picture(folder, row)
     if picture:
-        words = "the photo, and its lines" if outcome.figures else "the photo"
-        yield f'<img src="data:image/jpeg;base64,{picture}" alt="{words}" loading="lazy">\n'
-    yield f"<h2>{html.escape(Path(row.photo).name)}</h2>\n"
+        shown = "the photo, and its lines" if outcome.figures else "the photo"
+        yield f'<img src="data:image/jpeg;base64,{picture}" alt="{shown}" loading="lazy">'
+    yield f"<h2>{escape(Path(row.photo).name)}</h2>"
     if outcome.figures:
-        yield f"<p>{html.escape(figures_text(outcome.figures))}</p>\n"
+        yield f"<p>{escape(figures_text(outcome.figures))}</p>"
     if outcome.error:
-        yield f'<p class="error">{html.escape(outcome.status)}: {html.escape(outcome.error)}</p>\n'
-    yield f'<p class="quiet">{outcome.seconds:.1f} s, {outcome.memory_mb:.0f} MiB, {html.escape(row.finished)}</p>\n'
+        yield f'<p class="error">{escape(outcome.status)}: {escape(outcome.error)}</p>'
+    yield f'<p class="quiet">{outcome.seconds:.1f} s, {outcome.memory_mb:.0f} MiB, {escape(row.finished)}</p>'
     files = [file for file in outcome.files if not file.startswith(f"{THUMBNAILS}/")]
     if files:
-        yield f"<p>{_links(files)}</p>\n"
-    yield "</article>\n"
+        yield f"<p>{_links(files)}</p>"
+    yield "</article>"
 
 
 def figures_text(figures: Figures) -> str:
@@ -81,7 +78,7 @@ def figures_text(figures: Figures) -> str:
 def _links(files: Iterable[str]) -> str:
     # "./" first: a name with a colon in it is not the address of anything.
     return " ".join(
-        f'<a href="./{urllib.parse.quote(file, errors="replace")}">{html.escape(Path(file).suffix or file)}</a>'
+        f'<a href="./{urllib.parse.quote(file, errors="replace")}">{escape(Path(file).suffix or file)}</a>'
         for file in files
     )
 

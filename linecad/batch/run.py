@@ -11,7 +11,7 @@ from pathlib import Path
 from linecad.batch.inputs import output_names
 from linecad.batch.job import THUMBNAILS, Executor, Job, Limits, Outcome
 from linecad.batch.lock import locked
-from linecad.batch.page import write_sheet
+from linecad.batch.page import write_page
 from linecad.batch.record import NAME, Record, Row, options_hash, settled
 from linecad.batch.work import photo_hash
 from linecad.convert import Conversion
@@ -80,7 +80,7 @@ def run_batch(plan: Plan, start: Callable[[int], Executor], on_row: OnRow) -> Re
         try:
             run.work(executor)
         finally:
-            write_sheet(plan.folder, run.result(time.monotonic() - began).rows)
+            write_page(plan.folder, run.result(time.monotonic() - began).rows)
     return run.result(time.monotonic() - began)
 
 

@@ -8,14 +8,18 @@ from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.document import cells_of, summary
 from linecad.evaluation.measure import PhotoResult, Picture
 from linecad.evaluation.tables import Table
+from linecad.io import html
 from linecad.io.files import write_text_atomically
 
 WORST = 10  # photos that are shown
 BAR_WIDTH, BAR_HEIGHT, LABEL_WIDTH = 420, 18, 150  # px
-STYLE = """body{font:15px/1.45 system-ui,sans-serif;margin:2em auto;max-width:62em;padding:0 1em;color:#222}
-table{border-collapse:collapse;margin:.8em 0}td,th{border:1px solid #ccc;padding:.25em .6em;text-align:right}
-td:first-child,th:first-child{text-align:left}figure{margin:1.5em 0}svg{max-width:100%;height:auto}
-.note{color:#555}"""
+STYLE = """\
+body { margin: 2em auto; max-width: 62em; padding: 0 1em; }
+table { border-collapse: collapse; margin: .8em 0; }
+td, th { border: 1px solid #ccc; padding: .25em .6em; text-align: right; }
+td:first-child, th:first-child { text-align: left; }
+figure { margin: 1.5em 0; } svg { max-width: 100%; height: auto; }
+"""
 AXIS_COLOURS = ("#e6194b", "#3cb44b", "#4363d8")  # x, y, z
 FAKE_TAKEN, REAL_MISSED = "#ff00ff", "#ffd700"
 
@@ -28,13 +32,9 @@ def write_report(path: Path, dataset: str, results: Sequence[PhotoResult], table
 
 def page(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> str:
     """The whole page as HTML."""
-    parts = [
-        '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8">',
-        f"<title>{escape(dataset)}: evaluation</title><style>{STYLE}</style></head><body>",
-        f"<h1>{escape(dataset)}</h1><p>{escape(summary(results))}</p>",
-    ]
+    parts = [f"<h1>{escape(dataset)}</h1><p>{escape(summary(results))}</p>"]
     for table in tables:
-        parts += [f"<h2>{escape(table.title)}</h2>", f'<p class="note">{escape(table.note)}</p>', _table(table)]
+        parts += [f"<h2>{escape(table.title)}</h2>", f'<p class="quiet">{escape(table.note)}</p>', _table(table)]
         if table.columns[0].unit == "%":
             parts.append(_plot(table, 0))
         else:
@@ -43,11 +43,11 @@ def page(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) 
     if chosen:
         parts.append(f"<h2>The worst {len(chosen)} photos</h2>")
         parts.append(
-            '<p class="note">Segments by axis (x red, y green, z blue); crossings that were taken for real but are '
+            '<p class="quiet">Segments by axis (x red, y green, z blue); crossings that were taken for real but are '
             "fake (magenta), and real ones that were given up (yellow).</p>"
         )
         parts += [_photo(result) for result in chosen]
-    return "\n".join([*parts, "</body></html>\n"])
+    return html.page(f"{dataset}: evaluation", STYLE, parts)
 
 
 def badness(result: PhotoResult) -> float | None:

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.batch.job import Figures, Outcome
-from linecad.batch.page import NAME, write_sheet
+from linecad.batch.page import NAME, write_page
 from linecad.batch.record import Row
 
 PICTURE = b"\xff\xd8 a picture"
@@ -32,7 +32,7 @@ class Reader(html.parser.HTMLParser):
 
 
 def page_of(folder, *rows):
-    write_sheet(folder, rows)
+    write_page(folder, rows)
     reader = Reader()
     reader.feed((folder / NAME).read_text(encoding="utf-8"))
     return reader
@@ -85,7 +85,7 @@ def test_any_name_and_any_error_are_only_text(tmp_path_factory, name, error):
     files = {f"{name}.step": 1}
     bad = Row(f"/p/{name}", "", "", name, Outcome("failed", error, files=files))
     page = page_of(folder, bad)
-    known = {"html", "meta", "title", "style", "h1", "p", "main", "article", "h2", "a"}
+    known = {"html", "head", "body", "meta", "title", "style", "h1", "p", "main", "article", "h2", "a"}
     assert set(page.tags) <= known
     assert page.attributes <= {"lang", "charset", "http-equiv", "content", "class", "href"}
     assert all(address.startswith("./") for address in page.addresses)
