@@ -11,6 +11,7 @@ from linecad.scene import Camera
 
 _MARGIN = 2.0  # the clipping planes lie this factor nearer and farther than anything in the model
 _WIDTH_SHARE = {True: 0.0020, False: 0.0010}  # width of drawn lines over the middle depth of the model, by boundary
+_FLATTEST = 1e-9  # sine of the angle to the image plane; a flatter axis is drawn as if it had this one
 _NEAREST_SHARE = 1e-6  # of the far plane, for a model that reaches to the camera or behind it
 
 
@@ -41,6 +42,16 @@ def camera_to_world(rotation: Float) -> Float:
 def principal_point(camera: Camera) -> tuple[float, float]:
     """px from the corner of the photo: half a pixel more than the scene says, which counts from pixel centres."""
     return float(camera.matrix[0, 2]) + 0.5, float(camera.matrix[1, 2]) + 0.5
+
+
+def vanishing_points(camera: Camera, rotation: Float) -> Float:
+    """(3, 2) px from the photo's corner, where the three axes vanish; finite, if very far, for one in the image plane.
+
+    Each is the vanishing point of the axis's end before the camera; `rotation` (3, 3) takes world to camera.
+    """
+    depth = np.where(rotation[2] >= 0, 1.0, -1.0) * np.maximum(np.abs(rotation[2]), _FLATTEST)
+    points: Float = (camera.focal * rotation[:2] / depth).T + principal_point(camera)
+    return points
 
 
 def padded_frame(camera: Camera) -> PaddedFrame:

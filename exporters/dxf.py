@@ -16,8 +16,8 @@ from ezdxf.document import Drawing
 from ezdxf.entities.dxfgfx import DXFGraphic
 
 from exporters.camera import principal_point
-from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, Model, build_model
+from exporters.triangulation import triangulate
 from linecad.scene import AXES, Scene
 
 _APPLICATION = "LINECAD"

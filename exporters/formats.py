@@ -1,27 +1,26 @@
 """The formats that a scene can be written in, and the one function that writes them all.
 
-To add a format, write one module with `write(scene, path)` and give it a row in FORMATS. What a user can choose about
-a format stands in its row; `write` takes it by keyword. A format with textures has TEXTURES among its options, and its
-`write` takes what is made of them as `textures`, and the names of what lies beside the file.
+To add a format, write one module with `write(scene, path)` and give it a row in FORMATS; nothing else names it. What a
+user can choose about a format stands in its row; `write` takes it by keyword. A format with textures has TEXTURES among
+its options, and its `write` takes what is made of them as `textures`. Where other files may lie beside the export, the
+row says which; `write` takes their names as `names` and returns the files as `SideFiles`, which are written for it.
 """
 
 import importlib
 import threading
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from exporters.beside import NOTHING, Beside, write_with_side_files
 from exporters.options import Option, Value, read_options
-from exporters.textures.beside import folder_name, library_name, write_with_pictures
+from exporters.textures.pages import PAGE_NAME, Textures
 from linecad.errors import OutputError
 from linecad.io.files import check_output, write_atomically
 from linecad.scene import Camera, Scene
-
-if TYPE_CHECKING:
-    from exporters.textures.build import Textures
 
 SCENE_FILE = ".json"  # written by linecad.io.scene_file; named here only to tell the user
 
@@ -39,8 +38,7 @@ class Format(NamedTuple):
     shows_photo: bool = False  # its `write` also takes the photo
     needs_photo: bool = False  # and raises OutputError where it is None
     options: tuple[Option, ...] = ()  # its `write` takes each by keyword, but for TEXTURES
-    pictures_beside: bool = False  # its textures lie in a folder, whose name `write` takes
-    has_library: bool = False  # and a material library names them, which `write` takes the name of
+    beside: Beside = NOTHING  # the files that may lie beside an export; where there are any, `write` also takes `names`
 
 
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
@@ -51,31 +49,37 @@ _ON = Option("textures", True, "the photo on the faces, where it is at hand")
 _SIZE = Option("texture-size", 4096, "the most texels a side of a picture of textures", least=256, most=16384)
 TEXTURES = (_ON, _SIZE)
 
+_PAGES = Beside(folder=".textures", part=PAGE_NAME)
+_PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl")
+
 FORMATS: dict[str, Format] = {
     ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION,)),
-    ".step": Format("exporters.step", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN,)),
+    ".step": Format(
+        "exporters.step.write", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN,)
+    ),
     ".glb": Format(
-        "exporters.gltf", "lines, faces, camera for viewers and Blender", "metres", options=(_TUBES, *TEXTURES)
+        "exporters.gltf.write", "lines, faces, camera for viewers and Blender", "metres", options=(_TUBES, *TEXTURES)
     ),
     ".usda": Format(
-        "exporters.usd", "a USD stage as text: lines, faces, camera", "metres", options=TEXTURES, pictures_beside=True
+        "exporters.usd.write", "a USD stage as text: lines, faces, camera", "metres", options=TEXTURES, beside=_PAGES
     ),
     ".usdc": Format(
-        "exporters.usd", "a USD stage, compact: lines, faces, camera", "metres", options=TEXTURES, pictures_beside=True
+        "exporters.usd.write", "a USD stage, compact: lines, faces, camera", "metres", options=TEXTURES, beside=_PAGES
     ),
-    ".usdz": Format("exporters.usd", "a USD stage as a package: lines, faces, camera", "metres", options=TEXTURES),
+    ".usdz": Format(
+        "exporters.usd.write", "a USD stage as a package: lines, faces, camera", "metres", options=TEXTURES
+    ),
     ".obj": Format(
-        "exporters.obj",
-        "faces as triangles, and lines",
-        "metres",
-        options=TEXTURES,
-        pictures_beside=True,
-        has_library=True,
+        "exporters.obj", "faces as triangles, and lines", "metres", options=TEXTURES, beside=_PAGES_AND_MATERIALS
     ),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres"),
     ".stl": Format("exporters.mesh", "faces as triangles", "metres"),
     ".fspy": Format(
-        "exporters.fspy", "the photo with its camera, to correct in fSpy", "metres", shows_photo=True, needs_photo=True
+        "exporters.fspy.write",
+        "the photo with its camera, to correct in fSpy",
+        "metres",
+        shows_photo=True,
+        needs_photo=True,
     ),
     ".png": Format(
         "exporters.picture.scene",
@@ -120,8 +124,8 @@ def export(
 
     `photo` is RGB, (H, W, 3), of exactly the size of the scene's camera; formats that show the photo, or lay it on the
     faces, do without it where it is None. `options` has values by key, as `options_for` returns them; the format takes
-    those of its own. Textures of a format that cannot hold them lie in a folder named after `path`. Raises ValueError
-    for a photo of another kind, and OutputError for an unknown suffix, a place that cannot be written, a full disk, or
+    those of its own. What the format's row says lies beside `path` is written with it. Raises ValueError for a photo of
+    another kind, and OutputError for an unknown suffix, a place that cannot be written, a full disk, or
     a scene that holds nothing for this format.
     """
     chosen = find_format(path)
@@ -134,48 +138,40 @@ def export(
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
     check_output(path)
     module = importlib.import_module(chosen.module)
-    textures = None
     if TEXTURES[0] in chosen.options:
         on, size = (arguments.pop(option.name) for option in TEXTURES)
-        arguments["textures"] = textures = _textures(scene, photo, size) if on else None
+        arguments["textures"] = _textures(scene, photo, size) if on else None
+    if chosen.beside != NOTHING:
+        arguments["names"] = chosen.beside.names(path)
 
-    def write(temporary: Path) -> None:
+    def write(temporary: Path) -> Any:
         with _ONE_AT_A_TIME:
-            module.write(scene, temporary, **arguments)
+            return module.write(scene, temporary, **arguments)
 
-    if not chosen.pictures_beside:
+    if chosen.beside != NOTHING:
+        write_with_side_files(path, chosen.beside, write)
+    else:
         write_atomically(path, write)
-        return
-    pictures, library = {}, None
-    if textures is not None:
-        folder = folder_name(path)
-        pictures = {page.name: page.data for page in textures.pages}
-        if chosen.has_library:
-            library = module.material_library(textures, folder)
-            arguments["library"] = library_name(path)
-        else:
-            arguments["folder"] = folder
-    write_with_pictures(path, write, pictures, library)
 
 
 class _Made(NamedTuple):
     scene: Scene
     photo: NDArray[np.uint8]
     size: int
-    textures: "Textures"
+    textures: Textures
 
 
 _last_made: list[_Made] = []  # at most one: a scene goes to several formats, one after the other
 
 
-def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> "Textures | None":
+def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> Textures | None:
     """What of the photo lies on the faces; None where there is no photo or no face."""
     if photo is None or not scene.faces:
         return None
     for made in _last_made[:]:
         if made.scene is scene and made.photo is photo and made.size == size:
             return made.textures
-    from exporters.textures.pages import build_textures
+    from exporters.textures.build import build_textures
 
     textures = build_textures(scene, photo, size)
     _last_made[:] = [] if photo.flags.writeable else [_Made(scene, photo, size, textures)]  # that one may change

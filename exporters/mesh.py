@@ -13,8 +13,8 @@ import trimesh
 from trimesh.exchange.ply import export_ply
 from trimesh.exchange.stl import export_stl
 
-from exporters.faces import triangulate
 from exporters.model import Model, build_model
+from exporters.triangulation import triangulate
 from linecad.errors import OutputError
 from linecad.scene import Scene
 

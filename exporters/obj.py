@@ -9,22 +9,20 @@ from pathlib import Path
 
 import numpy as np
 
-from exporters.faces import triangulate
+from exporters.beside import NO_FILES, Names, SideFiles
 from exporters.model import FlatFace, LineGroup, build_model
-from exporters.textures.build import Textures
+from exporters.textures.pages import Textures
+from exporters.triangulation import triangulate
 from linecad.arrays import Float
 from linecad.scene import Scene
 
 
-def write(scene: Scene, path: Path, textures: Textures | None = None, library: str = "") -> None:
-    """Write the scene as OBJ to `path`; OSError where that fails.
-
-    With textures, `library` is the name of the file beside it that `material_library` makes the text of.
-    """
+def write(scene: Scene, path: Path, names: Names, textures: Textures | None = None) -> SideFiles:
+    """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it."""
     model = build_model(scene)
     rows = [f"# linecad: reconstruction of {model.photo}, z up; {model.unit_note}"]
     if textures is not None and model.faces:
-        rows.append(f"mtllib {library}")
+        rows.append(f"mtllib {names.library}")
     first = 1  # OBJ counts vertices from 1, through all objects
     for face in model.faces:
         rows += _face(face, first, textures)
@@ -33,9 +31,10 @@ def write(scene: Scene, path: Path, textures: Textures | None = None, library: s
         rows += _lines(group, first)
         first += 2 * len(group.ids)
     path.write_text("\n".join(rows) + "\n", encoding="utf-8", newline="\n")
+    return NO_FILES if textures is None else SideFiles(textures.files, _materials(textures, names.folder))
 
 
-def material_library(textures: Textures, folder: str) -> str:
+def _materials(textures: Textures, folder: str) -> str:
     """The text of an MTL file for pages in `folder` beside it."""
     rows = ["# linecad: the photo on the faces, as it is"]
     for page in textures.pages:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from exporters.camera import vanishing_points
 from exporters.colours import RGB, line_colour
-from exporters.control_lines import vanishing_points
 from exporters.picture.canvas import Canvas, drawable, text_width
 from linecad.arrays import Float
 from linecad.line_graph import Segments

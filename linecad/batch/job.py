@@ -1,18 +1,18 @@
 """A job, its outcome, and what an executor of jobs can do: what passes between the parts of a batch."""
 
 from dataclasses import dataclass, field
-from pathlib import Path, PurePath
+from pathlib import Path
 from typing import Literal, Protocol, get_args
 
-from exporters.textures.beside import folder_name, library_name
+from exporters.beside import Beside
+from exporters.formats import FORMATS
 from linecad.convert import Conversion
 from linecad.scene import Quality
 
-# done; failed: linecad said why, or broke; time limit, memory limit: of the photo; killed: its process died.
+# done; failed: an error, or a fault of linecad; time limit, memory limit: of the photo; killed: its process died.
 Status = Literal["done", "failed", "time limit", "memory limit", "killed"]
 STATUSES: tuple[Status, ...] = get_args(Status)
 
-PICTURES = "photo-*.jpg"  # what exporters.textures.beside calls them
 THUMBNAILS = "thumbnails"  # folder in the output folder
 
 
@@ -42,23 +42,24 @@ class Job:
         return [self.folder / f"{self.name}{suffix}" for suffix in self.suffixes]
 
     @property
-    def beside(self) -> list[Path]:
-        """Material libraries and folders of pictures that formats make beside their files."""
-        return [path.with_name(name) for path in self.outputs for name in (library_name(path), folder_name(path))]
+    def places(self) -> list[Path]:
+        """Every file and folder that the job may make or change."""
+        beside = [place for path, row in self._exports() for place in row.places(path)]
+        return [*beside, *self.outputs, self.thumbnail]
 
     def made(self) -> list[Path]:
         """All files of the photo that are there: what others refer to comes first."""
-        found = []
-        for path in self.beside:
-            found += sorted(path.glob(PICTURES)) if path.is_dir() else [path] if path.is_file() else []
-        return [*found, *self.outputs, self.thumbnail]
+        beside = [file for path, row in self._exports() for file in row.found(path)]
+        return [*beside, *self.outputs, self.thumbnail]
 
     def may_make(self, file: str) -> bool:
         """Whether a file, relative to the folder, is one that this job may make."""
         path = self.folder / file
-        if path in (*self.outputs, self.thumbnail):
-            return True
-        return path in self.beside or (path.parent in self.beside and PurePath(path.name).match(PICTURES))
+        return path in (*self.outputs, self.thumbnail) or any(row.allows(out, path) for out, row in self._exports())
+
+    def _exports(self) -> list[tuple[Path, Beside]]:
+        """The outputs beside which other files may lie, with what may: not the scene file."""
+        return [(path, FORMATS[path.suffix].beside) for path in self.outputs if path.suffix in FORMATS]
 
     @property
     def thumbnail(self) -> Path:

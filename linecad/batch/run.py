@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from exporters.formats import FORMATS
 from linecad.batch.inputs import output_names
 from linecad.batch.job import THUMBNAILS, Executor, Job, Limits, Outcome
 from linecad.batch.lock import locked
@@ -16,9 +17,8 @@ from linecad.batch.record import NAME, Record, Row, options_hash, settled
 from linecad.batch.work import photo_hash
 from linecad.convert import Conversion
 from linecad.errors import LinecadError, OutputError
+from linecad.io.files import remove_unfinished
 
-LEFTOVERS = ".linecad-*"  # what linecad.io.files leaves when it is killed while it writes
-PICTURES_BESIDE = "*.textures"  # folders of exporters.textures.beside
 TICK = 0.5  # s between two looks at what else there is to do
 LARGEST_LOSSES = 3  # times that a photo is begun again after its executor broke under it
 
@@ -91,11 +91,10 @@ def _prepare(folder: Path) -> None:
         if thumbnails.is_symlink():
             raise OutputError(f"{thumbnails} is a link, and files would go elsewhere; remove it")
         thumbnails.mkdir(exist_ok=True)
-        for place in (folder, thumbnails, *folder.glob(PICTURES_BESIDE)):
-            if place.is_symlink() or not place.is_dir():
-                continue
-            for leftover in place.glob(LEFTOVERS):
-                leftover.unlink()
+        parts = [place for row in FORMATS.values() for place in row.beside.folders_in(folder)]
+        for place in (folder, thumbnails, *parts):
+            if not place.is_symlink():
+                remove_unfinished(place)
     except OSError as error:
         raise OutputError(f"{folder} cannot be used: {error.strerror}; choose another folder") from error
 
@@ -154,7 +153,7 @@ class _Run:
     def _job(self, photo: Path) -> Job:
         plan = self.plan
         job = Job(photo, photo_hash(photo), self.names[photo], plan.folder, plan.suffixes, plan.conversion, plan.limits)
-        for path in (*job.outputs, *job.beside, job.thumbnail):
+        for path in job.places:
             if path.is_symlink():
                 raise OutputError(f"{path} is a link, and the file would go elsewhere; remove it")
             if path.exists() and path.samefile(photo):

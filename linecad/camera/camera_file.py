@@ -27,7 +27,7 @@ def write_camera(report: CameraReport, path: Path) -> None:
         case ".json":
             write_text_atomically(path, json_of(report))
         case ".fspy":
-            from exporters import fspy
+            from exporters.fspy import write as fspy
 
             rotation, pixels = report.frame.rotation, report.photo.pixels
             write_atomically(

@@ -5,9 +5,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from exporters.faces import triangulate
 from exporters.formats import FORMATS, SCENE_FILE
 from exporters.model import FlatFace, build_model
+from exporters.triangulation import triangulate
 from linecad.camera.text import summary
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE

@@ -4,6 +4,7 @@ import contextlib
 import errno
 import os
 import secrets
+import shutil
 import stat
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +12,7 @@ from pathlib import Path
 from linecad.errors import LinecadError, OutputError
 
 # The hidden name says nothing about the result: no library can copy the result's name out of it into the file.
-_TEMPORARY_PREFIX = ".linecad-"
+UNFINISHED = ".linecad-"  # what the names of files and folders begin with that are gone when their writer is done
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 _FORBIDDEN = {errno.EACCES, errno.EPERM, errno.EROFS}
 
@@ -59,6 +60,15 @@ def write_atomically(path: Path, writer: Callable[[Path], None]) -> None:
         raise _output_error(path, error) from error
 
 
+def remove_unfinished(folder: Path) -> None:
+    """Remove what writers that were killed left in a folder, where none is at work. Raises OSError."""
+    for left in folder.glob(f"{UNFINISHED}*"):
+        if left.is_dir() and not left.is_symlink():
+            shutil.rmtree(left)
+        else:
+            left.unlink()
+
+
 def write_text_atomically(path: Path, text: str) -> None:
     """The same for a text: UTF-8, lines ending as they do in `text` on every system."""
     write_atomically(path, lambda file: _write_text(file, text))
@@ -89,7 +99,7 @@ def _target(path: Path) -> Path:
 def _reserve(target: Path) -> tuple[Path, int]:
     """Make an empty file beside `target` under a name that nobody else uses; also the mode that the result gets."""
     while True:
-        temporary = target.with_name(f"{_TEMPORARY_PREFIX}{secrets.token_hex(8)}{target.suffix.lower()}")
+        temporary = target.with_name(f"{UNFINISHED}{secrets.token_hex(8)}{target.suffix.lower()}")
         with contextlib.suppress(FileExistsError):
             # open, and not tempfile, whose files only their owner may read: the user's umask decides here.
             os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

@@ -1,4 +1,6 @@
-"""Locks that one process at a time holds, each in a file that says which one; the system frees them when it ends."""
+"""Locks between processes: each is a file or a folder that one process at a time has locked, and the system frees it
+when that process ends.
+"""
 
 import contextlib
 import os
@@ -16,17 +18,17 @@ STEP = 0.05  # s between two tries
 
 
 def acquire(path: Path, who: str, advice: str, patience: float = 0.0) -> int:
-    """The descriptor that holds the lock in the file `path`, made where it is not there; closing it gives it back.
+    """The descriptor of the file `path`, locked, made where it is not there; closing it frees the lock.
 
-    A process that inherits the descriptor holds the lock too. Raises LinecadError, which begins with `who` works there
-    and ends with `advice`, when another process still holds it after `patience` seconds, and OSError where the file or
-    the system has no locks.
+    The file says which process has the lock. A process that inherits the descriptor has the lock too. Raises
+    LinecadError, which begins with `who` works there and ends with `advice`, when another process still has it after
+    `patience` seconds, and OSError where the file or the system has no locks.
     """
     end = time.monotonic() + patience
     while True:
         descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC | os.O_NOFOLLOW, 0o666)
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(descriptor, waits=False)
             if _is_at(descriptor, path):
                 os.ftruncate(descriptor, 0)
                 os.pwrite(descriptor, f"{os.getpid()}\n".encode(), 0)
@@ -45,7 +47,7 @@ def acquire(path: Path, who: str, advice: str, patience: float = 0.0) -> int:
 
 @contextlib.contextmanager
 def alone(path: Path, who: str, advice: str) -> Iterator[None]:
-    """Hold the lock in the file `path`, which is there only as long. Raises LinecadError as `acquire` does, at once.
+    """Lock the file `path`, which is there only as long. Raises LinecadError as `acquire` does, at once.
 
     Where no lock can be had, as on Windows and some network disks, nobody is kept out.
     """
@@ -58,12 +60,41 @@ def alone(path: Path, who: str, advice: str) -> Iterator[None]:
     finally:
         if descriptor is not None:
             with contextlib.suppress(OSError):
-                path.unlink()  # while it is held, so that it is nobody else's
+                path.unlink()  # while it is locked, so that it is nobody else's
             os.close(descriptor)
 
 
+@contextlib.contextmanager
+def waiting_for(folder: Path) -> Iterator[bool]:
+    """Lock a folder, once every other process that does so has left it; no file is made.
+
+    Gives False where no lock can be had, as on Windows and some network disks: others may be at work there.
+    """
+    try:
+        descriptor = os.open(folder, os.O_RDONLY)
+    except OSError:
+        yield False
+        return
+    try:
+        try:
+            _lock(descriptor, waits=True)
+            locked = True
+        except OSError:
+            locked = False
+        yield locked
+    finally:
+        os.close(descriptor)
+
+
+def _lock(descriptor: int, waits: bool) -> None:
+    """Lock an open file, or raise BlockingIOError where another process has it and `waits` is false; OSError."""
+    if sys.platform == "win32":  # where not even a folder can be opened
+        raise OSError("Windows has no such locks")
+    fcntl.flock(descriptor, fcntl.LOCK_EX | (0 if waits else fcntl.LOCK_NB))
+
+
 def _is_at(descriptor: int, path: Path) -> bool:
-    """Whether the open file still lies at `path`: the process that held it before may have removed it."""
+    """Whether the open file still lies at `path`: the process that had it before may have removed it."""
     try:
         return os.path.samestat(os.fstat(descriptor), path.stat(follow_symlinks=False))
     except FileNotFoundError:

@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point
+from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point, vanishing_points
 from exporters.model import build_model
 from linecad.scene import Camera
 
@@ -14,6 +14,17 @@ def camera(width, height, cx, cy):
 
 def test_pixels_count_from_the_corner():
     assert principal_point(camera(640, 480, 319.5, 239.5)) == (320.0, 240.0)
+
+
+def test_the_vanishing_points_are_where_the_axes_run_to(scene):
+    far = 1e9 * np.where(scene.rotation[2] >= 0, 1, -1)[:, None] * np.eye(3)
+    rays = far @ scene.rotation.T @ scene.camera.matrix.T
+    expected = rays[:, :2] / rays[:, 2:] + 0.5
+    np.testing.assert_allclose(vanishing_points(scene.camera, scene.rotation), expected)
+
+
+def test_an_axis_in_the_image_plane_vanishes_far_off_but_not_at_infinity(scene):
+    assert np.isfinite(vanishing_points(scene.camera, np.eye(3))).all()
 
 
 @pytest.mark.parametrize(

@@ -4,9 +4,9 @@ import ezdxf
 import numpy as np
 import pytest
 
-from exporters.faces import triangulate
 from exporters.formats import export
 from exporters.model import FREE_UNIT, KNOWN_UNIT
+from exporters.triangulation import triangulate
 
 
 @pytest.fixture(scope="module")

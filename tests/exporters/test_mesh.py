@@ -2,9 +2,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from exporters.faces import triangulate
 from exporters.formats import export
 from exporters.model import FREE_UNIT, KNOWN_UNIT
+from exporters.triangulation import triangulate
 
 
 @pytest.fixture(scope="module")

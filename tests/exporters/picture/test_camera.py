@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from exporters.camera import vanishing_points
 from exporters.colours import line_colour
-from exporters.control_lines import vanishing_points
 from exporters.picture import camera as camera_picture
 from exporters.picture.camera import CameraPicture, write
 from linecad.line_graph import Segments

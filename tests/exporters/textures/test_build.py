@@ -19,17 +19,18 @@ from PIL import Image
 from pxr import Usd, UsdGeom, UsdShade, UsdUtils, UsdValidation
 
 from exporters import formats
+from exporters.beside import NOTHING
 from exporters.formats import FORMATS, TEXTURES, export
 from exporters.model import build_model
+from exporters.textures.build import build_textures
 from exporters.textures.layout import MARGIN, TEXELS_PER_PIXEL, build_layout, seen_part, view_of
-from exporters.textures.pages import build_textures
 from exporters.textures.rectify import PLAIN, paint_pages
 from linecad.io.scene_file import write_scene
 from linecad.scene import Face, Plane
 
 REPOSITORY = Path(__file__).parents[3]
 TEXTURED = [suffix for suffix, row in FORMATS.items() if TEXTURES[0] in row.options]
-BESIDE = [suffix for suffix in TEXTURED if FORMATS[suffix].pictures_beside]
+BESIDE = [suffix for suffix in TEXTURED if FORMATS[suffix].beside != NOTHING]
 MOST_ERROR = 0.05  # px
 OVERSHOOT = 40  # of 255, beside an edge of great contrast
 FACADE, GROUND, SLAB, BALCONY = 0, 2, 7, 8  # ids of faces of the made house
@@ -528,7 +529,7 @@ def test_a_photo_that_could_change_is_read_anew(scene, coloured, tmp_path):
 def test_textures_are_made_once_for_several_formats(scene, coloured, tmp_path, monkeypatch):
     made = []
     monkeypatch.setattr(
-        "exporters.textures.pages.build_textures", lambda *given: made.append(1) or build_textures(*given)
+        "exporters.textures.build.build_textures", lambda *given: made.append(1) or build_textures(*given)
     )
     photo = coloured[0].copy()
     photo.flags.writeable = False

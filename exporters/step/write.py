@@ -43,9 +43,9 @@ from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTo
 from OCP.XSControl import XSControl_WorkSession
 
 from exporters.colours import FACE, RGB, line_colour
-from exporters.faces import checked_polygon
 from exporters.model import FlatFace, LineGroup, Model, build_model
-from exporters.step_canonical import canonical
+from exporters.step.canonical import canonical
+from exporters.triangulation import checked_polygon
 from linecad.arrays import Float
 from linecad.scene import Scene
 
@@ -197,7 +197,7 @@ def _written(document: TDocStd_Document, model: Model) -> bytes:
 
 @contextlib.contextmanager
 def _silence() -> Iterator[None]:
-    """Keep OCCT from printing its progress; a failure is told by its return values."""
+    """Keep OCCT from printing its progress; its return values tell of failures."""
     printers = list(Message.DefaultMessenger_s().Printers())
     levels = [printer.GetTraceLevel() for printer in printers]
     for printer in printers:

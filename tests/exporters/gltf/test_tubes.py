@@ -5,7 +5,7 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exporters.tubes import build_tubes
+from exporters.gltf.tubes import build_tubes
 
 RADIUS = 0.25
 HEXAGON = 1.5 * np.sqrt(3) * RADIUS**2  # area of the section

@@ -8,7 +8,7 @@ from typing import Any
 
 from exporters.colours import FACE, RGB, line_colour, linear
 from exporters.model import Model
-from exporters.textures.build import MEDIA_TYPE, Textures
+from exporters.textures.pages import MEDIA_TYPE, Textures
 
 _UNLIT = "KHR_materials_unlit"
 _LINEAR, _LINEAR_MIPMAP_LINEAR, _CLAMP_TO_EDGE = 9729, 9987, 33071  # as OpenGL numbers them

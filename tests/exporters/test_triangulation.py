@@ -6,8 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exporters.faces import triangulate
 from exporters.model import build_model, signed_area
+from exporters.triangulation import triangulate
 from linecad.errors import OutputError
 from linecad.scene import Face, Plane
 

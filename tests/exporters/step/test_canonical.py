@@ -1,6 +1,6 @@
 import pytest
 
-from exporters.step_canonical import canonical
+from exporters.step.canonical import canonical
 
 HEAD = "ISO-10303-21;\nHEADER;\nFILE_NAME('a;b #1','');\nENDSEC;\nDATA;\n"
 TAIL = "ENDSEC;\nEND-ISO-10303-21;\n"

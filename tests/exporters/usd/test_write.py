@@ -6,9 +6,9 @@ import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdValidation
 
 from exporters.colours import FACE, line_colour, linear
-from exporters.faces import triangulate
 from exporters.formats import export
 from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
+from exporters.triangulation import triangulate
 from linecad.scene import Camera
 
 ROOT = "/Reconstruction"

@@ -11,10 +11,11 @@ from pathlib import Path
 
 import pytest
 
-from exporters.textures.beside import folder_name, library_name, write_with_pictures
+from exporters.beside import NO_FILES, NOTHING, Beside, SideFiles, write_with_side_files
 from linecad.errors import OutputError
 
-REPOSITORY = Path(__file__).parents[3]
+REPOSITORY = Path(__file__).parents[2]
+BESIDE = Beside(".textures", re.compile(r"photo-[0-9a-f]{16}\.jpg"), ".mtl")
 
 
 def picture(content):
@@ -25,22 +26,36 @@ def picture(content):
 def version(number):
     """The pictures, the library and the text of one of the versions of a file; the text names what it needs."""
     pictures = dict([picture(b"%d of %d" % (each, number) * 1000) for each in range(3)])
-    library = "".join(f"newmtl {name} {folder_name(Path('a.obj'))}\n" for name in pictures)
+    library = "".join(f"newmtl {name} a.obj.textures\n" for name in pictures)
     return pictures, library, "\n".join(pictures)
 
 
 def put(path, number):
     pictures, library, text = version(number)
-    write_with_pictures(path, lambda file: file.write_text(text), pictures, library)
+
+    def write(file):
+        file.write_text(text)
+        return SideFiles(pictures, library)
+
+    write_with_side_files(path, BESIDE, write)
+
+
+def put_alone(path):
+    def write(file):
+        file.write_text("alone")
+        return NO_FILES
+
+    write_with_side_files(path, BESIDE, write)
 
 
 def check(path):
     """That the file is one of the versions and finds all that it names, each with its whole content; which one."""
     text = path.read_text()
     number = next(number for number in range(100) if version(number)[2] == text)
-    library = path.with_name(library_name(path)).read_text()
+    names = BESIDE.names(path)
+    library = path.with_name(names.library).read_text()
     for name in text.split():
-        data = (path.with_name(folder_name(path)) / name).read_bytes()
+        data = (path.with_name(names.folder) / name).read_bytes()
         assert name == picture(data)[0]
         assert f"newmtl {name}" in library
     return number
@@ -64,14 +79,14 @@ def test_the_pictures_and_the_library_of_the_old_file_go(tmp_path):
 
 def test_a_file_without_pictures_leaves_none_of_the_old_ones(tmp_path):
     put(tmp_path / "a.obj", 1)
-    write_with_pictures(tmp_path / "a.obj", lambda file: file.write_text("alone"), {})
+    put_alone(tmp_path / "a.obj")
     assert everything(tmp_path) == ["a.obj"]
 
 
 def test_what_is_not_ours_stays_in_the_folder(tmp_path):
     put(tmp_path / "a.obj", 1)
     (tmp_path / "a.obj.textures" / "mine.jpg").write_text("mine")
-    write_with_pictures(tmp_path / "a.obj", lambda file: file.write_text("alone"), {})
+    put_alone(tmp_path / "a.obj")
     assert everything(tmp_path) == ["a.obj", "a.obj.textures", "a.obj.textures/mine.jpg"]
 
 
@@ -93,9 +108,8 @@ def test_a_writer_that_fails_leaves_all_as_it_was(tmp_path, before):
         file.write_text("half")
         raise OSError(28, "No space left on device")
 
-    pictures, library, _ = version(2)
     with pytest.raises(OutputError, match="no space is left"):
-        write_with_pictures(path, fail, pictures, library)
+        write_with_side_files(path, BESIDE, fail)
     assert {path: path.read_bytes() for path in tmp_path.rglob("*") if path.is_file()} == there
     if not before:
         assert everything(tmp_path) == []
@@ -104,15 +118,16 @@ def test_a_writer_that_fails_leaves_all_as_it_was(tmp_path, before):
 def test_a_picture_that_does_not_fit_on_the_disk_leaves_all_as_it_was(tmp_path):
     put(tmp_path / "a.obj", 1)
     script = (
-        "import resource, sys; from pathlib import Path; from exporters.textures.beside import write_with_pictures\n"
+        f"import resource, sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); from test_beside import *\n"
         "resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))\n"
         "pictures = {'photo-0123456789abcdef.jpg': bytes(10), 'photo-1123456789abcdef.jpg': bytes(5000)}\n"
-        "try: write_with_pictures(Path(sys.argv[1]), lambda file: file.write_text('new'), pictures, 'new')\n"
+        "def write(file): file.write_text('new'); return SideFiles(pictures, 'new')\n"
+        "try: write_with_side_files(Path(sys.argv[1]), BESIDE, write)\n"
         "except Exception as error: print(error)"
     )
     command = [sys.executable, "-c", script, str(tmp_path / "a.obj")]
-    said = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True).stdout
-    assert "was not written" in said
+    output = subprocess.run(command, cwd=REPOSITORY, capture_output=True, text=True, check=True).stdout
+    assert "was not written" in output
     assert check(tmp_path / "a.obj") == 1
     assert len(everything(tmp_path)) == 6
 
@@ -126,11 +141,54 @@ def test_a_file_in_the_place_of_the_folder_is_named(tmp_path):
 
 def test_no_name_is_too_long_or_unfit_for_a_reader(tmp_path):
     for name in ("a" * 250 + ".obj", "家" * 80 + ".obj", 'Häuschen "家" it\'s.obj', os.fsdecode(b"\xff\xfe.obj")):
-        folder, library = folder_name(tmp_path / name), library_name(tmp_path / name)
+        folder, library = BESIDE.names(tmp_path / name)
         assert max(len(folder.encode()), len(library.encode())) <= 255
         assert re.fullmatch(r"[\w.-]+\.textures", folder)
         put(tmp_path / name, 1)
         assert check(tmp_path / name) == 1
+
+
+def test_what_lies_beside_an_export_is_found_and_nothing_else(tmp_path):
+    path = tmp_path / "a.obj"
+    assert BESIDE.found(path) == []
+    put(path, 1)
+    put(tmp_path / "b.obj", 1)
+    (tmp_path / "a.obj.textures" / "mine.jpg").write_text("mine")
+    names = ["a.obj.mtl", *sorted(f"a.obj.textures/{name}" for name in version(1)[0])]
+    assert [str(file.relative_to(tmp_path)) for file in BESIDE.found(path)] == names
+    assert BESIDE.places(path) == [tmp_path / "a.obj.mtl", tmp_path / "a.obj.textures"]
+    assert sorted(BESIDE.folders_in(tmp_path)) == [tmp_path / "a.obj.textures", tmp_path / "b.obj.textures"]
+    assert NOTHING.found(path) == NOTHING.places(path) == NOTHING.folders_in(tmp_path) == []
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "a.obj",
+        "a.obj.textures",
+        "b.obj.mtl",
+        "a.obj.mtl/photo-0123456789abcdef.jpg",
+        "b.obj.textures/photo-0123456789abcdef.jpg",
+        "a.obj.textures/photo-0123456789abcdef.jpg.sh",
+        "a.obj.textures/deeper/photo-0123456789abcdef.jpg",
+        "a.obj.textures/../photo-0123456789abcdef.jpg",
+        "photo-0123456789abcdef.jpg",
+    ],
+)
+def test_no_other_file_is_allowed_beside_an_export(tmp_path, name):
+    path = tmp_path / "a.obj"
+    assert BESIDE.allows(path, tmp_path / "a.obj.mtl")
+    assert BESIDE.allows(path, tmp_path / "a.obj.textures" / "photo-0123456789abcdef.jpg")
+    assert not BESIDE.allows(path, tmp_path / name)
+    assert not NOTHING.allows(path, tmp_path / name)
+
+
+@pytest.mark.parametrize("needed", [SideFiles({"other.jpg": b""}), SideFiles({}, "library")])
+def test_what_the_row_of_a_format_does_not_name_is_our_own_mistake(tmp_path, needed):
+    row = Beside(".textures", BESIDE.part)
+    with pytest.raises(AssertionError, match="row"):
+        write_with_side_files(tmp_path / "a.usda", row, lambda _: needed)
+    assert everything(tmp_path) == []
 
 
 def run_alone(work, folder):

@@ -23,8 +23,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from exporters.camera import camera_to_world, principal_point
-from exporters.control_lines import find_control_lines, vanishing_points
+from exporters.camera import camera_to_world, principal_point, vanishing_points
+from exporters.fspy.control_lines import find_control_lines
 from exporters.model import LineGroup, build_model
 from linecad.arrays import Float
 from linecad.errors import OutputError
@@ -33,7 +33,7 @@ from linecad.scene import AXES, Camera, Scene
 
 _MAGIC, _VERSION = b"fspy", 1
 _QUALITY = 95  # of the JPEG, out of 100
-_FILM = 36.0  # mm, the longer side of the film that the focal length in mm is said for
+_FILM = 36.0  # mm, the longer side of the film that the focal length in mm refers to
 _LEAST_SLOPE = 0.05  # sine of the angle between an axis and the image plane; fSpy cannot use a flatter one
 _DEFAULT_DISTANCE = 10.0  # from the camera to fSpy's origin where no line gives a length
 

@@ -6,9 +6,9 @@ import pytest
 import trimesh
 
 from exporters.colours import FACE, line_colour, linear
-from exporters.faces import triangulate
 from exporters.formats import export
 from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
+from exporters.triangulation import triangulate
 
 COUNTS = {"SCALAR": 1, "VEC3": 3}
 KINDS = {5125: np.uint32, 5126: np.float32}

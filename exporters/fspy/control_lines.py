@@ -2,26 +2,15 @@
 
 import numpy as np
 
-from exporters.camera import principal_point
+from exporters.camera import vanishing_points
 from linecad.arrays import Float
 from linecad.line_graph import Segments
 from linecad.scene import Camera
 
 _CANDIDATES = 40  # the longest segments of an axis, of which a pair is chosen
-_LEAST_ANGLE = 0.02  # sine; lines that are more parallel say too little about where they meet
+_LEAST_ANGLE = 0.02  # sine; lines that are more parallel do not fix the point where they meet
 _DRAWN_AT = ((0.2, 0.2), (0.8, 0.2), (0.2, 0.8), (0.8, 0.8), (0.5, 0.5))  # of the photo's size
 _DRAWN_LENGTH = 0.2  # of the photo's shorter side
-_FLATTEST = 1e-9  # sine of the angle to the image plane; a flatter axis is drawn as if it had this one
-
-
-def vanishing_points(camera: Camera, rotation: Float) -> Float:
-    """(3, 2) px from the photo's corner, where the three axes vanish; finite, if very far, for one in the image plane.
-
-    Each is the vanishing point of the axis's end before the camera; `rotation` (3, 3) takes world to camera.
-    """
-    depth = np.where(rotation[2] >= 0, 1.0, -1.0) * np.maximum(np.abs(rotation[2]), _FLATTEST)
-    points: Float = (camera.focal * rotation[:2] / depth).T + principal_point(camera)
-    return points
 
 
 def find_control_lines(camera: Camera, rotation: Float, segments: Segments, axis: int) -> Float:
@@ -54,7 +43,7 @@ def _turned(middles: Float, lengths: Float, goal: Float) -> Float:
 
 
 def _best_pair(segments: Float, least_angle: float = _LEAST_ANGLE) -> Float | None:
-    """The two of (N, 2, 2) segments whose meeting is told best: long ones at a wide angle."""
+    """The two of (N, 2, 2) segments whose intersection is best defined: long ones at a wide angle."""
     along = segments[:, 1] - segments[:, 0]
     length = np.linalg.norm(along, axis=1)
     segments, along, length = (values[length > 1.0] for values in (segments, along, length))

@@ -26,11 +26,11 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
-from exporters.faces import triangulate
-from exporters.gltf_materials import add_pictures, set_materials
+from exporters.gltf.materials import add_pictures, set_materials
+from exporters.gltf.tubes import build_tubes
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
-from exporters.textures.build import Textures
-from exporters.tubes import build_tubes
+from exporters.textures.pages import Textures
+from exporters.triangulation import triangulate
 from linecad.arrays import Float
 from linecad.scene import AXES, Scene
 

@@ -12,12 +12,14 @@ from pathlib import Path
 import numpy as np
 from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
+from exporters.beside import NO_FILES, Names, SideFiles
 from exporters.camera import camera_to_world, clipping_range, line_width, principal_point
 from exporters.colours import FACE, RGB, line_colour, linear
-from exporters.faces import triangulate
 from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
-from exporters.textures.build import Textures
-from exporters.usd_materials import add_material, add_photo_material, bind, set_coordinates
+from exporters.textures.pages import Textures
+from exporters.triangulation import triangulate
+from exporters.usd.materials import add_material, add_photo_material, bind, set_coordinates
+from linecad.io.files import UNFINISHED
 from linecad.scene import AXES, Scene
 
 _ROOT = Sdf.Path("/Reconstruction")
@@ -34,22 +36,22 @@ _ZIP_LOCAL_HEADER = 30  # bytes before name and extra field
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time of a zip entry; the real one would make each file another
 
 
-def write(scene: Scene, path: Path, textures: Textures | None = None, folder: str = _PACKAGED) -> None:
+def write(scene: Scene, path: Path, names: Names | None = None, textures: Textures | None = None) -> SideFiles:
     """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails.
 
-    The pages of the textures are expected in `folder` beside the stage; a package holds them.
+    The pages of the textures lie beside a stage, in the folder of `names`; without names, as a package, it holds them.
     """
-    stage = _build_stage(scene, textures, folder)
-    if path.suffix == ".usdz":
-        with tempfile.TemporaryDirectory(prefix=".linecad-", dir=path.parent) as temporary:
-            layer = Path(temporary) / "scene.usdc"
-            _save(stage, layer)
-            files = {layer.name: layer.read_bytes()}
-            if textures is not None:
-                files |= {f"{folder}/{page.name}": page.data for page in textures.pages}
-            path.write_bytes(_package(files))
-    else:
-        _save(stage, path)
+    pages = {} if textures is None else textures.files
+    if names is not None:
+        _save(_build_stage(scene, textures, names.folder), path)
+        return SideFiles(pages)
+    with tempfile.TemporaryDirectory(prefix=UNFINISHED, dir=path.parent) as temporary:
+        layer = Path(temporary) / "scene.usdc"
+        _save(_build_stage(scene, textures, _PACKAGED), layer)
+        files = {layer.name: layer.read_bytes()}
+    files |= {f"{_PACKAGED}/{name}": data for name, data in pages.items()}
+    path.write_bytes(_package(files))
+    return NO_FILES
 
 
 def _save(stage: Usd.Stage, path: Path) -> None:

@@ -1,0 +1,1 @@
+"""GLB: the document, its materials, and lines as tubes."""

@@ -1,0 +1,1 @@
+"""OpenUSD: the stage and its materials."""
