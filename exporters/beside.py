@@ -166,7 +166,7 @@ class _Change:
                 self._library.unlink(missing_ok=True)
 
     def finish(self, alone: bool) -> None:
-        """Remove what the new version, which is whole now, does not need; old parts only where no other export works."""
+        """Remove what the new version, which is whole now, does not need; parts only where no other export works."""
         with contextlib.suppress(OSError, OutputError):
             if self.needed.library is not None:
                 write_bytes_atomically(self._library, self.needed.library.encode())

@@ -1,18 +1,22 @@
 """What holds for every format: a new row in FORMATS is taken up by itself."""
 
 import os
+import re
 import subprocess
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import ModuleType
 
 import numpy as np
 import pytest
 from pxr import Usd
 
 from exporters import formats
-from exporters.formats import FORMATS, export, find_format, suffixes
+from exporters.beside import NOTHING, Beside, SideFiles
+from exporters.formats import FORMATS, Format, export, find_format, options_for, suffixes
+from exporters.options import Option
 from linecad.errors import OutputError
 from linecad.io.scene_file import write_scene
 
@@ -45,8 +49,20 @@ def run(script, *arguments):
     return output
 
 
+def files(folder):
+    """Every file in a folder and the folders in it, by its name as seen from there."""
+    return {str(path.relative_to(folder)): path for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
 def names(folder):
-    return sorted(path.name for path in folder.iterdir())
+    return list(files(folder))
+
+
+def exported(folder, *suffixes):
+    """The names of the files `a` of these suffixes, and of all that lies beside them by their rows."""
+    paths = [folder / f"a{suffix}" for suffix in suffixes]
+    found = [file for path in paths for file in (path, *FORMATS[path.suffix].beside.found(path))]
+    return sorted(str(file.relative_to(folder)) for file in found)
 
 
 @pytest.fixture(scope="module")
@@ -55,14 +71,14 @@ def reference(scene, tmp_path_factory):
     folder = tmp_path_factory.mktemp("reference")
     for suffix in FORMATS:
         save(scene, folder / f"a{suffix}")
-    assert names(folder) == sorted(f"a{suffix}" for suffix in FORMATS)
+    assert names(folder) == exported(folder, *FORMATS)
     return {suffix: (folder / f"a{suffix}").read_bytes() for suffix in FORMATS}
 
 
 @every_format
 def test_a_file_is_written_and_nothing_else(scene, tmp_path, suffix):
     save(scene, tmp_path / f"a{suffix}")
-    assert names(tmp_path) == [f"a{suffix}"]
+    assert names(tmp_path) == exported(tmp_path, suffix)
     assert (tmp_path / f"a{suffix}").stat().st_size > 1000
 
 
@@ -88,8 +104,9 @@ def test_the_same_scene_gives_the_same_bytes_in_fresh_processes(scene, reference
     for process in processes:
         process.communicate(timeout=120)
         assert process.returncode == 0
-    first, second = ({path.name: path.read_bytes() for path in folder.iterdir()} for folder in folders)
-    assert [suffix for suffix in FORMATS if first[f"a{suffix}"] != second[f"a{suffix}"]] == []
+    first, second = ({name: path.read_bytes() for name, path in files(folder).items()} for folder in folders)
+    assert first.keys() == second.keys()
+    assert [name for name, data in first.items() if data != second[name]] == []
     assert [suffix for suffix in FORMATS if first[f"a{suffix}"] != reference[suffix]] == []
 
 
@@ -103,13 +120,13 @@ def test_neither_the_name_nor_the_time_changes_the_bytes(scene, reference, tmp_p
 @with_lines
 def test_a_single_line_without_any_face(one_line, tmp_path, suffix):
     save(one_line, tmp_path / f"a{suffix}")
-    assert names(tmp_path) == [f"a{suffix}"]
+    assert names(tmp_path) == exported(tmp_path, suffix)
 
 
 @every_format
 def test_faces_without_any_line(no_lines, tmp_path, suffix):
     save(no_lines, tmp_path / f"a{suffix}")
-    assert names(tmp_path) == [f"a{suffix}"]
+    assert names(tmp_path) == exported(tmp_path, suffix)
 
 
 @pytest.mark.parametrize("suffix", sorted(FACES_ONLY))
@@ -122,13 +139,13 @@ def test_lines_alone_do_not_fit_into_formats_for_faces(no_faces, tmp_path, suffi
 @every_format
 def test_large_ids(large_ids, tmp_path, suffix):
     save(large_ids, tmp_path / f"a{suffix}")
-    assert names(tmp_path) == [f"a{suffix}"]
+    assert names(tmp_path) == exported(tmp_path, suffix)
 
 
 @every_format
 def test_a_scene_of_unknown_scale(free_unit, tmp_path, suffix):
     save(free_unit, tmp_path / f"a{suffix}")
-    assert names(tmp_path) == [f"a{suffix}"]
+    assert names(tmp_path) == exported(tmp_path, suffix)
 
 
 @every_format
@@ -180,7 +197,9 @@ def test_a_full_disk_keeps_the_old_file_and_leaves_no_other(scene, tmp_path):
     told = run(FULL_DISK, tmp_path / "scene.json", folder).splitlines()
     assert [line.split()[0] for line in told] == list(FORMATS)
     assert all("was not written" in line for line in told)
-    assert {path.name: path.read_text() for path in folder.iterdir()} == {f"a{suffix}": "old" for suffix in FORMATS}
+    assert {name: path.read_text() for name, path in files(folder).items()} == {
+        f"a{suffix}": "old" for suffix in FORMATS
+    }
 
 
 def test_two_exports_at_once_to_one_path_leave_one_whole_file(scene, tmp_path):
@@ -209,6 +228,37 @@ def test_a_name_without_suffix_is_told_so():
 def test_the_suffix_chooses_the_format_in_any_case():
     assert find_format(Path("A.StEp")) is FORMATS[".step"]
     assert suffixes() == tuple(FORMATS)
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix, row in FORMATS.items() if row.beside != NOTHING])
+def test_what_lies_beside_an_export_is_what_the_row_says(scene, photo, tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    export(scene, path, photo)
+    assert len(names(tmp_path)) > 1
+    assert names(tmp_path) == exported(tmp_path, suffix)
+    row = FORMATS[suffix].beside
+    assert all(row.allows(path, file) for file in files(tmp_path).values() if file != path)
+    export(scene, path, photo)
+    assert names(tmp_path) == exported(tmp_path, suffix)
+
+
+def test_a_new_format_with_side_files_needs_its_module_and_its_row_alone(scene, tmp_path, monkeypatch):
+    def write(scene, path, names, loud):
+        path.write_text(f"{names.folder}/part-{len(scene.lines)}.bin {names.library}{'!' if loud else ''}")
+        return SideFiles({f"part-{len(scene.lines)}.bin": b"lines"}, "material")
+
+    module = ModuleType("exporters.new")
+    module.write = write
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    row = Format(
+        "exporters.new", "lines", "metres", options=(Option("loud", False, "louder"),),
+        beside=Beside(".parts", re.compile(r"part-\d+\.bin"), ".materials"),
+    )  # fmt: skip
+    monkeypatch.setitem(FORMATS, ".new", row)
+    export(scene, tmp_path / "a.new", options=options_for([tmp_path / "a.new"], ["loud=on"]))
+    part = f"part-{len(scene.lines)}.bin"
+    assert (tmp_path / "a.new").read_text() == f"a.new.parts/{part} a.new.materials!"
+    assert names(tmp_path) == ["a.new", "a.new.materials", f"a.new.parts/{part}"] == exported(tmp_path, ".new")
 
 
 def test_the_table_is_fit_for_people():

@@ -122,6 +122,9 @@ def test_what_a_killed_run_left_half_written_goes(photos, plan_of, fake, output)
     (output / THUMBNAILS).mkdir()
     (output / ".linecad-0123.json").write_text("half")
     (output / THUMBNAILS / ".linecad-0123.jpg").write_text("half")
+    for folder in ("p0.obj.textures", "p1.usda.textures", ".linecad-0123"):  # the last one as a killed .usdz leaves it
+        (output / folder).mkdir()
+        (output / folder / ".linecad-0123.jpg").write_text("half")
     run(plan_of(photos), fake())
     assert not list(output.rglob(".linecad-*"))
 

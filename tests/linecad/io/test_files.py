@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from linecad.errors import OutputError
-from linecad.io.files import check_output, write_atomically
+from linecad.io.files import UNFINISHED, check_output, remove_unfinished, write_atomically
 
 
 def writing(text):
@@ -31,6 +31,18 @@ def test_the_file_holds_what_the_writer_wrote(tmp_path):
     write_atomically(tmp_path / "a.txt", writing("whole"))
     assert (tmp_path / "a.txt").read_text() == "whole"
     assert names(tmp_path) == ["a.txt"]
+
+
+def test_what_killed_writers_left_is_removed_and_nothing_else(tmp_path):
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "a.txt").write_text("mine")
+    (tmp_path / f"{UNFINISHED}1.txt").write_text("half")
+    (tmp_path / f"{UNFINISHED}2").mkdir()
+    (tmp_path / f"{UNFINISHED}2" / "a.txt").write_text("half")
+    (tmp_path / f"{UNFINISHED}3").symlink_to(tmp_path / "elsewhere")
+    remove_unfinished(tmp_path)
+    assert names(tmp_path) == ["elsewhere"]
+    assert (tmp_path / "elsewhere" / "a.txt").read_text() == "mine"
 
 
 def test_the_writer_gets_a_hidden_name_with_the_suffix_in_lower_case(tmp_path):

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from linecad.errors import LinecadError
-from linecad.io.locks import acquire, alone
+from linecad.io.locks import acquire, alone, waiting_for
 
 pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no such locks there")
 WORDS = ("another one works here", "wait for it")
@@ -61,6 +61,29 @@ def test_who_waits_while_the_file_is_removed_holds_the_one_that_is_there_then(tm
     waiting.join()
     assert os.path.samestat(os.fstat(held[0]), path.stat())
     os.close(held[0])
+
+
+def test_a_folder_is_waited_for_and_no_file_is_left(tmp_path):
+    entered = threading.Event()
+
+    def enter():
+        with waiting_for(tmp_path) as locked:
+            assert locked
+            entered.set()
+
+    other = threading.Thread(target=enter)
+    with waiting_for(tmp_path) as locked:
+        assert locked
+        other.start()
+        assert not entered.wait(0.2)
+    other.join(60)
+    assert entered.is_set()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_folder_that_cannot_be_locked_is_told_so(tmp_path):
+    with waiting_for(tmp_path / "none") as locked:
+        assert not locked
 
 
 def test_where_no_lock_can_be_had_nobody_is_kept_out(tmp_path):
