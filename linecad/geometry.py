@@ -1,15 +1,30 @@
-"""Rays, projection and image lines: the mathematics that several stages share.
+"""Lengths in a photo, rays, projection, image lines and rotations: the mathematics that several stages share.
 
 Frames are those of `linecad.scene`. `K` is the camera matrix in px, `R` takes world to camera, so that
 `pixel ~ K R P` and the world ray of a pixel is `d = R^-1 K^-1 pixel` (paper, equations 1 and 2).
 """
 
+from dataclasses import dataclass
+from itertools import permutations
+
 import numpy as np
 
-from linecad.arrays import Bool, Float
+from linecad.arrays import Float
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
 DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
+
+
+@dataclass(frozen=True)
+class PhotoLength:
+    """A length in a photo that grows with the photo's width, but is never less than a floor."""
+
+    at_reference: float  # px in a photo of REFERENCE_WIDTH
+    floor: float = 0.0  # px in any photo
+
+    def px(self, width: float) -> float:
+        """The length in a photo of `width` px."""
+        return max(self.at_reference * (width / REFERENCE_WIDTH), self.floor)
 
 
 def homogeneous(points: Float) -> Float:
@@ -81,13 +96,31 @@ def rotation_about(vector: Float) -> Float:
     return rotation
 
 
-def inside_ring(points: Float, ring: Float) -> Bool:
-    """Which points (M, 2) lie inside a ring (V, 2): those from which a ray crosses it an odd number of times."""
-    inside = np.zeros(len(points), bool)
-    for start, end in zip(ring, np.roll(ring, -1, axis=0), strict=True):
-        if start[1] == end[1]:
-            continue
-        spans = (points[:, 1] < start[1]) != (points[:, 1] < end[1])
-        at = start[0] + (points[:, 1] - start[1]) / (end[1] - start[1]) * (end[0] - start[0])
-        inside ^= spans & (points[:, 0] < at)
-    return inside
+def angle_between_frames(found: Float, true: Float) -> tuple[float, tuple[int, int, int]]:
+    """Smallest angle, rad, between two frames (3, 3) whose columns are axes of free name and sign; which axis is which.
+
+    The second value names, for each axis of `true`, the axis of `found`. Either frame may be left-handed.
+    """
+    cosines = np.abs(found.T @ true)
+
+    def trace(names: tuple[int, ...]) -> float:
+        """Of the turn with the best signs."""
+        return float(sum(cosines[name, axis] for axis, name in enumerate(names)))
+
+    first, second, third = max(permutations(range(3)), key=trace)
+    angle = np.arccos(np.clip((trace((first, second, third)) - 1) / 2, -1, 1))
+    return float(angle), (first, second, third)
+
+
+def segment_coordinates(points: Float, ends: Float) -> tuple[Float, Float]:
+    """Place of points (..., 2) along segments (..., 2, 2), from the first end on, and how far beside them, signed; px.
+
+    Points and segments are broadcast against each other; `beside` is positive to the right of a segment in the photo
+    (x right, y down). A segment without length has no direction: both values are 0.
+    """
+    along = ends[..., 1, :] - ends[..., 0, :]
+    along = along / np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), np.finfo(float).tiny)
+    off = points - ends[..., 0, :]
+    place: Float = (off * along).sum(axis=-1)
+    beside: Float = along[..., 0] * off[..., 1] - along[..., 1] * off[..., 0]
+    return place, beside

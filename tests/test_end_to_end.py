@@ -10,13 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from scipy.spatial.transform import Rotation
 
 from linecad.camera.estimate import calibrate
 from linecad.camera.intrinsics import undistort_points
 from linecad.camera.photo import read_photo
 from linecad.camera.text import summary
 from linecad.evaluation.depth import score_depth
-from linecad.evaluation.frames import nearest_axes, rotation_error
+from linecad.evaluation.frames import nearest_axes
+from linecad.geometry import angle_between_frames
 from linecad.io.scene_file import read_scene
 from linecad.lines.segments import find_segments
 from linecad.options import Options
@@ -66,10 +68,10 @@ def sample(request):
 
 def test_the_frame_is_the_true_one(sample):
     name, _, scene = sample
-    error, names = rotation_error(scene.rotation, truth_of(name)[2])
+    error, names = angle_between_frames(scene.rotation, truth_of(name)[2])
     assert np.degrees(error) < 0.3
     assert names == (0, 1, 2)
-    assert np.degrees(np.arccos(np.clip((np.trace(scene.rotation.T @ truth_of(name)[2]) - 1) / 2, -1, 1))) < 0.3
+    assert np.degrees(Rotation.from_matrix(scene.rotation.T @ truth_of(name)[2]).magnitude()) < 0.3
 
 
 def test_the_depths_of_component_0_are_true(sample):
@@ -148,7 +150,7 @@ def test_a_photo_with_exif_needs_no_camera_file():
     scene = reconstruct(photo, OPTIONS["default"])
     pixels, depth, rotation = truth_of("room")
     assert scene.camera.source == "exif"
-    assert np.degrees(rotation_error(scene.rotation, rotation)[0]) < 0.3
+    assert np.degrees(angle_between_frames(scene.rotation, rotation)[0]) < 0.3
     score = score_depth(scene, pixels, depth, scene.lines.component == 0)
     assert score.precision_5 >= LEAST["room", "default"][1]
 
@@ -164,7 +166,7 @@ def test_frames_of_york_urban(photographs, name):
     K = np.array(truth["K"])
     photo = read_photo(file.with_suffix(".jpg"), file)
     frame = calibrate(photo, find_segments(photo.grey)).frame
-    error, _ = rotation_error(frame.rotation, np.array(truth["R_cam_from_manhattan"]))
+    error, _ = angle_between_frames(frame.rotation, np.array(truth["R_cam_from_manhattan"]))
     assert np.degrees(error) < YORK_URBAN[name]
     ends = np.array([[line["p"], line["q"]] for line in truth["lines"]])
     label_of_axis = np.abs(np.array(truth["vp_dirs_orthogonal"]) @ frame.rotation).argmax(axis=0) + 1
@@ -183,5 +185,5 @@ def test_depths_of_a_castle_photo(photographs):
     assert len(scene.lines) >= 80
     assert score.with_depth >= 15
     assert score.precision_5 >= 0.95
-    error, _ = rotation_error(scene.rotation, np.array(truth["R_cam_from_manhattan"]))
+    error, _ = angle_between_frames(scene.rotation, np.array(truth["R_cam_from_manhattan"]))
     assert np.degrees(error) < 1.0

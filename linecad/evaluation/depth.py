@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 
 from linecad.arrays import Bool, Float
-from linecad.geometry import inside_ring, world_rays
+from linecad.geometry import segment_coordinates, world_rays
 from linecad.scene import Face, Plane, Scene
 
 REACH = 4.0  # px between a surveyed point and the line that is taken to show it
@@ -68,10 +69,8 @@ def face_depths(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) ->
         with np.errstate(divide="ignore", invalid="ignore"):
             depth = plane.offset / rays[:, plane.axis]
         points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
-        inside = inside_ring(points, face.outline[:, flat])
-        for hole in face.holes:
-            inside &= ~inside_ring(points, hole[:, flat])
-        hit = inside & (depth > 0) & (depth < nearest)
+        polygon = shapely.Polygon(face.outline[:, flat], [hole[:, flat] for hole in face.holes])
+        hit = shapely.contains_xy(polygon, points) & (depth > 0) & (depth < nearest)
         nearest[hit] = depth[hit]
     return np.where(np.isfinite(nearest), nearest, np.nan)
 
@@ -82,12 +81,10 @@ def line_depths(scene: Scene, pixels: Float, lines: Bool) -> Float:
     found = np.full(len(pixels), np.nan)
     rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
     for line in np.flatnonzero(lines):
-        start, end = scene.lines.segment[line]
-        length = float(np.linalg.norm(end - start))
-        along = (end - start) / length
-        position = (pixels - start) @ along
-        distance = np.abs((pixels - start) @ np.array([-along[1], along[0]]))
-        hit = (position >= 0) & (position <= length) & (distance < nearest)
+        start, end = segment = scene.lines.segment[line]
+        place, beside = segment_coordinates(pixels, segment)
+        distance = np.abs(beside)
+        hit = (place >= 0) & (place <= np.linalg.norm(end - start)) & (distance < nearest)
         if not hit.any():
             continue
         across = np.delete(np.arange(3), scene.lines.axis[line])

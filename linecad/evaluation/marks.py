@@ -7,14 +7,12 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.evaluation.labels import UNDECIDED
 from linecad.evaluation.overlap import find_overlaps
-from linecad.geometry import REFERENCE_WIDTH
+from linecad.geometry import PhotoLength
 from linecad.line_graph import LineGraph
 from linecad.scene import Camera
 
-POINT_REACH = 20.0  # px at the reference width between a marked crossing and one of the graph
-POINT_REACH_FLOOR = 5.0  # px in any photo
-ACROSS = 6.0  # px at the reference width between a marked segment and one of the graph
-ACROSS_FLOOR = 2.5  # px
+POINT_REACH = PhotoLength(20.0, floor=5.0)  # between a marked crossing and one of the graph
+ACROSS = PhotoLength(6.0, floor=2.5)  # between a marked segment and one of the graph
 ANGLE = np.radians(3.0)  # between the two
 LEAST_OVERLAP = 0.5  # of the shorter of the two
 
@@ -38,18 +36,17 @@ def label_by_marks(marks: MarkedCrossings, graph: LineGraph, camera: Camera) -> 
     over half of the shorter one and, where its axis is known, along that axis. Of several such crossings the nearest is
     taken. Marks that contradict each other on one crossing leave it undecided.
     """
-    scale = camera.width / REFERENCE_WIDTH
-    point_reach, across = max(POINT_REACH * scale, POINT_REACH_FLOOR), max(ACROSS * scale, ACROSS_FLOOR)
+    point_reach, across = POINT_REACH.px(camera.width), ACROSS.px(camera.width)
     label = np.full(len(graph.edges), UNDECIDED, np.int64)
-    said: dict[int, set[int]] = {}
+    found: dict[int, set[int]] = {}
     for number in range(len(marks.pixel)):
         distance = np.linalg.norm(graph.crossing - marks.pixel[number], axis=1)
         near = np.flatnonzero(distance <= point_reach)
         for edge in near[np.argsort(distance[near], kind="stable")].tolist():
             if _is_same(marks, number, graph, edge, across):
-                said.setdefault(edge, set()).add(int(marks.label[number]))
+                found.setdefault(edge, set()).add(int(marks.label[number]))
                 break
-    for edge, labels in said.items():
+    for edge, labels in found.items():
         label[edge] = labels.pop() if len(labels) == 1 else UNDECIDED
     return label
 

@@ -13,13 +13,14 @@ from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
 from linecad.evaluation.depth import DepthScore, score_dense, score_depth
-from linecad.evaluation.frames import nearest_axes, rotation_error, true_axes
+from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.labels import FAKE, REAL
 from linecad.evaluation.methods import ROWS, Run, Settings, run_method
 from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
+from linecad.geometry import angle_between_frames
 from linecad.line_graph import Formulation, LineGraph
 from linecad.pipeline import reconstruct_lines
 from linecad.scene import Scene
@@ -162,7 +163,7 @@ def _score(reference: Reference, scene: Scene, lines: Bool) -> DepthScore | None
 def _rotation_error(reference: Reference, scene: Scene) -> float | None:
     if reference.rotation is None:
         return None
-    return float(np.degrees(rotation_error(scene.rotation, reference.rotation)[0]))
+    return float(np.degrees(angle_between_frames(scene.rotation, reference.rotation)[0]))
 
 
 def covered_length(marked: Float, marked_axis: Int, lines: Float, axis: Int) -> float:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.geometry import segment_coordinates
 
 TINY = 1e-12
 
@@ -31,12 +32,10 @@ def find_overlaps(segment: Float, pieces: Float, reach: float, angle: float) -> 
     slope = unit[:, 0] * along[1] - unit[:, 1] * along[0]  # px of distance per px along the segment
     near = np.flatnonzero((np.abs(slope) <= np.sin(angle)) & (piece_length > TINY))
     unit, slope = unit[near], slope[near]
-    to = segment[0] - pieces[near, 0]
-    offset = unit[:, 0] * to[:, 1] - unit[:, 1] * to[:, 0]
-    # |offset + t slope| <= reach, and 0 <= position + t advance <= length of the piece, both over t from 0 to length
+    position, offset = segment_coordinates(segment[0], pieces[near])
+    # |offset + t slope| <= reach, and 0 <= position + t unit along <= length of the piece, both over t from 0 to length
     low, high = _between(offset, slope, -reach, reach)
-    position, advance = (to * unit).sum(axis=1), unit @ along
-    first, last = _between(position, advance, 0.0, piece_length[near])
+    first, last = _between(position, unit @ along, 0.0, piece_length[near])
     start = np.maximum(np.maximum(low, first), 0.0)
     end = np.minimum(np.minimum(high, last), length)
     found = np.flatnonzero(end - start > TINY)

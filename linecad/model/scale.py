@@ -10,10 +10,11 @@ Only component 0 can be measured: the scale of every other one is itself a guess
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 
 from linecad.arrays import Float
 from linecad.errors import ScaleError
-from linecad.geometry import inside_ring, world_rays
+from linecad.geometry import world_rays
 from linecad.scene import AXES, Face, Plane, Scene
 
 REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in the photo lies on it
@@ -136,13 +137,7 @@ def _line_under(scene: Scene, pixels: Float) -> int | None:
     """The row of the line of component 0 that both points (2, 2) px lie on, the nearest of several; or None."""
     lines = scene.lines
     reach = REACH * max(scene.camera.width, scene.camera.height)
-    along = lines.segment[:, 1] - lines.segment[:, 0]
-    length = np.maximum(np.linalg.norm(along, axis=1), 1e-12)
-    away = pixels[None] - lines.segment[:, :1]  # (N, 2, 2)
-    share = (away * along[:, None]).sum(axis=2) / length[:, None]
-    share = np.clip(share, 0, length[:, None])
-    foot = lines.segment[:, :1] + share[:, :, None] * (along / length[:, None])[:, None]
-    off = np.linalg.norm(pixels[None] - foot, axis=2).max(axis=1, initial=0.0)
+    off = shapely.distance(shapely.linestrings(lines.segment)[:, None], shapely.points(pixels)).max(axis=1, initial=0.0)
     off[(lines.component != 0) | (off > reach)] = np.inf
     row = int(off.argmin()) if len(off) else 0
     return row if len(off) and np.isfinite(off[row]) else None
@@ -184,13 +179,12 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
 
 
 def _meets(ray: Float, plane: Plane, face: Face) -> bool:
-    """Whether a ray from the camera meets a face: inside an odd number of its rings."""
+    """Whether a ray from the camera meets a face."""
     if ray[plane.axis] * plane.offset <= 0:
         return False
     others = [axis for axis in range(3) if axis != plane.axis]
-    point = (ray * (plane.offset / ray[plane.axis]))[others][None]
-    rings = (face.outline, *face.holes)
-    return sum(bool(inside_ring(point, ring[:, others])[0]) for ring in rings) % 2 == 1
+    polygon = shapely.Polygon(face.outline[:, others], [hole[:, others] for hole in face.holes])
+    return bool(shapely.contains_xy(polygon, *(ray * (plane.offset / ray[plane.axis]))[others]))
 
 
 def _checked(scene: Scene, units: float, what: str) -> float:

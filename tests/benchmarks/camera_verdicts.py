@@ -4,15 +4,15 @@ import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from linecad.arrays import Float
 from linecad.camera.distortion import straighten
 from linecad.camera.estimate import Calibrated
 from linecad.camera.photo import Photo
 from linecad.errors import LinecadError
-from linecad.evaluation.frames import rotation_error
 from linecad.finding import find_calibration
-from linecad.geometry import angles_to, vanishing_points
+from linecad.geometry import angle_between_frames, angles_to, vanishing_points
 from linecad.line_graph import Segments
 from linecad.lines.segments import find_segments
 
@@ -146,14 +146,10 @@ def turn_between(found: Float, true: Float) -> Float:
 
     Axes have no names here: the found ones are those that fit best.
     """
-    _, names = rotation_error(found, true)
+    _, names = angle_between_frames(found, true)
     named = found[:, list(names)]
     turn = (named * np.sign((named * true).sum(axis=0))) @ true.T
-    vector = np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]]) / 2
-    sine = float(np.linalg.norm(vector))
-    angle = float(np.arctan2(sine, (np.trace(turn) - 1) / 2))
-    scaled: Float = vector * (angle / sine if sine > 1e-12 else 1.0)
-    return scaled
+    return np.asarray(Rotation.from_matrix(turn).as_rotvec())
 
 
 def finite_points(matrix: Float, rotation: Float, width: int, height: int) -> int:

@@ -21,8 +21,7 @@ from linecad.arrays import Bool, Float, Int
 from linecad.camera.intrinsics import undistort_points
 from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
-from linecad.evaluation.frames import rotation_error
-from linecad.geometry import world_rays
+from linecad.geometry import angle_between_frames, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components, spanning_tree
 from linecad.graph.cues.junctions import CORNER_FACTOR, WEIGHT
@@ -121,7 +120,7 @@ def read_surveyed(photo_file: Path, camera_file: Path, truth_file: Path) -> Surv
     raw = find_segments(photo.grey)
     frame = find_frame(raw, photo.camera.matrix)
     true = np.array(truth["R_cam_from_manhattan"])
-    _, names = rotation_error(frame.rotation, true)
+    _, names = angle_between_frames(frame.rotation, true)
     renamed = np.empty((3, 3))
     renamed[:, names] = true
     points, axis = _truth_points(truth, renamed)

@@ -15,7 +15,8 @@ from linecad.camera.intrinsics import undistort_points
 from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.depth import score_depth
-from linecad.evaluation.frames import nearest_axes, rotation_error
+from linecad.evaluation.frames import nearest_axes
+from linecad.geometry import angle_between_frames
 from linecad.lines.segments import find_segments
 from linecad.options import Options
 from linecad.pipeline import reconstruct
@@ -29,7 +30,7 @@ def measure_depth(truth_file: Path, options: Options) -> tuple[float, ...]:
     points = surveyed_points(truth)
     pixels = undistort_points(points[:, :2], np.array(truth["K"]), (), scene.camera.matrix)
     score = score_depth(scene, pixels, points[:, 4])
-    error, _ = rotation_error(scene.rotation, np.array(truth["R_cam_from_manhattan"]))
+    error, _ = angle_between_frames(scene.rotation, np.array(truth["R_cam_from_manhattan"]))
     real = scene.intersections.real
     figures = (
         len(scene.lines), len(real), real.mean(), len(scene.planes), score.recall_2, score.recall_5, score.precision_2,
@@ -73,7 +74,7 @@ def measure_frame(truth_file: Path) -> tuple[float, float, float]:
     started = time.perf_counter()
     frame = find_frame(segments, K)
     seconds = time.perf_counter() - started
-    error, _ = rotation_error(frame.rotation, np.array(truth["R_cam_from_manhattan"]))
+    error, _ = angle_between_frames(frame.rotation, np.array(truth["R_cam_from_manhattan"]))
     ends = np.array([[line["p"], line["q"]] for line in truth["lines"]])
     label_of_axis = np.abs(true @ frame.rotation).argmax(axis=0) + 1
     right = label_of_axis[nearest_axes(ends, K, frame.rotation)] == [line["label"] for line in truth["lines"]]

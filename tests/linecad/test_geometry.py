@@ -1,4 +1,6 @@
-"""Rays, projection, vanishing points and rotations against their definitions."""
+"""Lengths, rays, projection, vanishing points, rotations and segments against their definitions."""
+
+from itertools import permutations
 
 import numpy as np
 import pytest
@@ -7,6 +9,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from linecad.geometry import (
+    REFERENCE_WIDTH,
+    PhotoLength,
+    angle_between_frames,
     angles_to,
     central_camera,
     directions_to,
@@ -14,6 +19,7 @@ from linecad.geometry import (
     plane_normals,
     project,
     rotation_about,
+    segment_coordinates,
     vanishing_points,
     world_rays,
 )
@@ -89,3 +95,42 @@ def test_rotation_stays_orthogonal_for_tiny_and_half_turns(angle):
 
 def test_central_camera_looks_through_the_middle_of_the_photo():
     assert central_camera(500, 640, 481).tolist() == [[500, 0, 319.5], [0, 500, 240], [0, 0, 1]]
+
+
+@pytest.mark.parametrize("names", list(permutations(range(3))))
+@pytest.mark.parametrize("signs", [(1, 1, 1), (-1, 1, 1), (-1, -1, -1)])
+def test_names_and_signs_of_axes_are_free_in_the_angle_between_frames(names, signs):
+    true = rotation_about(np.array([0.2, -0.3, 0.4]))
+    found = np.empty((3, 3))
+    found[:, list(names)] = true * signs
+    error, which = angle_between_frames(found, true)
+    assert error < 1e-7
+    assert which == names
+
+
+@pytest.mark.parametrize("degrees", [0.01, 1.0, 20.0])
+def test_the_angle_between_frames_is_that_of_the_turn(degrees):
+    true = rotation_about(np.array([0.2, -0.3, 0.4]))
+    axis = np.array([2.0, -1.0, 2.0]) / 3
+    error, which = angle_between_frames(rotation_about(np.radians(degrees) * axis) @ true, true)
+    assert np.degrees(error) == pytest.approx(degrees, rel=1e-5)
+    assert which == (0, 1, 2)
+
+
+def test_a_length_grows_with_the_photo_and_never_falls_below_its_floor():
+    length = PhotoLength(30.0, floor=5.0)
+    assert [length.px(width) for width in (7680, REFERENCE_WIDTH, 1280, 320)] == [60, 30, 10, 5]
+    assert PhotoLength(30.0).px(REFERENCE_WIDTH / 100) == pytest.approx(0.3)
+
+
+def test_segment_coordinates_are_along_and_to_the_right():
+    ends = np.array([[[1.0, 1.0], [1.0, 5.0]], [[0.0, 0.0], [3.0, 4.0]]])  # down, and down to the right
+    place, beside = segment_coordinates(np.array([0.0, 5.0]), ends)
+    np.testing.assert_allclose(place, [4, 4])
+    np.testing.assert_allclose(beside, [1, 3])
+    both, _ = segment_coordinates(np.array([[0.0, 5.0], [3.0, 4.0], [0.0, 0.0]])[:, None], ends)
+    np.testing.assert_allclose(both, [[4, 4], [3, 5], [-1, 0]])
+
+
+def test_a_segment_without_length_has_no_direction():
+    assert segment_coordinates(np.array([3.0, 4.0]), np.zeros((2, 2))) == (0, 0)

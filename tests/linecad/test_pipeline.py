@@ -12,9 +12,8 @@ from linecad.camera.photo import Photo, read_photo
 from linecad.decide.annotations import annotate
 from linecad.decide.decision import decide
 from linecad.errors import ReconstructionError
-from linecad.evaluation.frames import rotation_error
 from linecad.finding import find_lines
-from linecad.geometry import project
+from linecad.geometry import angle_between_frames, project
 from linecad.graph.build import build_line_graph
 from linecad.io.scene_file import read_scene, write_scene
 from linecad.line_graph import ManhattanFrame, Segments, Solution
@@ -83,7 +82,7 @@ def true_line(made, scene, line):
 
 
 def test_the_drawn_photo_gives_the_true_frame(made, scene):
-    error, names = rotation_error(scene.rotation, made.frame.rotation)
+    error, names = angle_between_frames(scene.rotation, made.frame.rotation)
     assert np.degrees(error) < 0.1
     assert names == (0, 1, 2)
 

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from scipy.spatial.transform import Rotation
 
 from linecad.camera.camera_file import SUFFIXES, check_suffix, json_of, write_camera
 from linecad.camera.intrinsics import read_calibration
@@ -40,8 +41,8 @@ def test_the_written_camera_is_read_again_with_the_same_frame(room, tmp_path):
     write_camera(room, path)
     again = find_camera(ROOM, path)
     np.testing.assert_array_equal(again.camera.matrix, room.camera.matrix)
-    turn = again.frame.rotation @ room.frame.rotation.T
-    assert np.degrees(np.arccos(np.clip((np.trace(turn) - 1) / 2, -1, 1))) < 0.1
+    turn = Rotation.from_matrix(again.frame.rotation @ room.frame.rotation.T)
+    assert np.degrees(turn.magnitude()) < 0.1
     assert again.camera.source == "file"
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from linecad.camera.vanishing_points import MIN_SEGMENTS, default_focal, find_frame, need_segments
 from linecad.errors import ReconstructionError
@@ -11,7 +12,7 @@ from linecad.line_graph import Segments
 
 def angle_between(first, second):
     """rad, without any freedom of names or signs."""
-    return np.arccos(np.clip((np.trace(first.T @ second) - 1) / 2, -1, 1))
+    return Rotation.from_matrix(first.T @ second).magnitude()
 
 
 def test_frame_of_exact_segments_is_the_true_one(made):

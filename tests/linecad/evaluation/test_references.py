@@ -13,11 +13,11 @@ from linecad.camera.distortion import open_photo
 from linecad.editing.labelling import camera_of_labels
 from linecad.errors import DatasetError, LinecadError
 from linecad.evaluation.datasets import find_dataset
-from linecad.evaluation.frames import nearest_axes, rotation_error
+from linecad.evaluation.frames import nearest_axes
 from linecad.evaluation.labels import FAKE, REAL, UNDECIDED, label_crossings
 from linecad.evaluation.marks import UNKNOWN_AXIS, label_by_marks
 from linecad.evaluation.references import open_case, reference_of
-from linecad.geometry import project
+from linecad.geometry import angle_between_frames, project
 
 K = [[500.0, 0, 160], [0, 510.0, 120], [0, 0, 1]]
 
@@ -47,7 +47,7 @@ def test_york_urban_as_published(made, york_folder):
     assert [case.name for case in dataset.cases] == ["P1", "P2"]
     photo, reference = open_case(dataset.cases[1])
     assert photo.camera.matrix == pytest.approx(made.camera.matrix)
-    error, which = rotation_error(made.frame.rotation, reference.rotation)
+    error, which = angle_between_frames(made.frame.rotation, reference.rotation)
     assert error < 1e-6
     assert which == (0, 2, 1)  # label 2 is vertical
     assert reference.lines.ends == pytest.approx(made.pixels)
