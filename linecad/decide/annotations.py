@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.corrections.apply import CorrectedLines, Said, rows_of, said_of
+from linecad.corrections.annotations import Annotations, annotations_of, rows_of
+from linecad.corrections.apply import CorrectedLines
 from linecad.errors import ContradictionError
 from linecad.line_graph import LineGraph, Solution
 from solver.options import OnProgress, SolveOptions
@@ -14,7 +15,7 @@ SURE_FACTOR = 2.0  # by which the tolerance of a crossing grows that a person ca
 WIDEST_TOLERANCE = float(np.log(100.0))  # of a crossing that a person called real, in log depth
 
 
-def annotate(graph: LineGraph, corrected: CorrectedLines | None) -> tuple[LineGraph, Said]:
+def annotate(graph: LineGraph, corrected: CorrectedLines | None) -> tuple[LineGraph, Annotations]:
     """The annotations of a graph of corrected lines, and the graph that believes them; none without corrections.
 
     Every crossing that a person called real tells about depth, if little, and its tolerance is wider: a person is not
@@ -22,8 +23,8 @@ def annotate(graph: LineGraph, corrected: CorrectedLines | None) -> tuple[LineGr
     """
     if corrected is None:
         none = np.zeros(len(graph.edges), bool)
-        return graph, Said(none, none, (None,) * len(graph.edges), ())
-    said = said_of(graph, corrected)
+        return graph, Annotations(none, none, (None,) * len(graph.edges), ())
+    said = annotations_of(graph, corrected)
     taken = said.real & graph.possible
     wider = np.minimum(SURE_FACTOR * graph.tolerance, WIDEST_TOLERANCE)
     tolerance = np.where(taken, wider, graph.tolerance)
@@ -31,7 +32,11 @@ def annotate(graph: LineGraph, corrected: CorrectedLines | None) -> tuple[LineGr
 
 
 def solve_annotated(
-    graph: LineGraph, options: SolveOptions, said: Said, corrected: CorrectedLines | None, on_progress: OnProgress
+    graph: LineGraph,
+    options: SolveOptions,
+    said: Annotations,
+    corrected: CorrectedLines | None,
+    on_progress: OnProgress,
 ) -> Solution:
     """The solution that keeps to the annotations; ContradictionError, by places in the photo, where none can."""
     real, fake = (tuple(np.flatnonzero(flags).tolist()) for flags in (said.real, said.fake))

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Int, Text
-from linecad.corrections.apply import Said
+from linecad.corrections.annotations import Annotations
 from linecad.decide.blocks import find_blocks
 from linecad.decide.bodies import Bodies, agreeing
 from linecad.decide.stability import (
@@ -44,7 +44,9 @@ class Decision:
     notes: tuple[str, ...]
 
 
-def decide(graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, said: Said) -> Decision:
+def decide(
+    graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, said: Annotations
+) -> Decision:
     """Decide about every crossing of a solved graph.
 
     `inconsistency` is that of the photo, needed where joins must be stable; `said` are a person's annotations.
@@ -83,7 +85,9 @@ class _Joins:
     required: float = 0.0  # stability
 
 
-def _joins(graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, said: Said) -> _Joins:
+def _joins(
+    graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, said: Annotations
+) -> _Joins:
     """Which crossings join what must not be joined."""
     count, may = len(graph.segments), np.full(len(graph.edges), "", dtype="<U13")
     if options.joins_used == "all":

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 
 from linecad.camera.photo import Photo
-from linecad.corrections.apply import Said
+from linecad.corrections.annotations import Annotations
 from linecad.errors import OutputError
 from linecad.io.files import check_output
 from linecad.line_graph import LineGraph
@@ -39,7 +39,7 @@ def check_labels(path: Path, photo_file: Path, camera_file: Path | None) -> None
         raise OutputError(f"{path.name} must end in .json, or linecad evaluate does not find it")
 
 
-def labels_to_json(photo: Photo, camera: object, graph: LineGraph, said: Said) -> str:
+def labels_to_json(photo: Photo, camera: object, graph: LineGraph, said: Annotations) -> str:
     """The text of the labels file, with one crossing in each line."""
     rows = []
     for edge, label in enumerate(said.label):

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 from linecad.camera.photo import Photo
-from linecad.corrections.apply import CorrectedLines, Correcting, Said, correcting_of, rows_of, said_of
+from linecad.corrections.annotations import Annotations, annotations_of, rows_of
+from linecad.corrections.apply import CorrectedLines, Correcting, correcting_of
 from linecad.corrections.edits import Corrections, Edit, KnownLength, SetFrame
 from linecad.corrections.lengths import measured
 from linecad.editing.solving import Answer, Step, Task
@@ -36,7 +37,7 @@ class Lines:
 
     corrected: CorrectedLines
     graph: LineGraph  # of all lines that are long enough
-    said: Said
+    said: Annotations
     ids: tuple[int, ...]  # of the graph's nodes
     crossings: tuple[int, ...]  # ids of the graph's edges
 
@@ -291,7 +292,7 @@ class Session:
             graph = connect_all(replace(self._found_now(), segments=corrected.segments), self.options)
         ids = corrected.ids[rows_of(graph.segments, corrected)]
         crossings = tuple(crossing_id(*pair) for pair in ids[graph.edges].tolist())
-        return Lines(corrected, graph, said_of(graph, corrected), tuple(ids.tolist()), crossings)
+        return Lines(corrected, graph, annotations_of(graph, corrected), tuple(ids.tolist()), crossings)
 
     def _content(self) -> Content:
         """The edits that bear on the solve."""

@@ -8,7 +8,8 @@ from linecad.decide.rigid_bodies import find_held, tied
 
 from linecad.camera.photo import Photo
 from linecad.camera.vanishing_points import fit_frame
-from linecad.corrections.apply import correct, said_of
+from linecad.corrections.annotations import annotations_of
+from linecad.corrections.apply import correct
 from linecad.corrections.edits import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
 from linecad.corrections.lengths import measured
 from linecad.decide.blocks import find_blocks
@@ -250,11 +251,11 @@ def test_a_sure_crossing_makes_one_body_of_two(far_graph, made):
     assert np.bincount(one.body)[0] == np.bincount(one.body).max()
 
 
-def test_only_crossings_that_are_said_change_the_graph(house, graph):
+def test_only_crossings_called_real_or_fake_change_the_graph(house, graph):
     corrected = house.corrected(house.label(graph, 3, "unsure"))
-    said = said_of(graph, corrected)
-    assert not said.real.any()
-    assert not said.fake.any()
+    noted = annotations_of(graph, corrected)
+    assert not noted.real.any()
+    assert not noted.fake.any()
     nothing = Corrections("made.jpg", 1600, 1200)
     nothing = Corrections("made.jpg", 1600, 1200)
     assert correct(house.made.segments, house.made.camera, house.made.frame, nothing).is_like(corrected)

@@ -1,0 +1,58 @@
+"""What corrections mean for a line graph: which of its crossings a person called real, fake or unsure."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool, Int
+from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.edits import Label
+from linecad.line_graph import LineGraph, Segments
+
+
+@dataclass(frozen=True, eq=False)
+class Annotations:
+    """What a person noted about the E crossings of a line graph."""
+
+    real: Bool  # (E,)
+    fake: Bool  # (E,)
+    label: tuple[Label | None, ...]  # E
+    notes: tuple[str, ...]  # what names no crossing of this graph
+
+
+def annotations_of(graph: LineGraph, corrected: CorrectedLines) -> Annotations:
+    """What the labels say about the crossings of a line graph of these lines.
+
+    Pieces that a split parted are two lines, so their collinear crossing is fake.
+    """
+    ids = corrected.ids[rows_of(graph.segments, corrected)]
+    # By the ids of the two lines, the smaller first.
+    edge = {(min(pair), max(pair)): number for number, pair in enumerate(ids[graph.edges].tolist())}
+    real, fake = np.zeros(len(graph.edges), bool), np.zeros(len(graph.edges), bool)
+    label: list[Label | None] = [None] * len(graph.edges)
+    notes = []
+    for one, other in corrected.parted:
+        number = edge.get((min(one, other), max(one, other)))
+        if number is not None:
+            fake[number] = graph.kind[number] == "collinear"
+    for pair, (pixel, word) in corrected.labels.items():
+        number = edge.get(pair)
+        if number is not None:
+            label[number] = word
+            real[number], fake[number] = word == "real", word == "fake"
+        elif word == "real":
+            notes.append(
+                f"the crossing at ({pixel[0]:.0f}, {pixel[1]:.0f}) that was called real is not in the line graph; "
+                "raise --option extension=PX"
+            )
+    return Annotations(real, fake, tuple(label), tuple(notes))
+
+
+def rows_of(segments: Segments, corrected: CorrectedLines) -> Int:
+    """(M,) the row in `corrected` of each of M segments that were taken from there."""
+    place = {
+        (axis, ends.tobytes()): row
+        for row, (ends, axis) in enumerate(zip(corrected.segments.ends, corrected.segments.axis.tolist(), strict=True))
+    }
+    pairs = zip(segments.ends, segments.axis.tolist(), strict=True)
+    return np.array([place[axis, ends.tobytes()] for ends, axis in pairs], np.int64)
