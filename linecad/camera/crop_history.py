@@ -10,7 +10,7 @@ from typing import Literal
 
 from linecad.camera.exif import Tags
 
-Framing = Literal["whole", "cropped", "unknown"]
+Crop = Literal["whole", "cropped", "unknown"]
 
 # Longer over shorter side of what cameras and phones take: squares, 4:3, 3:2, 16:9, and screens of phones up to 21:9.
 USUAL_ASPECTS = (1.0, 4 / 3, 3 / 2, 16 / 9, 18 / 9, 18.5 / 9, 19 / 9, 19.5 / 9, 20 / 9, 21 / 9)
@@ -32,16 +32,16 @@ EDITORS = (
 
 
 @dataclass(frozen=True)
-class History:
+class CropHistory:
     """A photo as it was taken, and how it became what it is."""
 
-    framing: Framing
+    crop: Crop
     long: float  # px, longer side as taken
     short: float  # px
     scale: float  # px of this photo for one px as taken
     error: float  # relative standard error of `scale`, or of the size as taken
     is_as_taken: bool  # whether `long` and `short` are sure to be what the camera stored
-    doubt: str  # a clause on what was done; "" for a photo left alone
+    remark: str  # a clause on what was done; "" for a photo left alone
 
 
 def usual_aspect(width: float, height: float) -> bool:
@@ -51,7 +51,7 @@ def usual_aspect(width: float, height: float) -> bool:
     return any(abs(aspect / usual - 1) <= tolerance for usual in USUAL_ASPECTS)
 
 
-def find_history(tags: Tags, width: int, height: int, turned: bool = False) -> History:
+def find_crop_history(tags: Tags, width: int, height: int, turned: bool = False) -> CropHistory:
     """What the sizes and programs in EXIF say of a photo that now has `width` x `height` px.
 
     `turned` says that the EXIF orientation swapped width and height.
@@ -60,8 +60,8 @@ def find_history(tags: Tags, width: int, height: int, turned: bool = False) -> H
     usual = usual_aspect(long, short)
     if not tags.sizes:
         error = PERHAPS_CROPPED if usual else CROPPED_BY_UNKNOWN
-        doubt = "" if usual else f"no camera takes photos of {width} x {height} px, so this one may be cropped"
-        return History("unknown", long, short, 1.0, error, False, doubt)
+        remark = "" if usual else f"no camera takes photos of {width} x {height} px, so this one may be cropped"
+        return CropHistory("unknown", long, short, 1.0, error, False, remark)
 
     # A program that rewrites one of these pairs may leave another; what was taken is never smaller.
     taken = max(tags.sizes, key=lambda size: size[0] * size[1])
@@ -78,20 +78,20 @@ def find_history(tags: Tags, width: int, height: int, turned: bool = False) -> H
         least = max(of_width, of_height)  # as if one side was kept whole
         reach = min(max(1 / least, 1.0), 1 / KEPT_AT_LEAST)
         scale, error = least * math.sqrt(reach), math.log(reach) / 2
-        return History(
+        return CropHistory(
             "cropped", taken_long, taken_short, scale, error, True, f"the photo seems cropped (taken with {size})"
         )
     scale = math.sqrt(of_width * of_height)
     resized = abs(scale - 1) > SCALE_TOLERANCE
-    doubt = f"the photo was taken with {size} and resized" if resized else ""
+    remark = f"the photo was taken with {size} and resized" if resized else ""
     if not usual_aspect(taken_long, taken_short):
-        doubt = f"no camera takes photos of {size}, so this one seems cropped"
-        return History("cropped", taken_long, taken_short, scale, CROPPED_BY_UNKNOWN, False, doubt)
+        remark = f"no camera takes photos of {size}, so this one seems cropped"
+        return CropHistory("cropped", taken_long, taken_short, scale, CROPPED_BY_UNKNOWN, False, remark)
     editor = _editor(tags.programs)
     if editor:
-        doubt = "; ".join(filter(None, [doubt, f"{editor} wrote the photo and may have cropped it"]))
-        return History("unknown", taken_long, taken_short, scale, PERHAPS_CROPPED, False, doubt)
-    return History("whole", taken_long, taken_short, scale, 0.0, True, doubt)
+        remark = "; ".join(filter(None, [remark, f"{editor} wrote the photo and may have cropped it"]))
+        return CropHistory("unknown", taken_long, taken_short, scale, PERHAPS_CROPPED, False, remark)
+    return CropHistory("whole", taken_long, taken_short, scale, 0.0, True, remark)
 
 
 def _scales(width: int, height: int, taken: tuple[float, float]) -> tuple[float, float]:

@@ -6,10 +6,11 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.camera.crop_history import usual_aspect
-from linecad.camera.exif_focal import FocalHint
+from linecad.camera.exif_focal import ExifFocal
 from linecad.camera.joint_fit import FOCAL, Fit, Prior, View, fit_view, known
 from linecad.camera.photo import Photo
-from linecad.camera.uncertainty import ENOUGH_LINES, Doubts, certainty_of, other_camera, whole_lines, widening
+from linecad.camera.quality import ENOUGH_LINES, Findings
+from linecad.camera.uncertainty import certainty_of, other_camera, whole_lines, widening
 from linecad.camera.vanishing_points import (
     MIN_SEGMENTS,
     best_axes,
@@ -53,14 +54,14 @@ CONTRADICTION = 3.0  # standard errors between EXIF and vanishing points
 
 @dataclass(frozen=True, eq=False)
 class Calibrated:
-    """A camera and its Manhattan frame, how sure both are, and the doubts in words."""
+    """A camera and its Manhattan frame, how sure both are, and notes on it."""
 
     camera: Camera
     frame: ManhattanFrame
     certainty: Certainty
     notes: tuple[str, ...]  # those of the photo among them
     prior: Prior | None = None  # of a focal length from the vanishing points alone
-    doubts: Doubts = field(default_factory=Doubts)
+    findings: Findings = field(default_factory=Findings)
 
 
 def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Calibrated:
@@ -91,7 +92,7 @@ def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segme
     wider = widening(counts)
     if wider * _focal_error(fit) > FOCAL_SIGMA:
         return first
-    found = _Found(_widened(fit, wider), counts, first.camera.source, first.doubts, prior=first.prior)
+    found = _Found(_widened(fit, wider), counts, first.camera.source, first.findings, prior=first.prior)
     return _calibrated(photo, raw, chosen, found, None)
 
 
@@ -116,7 +117,7 @@ def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", 
         camera = Camera(photo.width, photo.height, found.fit.view.matrix, found.source)
     if photo.bend is not None:
         camera = replace(camera, distortion=photo.removed_distortion(camera.focal))
-    notes = [*photo.notes, *found.doubts.notes]
+    notes = [*photo.notes, *found.findings.notes]
     if drawn is None:
         # The lines of one scene share one frame, so that of the least squares is theirs; that each axis may have a turn
         # of its own is for the camera and for the errors.
@@ -126,20 +127,20 @@ def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", 
         ends = np.array([line.ends for line in drawn.lines])
         frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
         notes.append("the Manhattan frame is that of lines drawn by hand")
-    certainty, more = certainty_of(camera, frame, found.fit, found.lines, raw, found.doubts, photo.bend)
+    certainty, more = certainty_of(camera, frame, found.fit, found.lines, raw, found.findings, photo.bend)
     if camera.source == "vanishing points" and certainty.focal is not None:
         notes.append(
             f"focal length guessed from the vanishing points: {camera.focal:.0f} px, standard error "
             f"{certainty.focal / camera.focal:.1%}"
         )
-    return Calibrated(camera, frame, certainty, (*notes, *more), found.prior, found.doubts)
+    return Calibrated(camera, frame, certainty, (*notes, *more), found.prior, found.findings)
 
 
 def prior_of(photo: Photo) -> Prior:
     """What is known of a photo's camera before its segments are looked at, with what EXIF says of it."""
     middle = np.array([(photo.width - 1) / 2, (photo.height - 1) / 2])
-    may_be_cropped = photo.framing == "cropped" or (
-        photo.framing == "unknown" and not usual_aspect(photo.width, photo.height)
+    may_be_cropped = photo.crop == "cropped" or (
+        photo.crop == "unknown" and not usual_aspect(photo.width, photo.height)
     )
     center_error = CROPPED_CENTER_ERROR if may_be_cropped else USUAL_CENTER_ERROR
     if photo.bend is not None:
@@ -150,8 +151,8 @@ def prior_of(photo: Photo) -> Prior:
     )  # fmt: skip
     if photo.camera is not None and photo.camera.is_given:
         return replace(prior, focal=photo.camera.focal, focal_error=0.0)
-    if photo.hint is not None:
-        return replace(prior, focal=photo.hint.focal, focal_error=photo.hint.relative_error)
+    if photo.exif_focal is not None:
+        return replace(prior, focal=photo.exif_focal.focal, focal_error=photo.exif_focal.relative_error)
     return prior
 
 
@@ -162,7 +163,7 @@ class _Found:
     fit: Fit
     lines: Int  # (3,) whole lines along each axis
     source: CameraSource
-    doubts: Doubts
+    findings: Findings
     searched: tuple[Float, ...] = ()  # axes (3, 3) at which the search for the frame ended
     prior: Prior | None = None
 
@@ -184,36 +185,36 @@ class _Finder:
             axes = search_axes(self.ends[:SEARCHED], camera.matrix, DRAWS)
             start = View(axes, camera.focal, camera.matrix[:2, 2])
             fit, lines = self.whole(fit_view(self.ends, self.width, self.height, start, prior), prior)
-            return _Found(fit, lines, camera.source, Doubts(is_fisheye=self.photo.is_fisheye), (axes,))
-        doubts = Doubts(is_fisheye=self.photo.is_fisheye)
-        best, prior = self._best(doubts)
+            return _Found(fit, lines, camera.source, Findings(is_fisheye=self.photo.is_fisheye), (axes,))
+        findings = Findings(is_fisheye=self.photo.is_fisheye)
+        best, prior = self._best(findings)
         alone, lines = self.whole(best, prior)
-        if self.photo.hint is not None:
-            return self._with_hint(self.photo.hint, alone, lines, prior, doubts)
+        if self.photo.exif_focal is not None:
+            return self._with_exif(self.photo.exif_focal, alone, lines, prior, findings)
         wider = widening(lines)
         error = wider * _focal_error(alone)
         if error <= FOCAL_SIGMA:
-            return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
+            return _Found(_widened(alone, wider), lines, "vanishing points", findings, prior=prior)
         assumed = replace(prior, focal_error=0.0)
         fit, lines = self.whole(self._at(central_camera(prior.focal, self.width, self.height), assumed), assumed)
-        doubts.notes.append(
+        findings.notes.append(
             f"focal length not known and not to be told from the vanishing points; {prior.focal:.0f} px assumed "
             "(28 mm equivalent), so depths may be stretched; give --focal or --camera"
         )
         covariance = alone.covariance * wider**2
         covariance[FOCAL, FOCAL] = max(error, USUAL_FOCAL_ERROR) ** 2
-        return _Found(replace(fit, covariance=covariance), lines, "default", doubts)
+        return _Found(replace(fit, covariance=covariance), lines, "default", findings)
 
-    def _best(self, doubts: Doubts) -> tuple[Fit, Prior]:
+    def _best(self, findings: Findings) -> tuple[Fit, Prior]:
         """The most likely view without EXIF, and what was assumed of the principal point."""
         usual = replace(
             prior_of(self.photo), focal=default_focal(self.width, self.height), focal_error=USUAL_FOCAL_ERROR
         )
-        doubts.is_cropped = usual.center_error == CROPPED_CENTER_ERROR
+        findings.is_cropped = usual.center_error == CROPPED_CENTER_ERROR
         fits = likely_fits(self.ends, self.width, self.height, usual)
         best = fits[0]
-        doubts.other = other_camera(best, fits, len(self.ends))
-        if doubts.is_cropped or self.photo.bend is not None:
+        findings.other = other_camera(best, fits, len(self.ends))
+        if findings.is_cropped or self.photo.bend is not None:
             return best, usual
         free = replace(usual, center_error=CROPPED_CENTER_ERROR)
         wide = fit_view(self.ends, self.width, self.height, best.view, free)
@@ -221,45 +222,45 @@ class _Finder:
         gain = wide.log_posterior - best.log_posterior
         if gain <= CENTER_GAIN or self._lines(best).min() < ENOUGH_LINES:
             return best, usual
-        doubts.is_cropped = True
+        findings.is_cropped = True
         off = wide.view.center - self.middle
-        doubts.notes.append(
+        findings.notes.append(
             f"the vanishing points put the principal point {np.hypot(*off):.0f} px off the middle, as after a crop or "
             "with a shifted lens"
         )
         return wide, free
 
-    def _with_hint(self, hint: FocalHint, alone: Fit, lines: Int, prior: Prior, doubts: Doubts) -> _Found:
+    def _with_exif(self, exif: ExifFocal, alone: Fit, lines: Int, prior: Prior, findings: Findings) -> _Found:
         """EXIF and vanishing points together; where they contradict each other, the one that is better supported."""
         wider = widening(lines)
         error = wider * _focal_error(alone)
-        apart = abs(np.log(alone.view.focal / hint.focal)) / np.hypot(error, hint.relative_error)
+        apart = abs(np.log(alone.view.focal / exif.focal)) / np.hypot(error, exif.relative_error)
         if apart > CONTRADICTION:
-            doubts.is_contradicted = True
-            told = f"EXIF says a focal length of {hint.focal:.0f} px, the vanishing points {alone.view.focal:.0f} px"
-            is_sure = error < hint.relative_error / 2 and lines.min() >= ENOUGH_LINES and doubts.other is None
-            if is_sure and self.photo.framing != "whole":
-                doubts.notes.append(f"{told}; the vanishing points are better supported and are believed")
-                return _Found(_widened(alone, wider), lines, "vanishing points", doubts, prior=prior)
+            findings.is_contradicted = True
+            told = f"EXIF says a focal length of {exif.focal:.0f} px, the vanishing points {alone.view.focal:.0f} px"
+            is_sure = error < exif.relative_error / 2 and lines.min() >= ENOUGH_LINES and findings.other is None
+            if is_sure and self.photo.crop != "whole":
+                findings.notes.append(f"{told}; the vanishing points are better supported and are believed")
+                return _Found(_widened(alone, wider), lines, "vanishing points", findings, prior=prior)
             # EXIF of a photo that is as it was taken is seldom far off; lines that are not square are common.
-            doubts.notes.append(f"{told}; EXIF is believed")
-            doubts.other = None
-            given = replace(prior, focal=hint.focal, focal_error=0.0)
-            fit, lines = self._at_hint(hint, replace(alone.view, focal=hint.focal), given)
+            findings.notes.append(f"{told}; EXIF is believed")
+            findings.other = None
+            given = replace(prior, focal=exif.focal, focal_error=0.0)
+            fit, lines = self._at_exif_focal(exif, replace(alone.view, focal=exif.focal), given)
             fit = _widened(fit, wider)
-            fit.covariance[FOCAL, FOCAL] = hint.relative_error**2
-            return _Found(fit, lines, "exif", doubts)
-        doubts.other = None
+            fit.covariance[FOCAL, FOCAL] = exif.relative_error**2
+            return _Found(fit, lines, "exif", findings)
+        findings.other = None
         # Errors of the segments are `wider` than the fit knows, and those of real scenes wider still, so what EXIF says
         # weighs by so much more.
-        trusted = replace(prior, focal=hint.focal, focal_error=hint.relative_error / wider / REAL_SCENES)
-        fit, lines = self._at_hint(hint, alone.view, trusted)
-        return _Found(_widened(fit, wider), lines, "exif", doubts)
+        trusted = replace(prior, focal=exif.focal, focal_error=exif.relative_error / wider / REAL_SCENES)
+        fit, lines = self._at_exif_focal(exif, alone.view, trusted)
+        return _Found(_widened(fit, wider), lines, "exif", findings)
 
-    def _at_hint(self, hint: FocalHint, near: View, prior: Prior) -> tuple[Fit, Int]:
+    def _at_exif_focal(self, exif: ExifFocal, near: View, prior: Prior) -> tuple[Fit, Int]:
         """The better of two fits, from a search at EXIF's focal length and from a view `near`, on whole segments."""
         fits = [
-            self._at(central_camera(hint.focal, self.width, self.height), prior),
+            self._at(central_camera(exif.focal, self.width, self.height), prior),
             fit_view(self.ends, self.width, self.height, near, prior),
         ]
         return self.whole(max(fits, key=lambda one: one.log_posterior), prior)

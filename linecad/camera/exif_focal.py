@@ -1,4 +1,4 @@
-"""The focal length that EXIF hints at, in px of the photo, and how far to trust it.
+"""The focal length from EXIF, in px of the photo, and how far to trust it.
 
 There are up to three ways to it, and each starts from what the maker engraved on the lens, so that this one error is
 common to all: the 35 mm equivalent, the focal length with the sensor's resolution, the focal length with the sensor's
@@ -8,7 +8,7 @@ size from a database. What they add to it is independent; ways that agree are av
 import math
 from dataclasses import dataclass
 
-from linecad.camera.crop_history import ASPECT_TOLERANCE, History, usual_aspect
+from linecad.camera.crop_history import ASPECT_TOLERANCE, CropHistory, usual_aspect
 from linecad.camera.exif import Tags
 from linecad.camera.intrinsics import FOCAL_RANGE
 from linecad.geometry import DIAGONAL_35MM
@@ -36,7 +36,7 @@ ZOOM_IS_COUNTED = ("Apple",)  # makers whose 35 mm equivalent grows with the dig
 
 
 @dataclass(frozen=True)
-class FocalHint:
+class ExifFocal:
     """What EXIF says of the focal length, and how far to trust it."""
 
     focal: float  # px, of this photo
@@ -50,28 +50,30 @@ class _Way:
 
     focal: float  # px, of the photo as taken
     error: float  # relative standard error besides that of the lens
-    origin: str  # as in FocalHint
+    origin: str  # as in ExifFocal
     name: str  # the same in short
 
 
-def find_hint(tags: Tags, history: History, width: int, height: int) -> tuple[FocalHint | None, tuple[str, ...]]:
+def find_exif_focal(
+    tags: Tags, history: CropHistory, width: int, height: int
+) -> tuple[ExifFocal | None, tuple[str, ...]]:
     """The focal length of a photo of `width` x `height` px and notes; None where EXIF does not tell it."""
-    ways, doubts = _ways(tags, history)
+    ways, remarks = _ways(tags, history)
     least, most = (factor * max(width, height) for factor in FOCAL_RANGE)
     usable = [way for way in ways if least <= way.focal * history.scale <= most]
     if not usable:
         if ways:
-            found = ways[0].focal * history.scale
+            focal = ways[0].focal * history.scale
             return None, (
-                f"focal length from EXIF ({found:.4g} px) does not suit {width} x {height} px and is ignored",
+                f"focal length from EXIF ({focal:.4g} px) does not suit {width} x {height} px and is ignored",
             )
-        return None, tuple(doubts)
+        return None, tuple(remarks)
 
     ways, aside = _that_agree(usable)
     weights = [way.error**-2 for way in ways]
     first = ways[0].focal
     mean = sum(weight * math.log(way.focal / first) for weight, way in zip(weights, ways, strict=True)) / sum(weights)
-    if not history.is_as_taken:  # no wonder then that a resolution does not fit, and no doubt about the others
+    if not history.is_as_taken:  # no wonder then that a resolution does not fit, and nothing against the others
         aside = [way for way in aside if way.name != RESOLUTION_NAME]
     alone = 0.0
     if [way.name for way in ways] == [RESOLUTION_NAME]:
@@ -80,36 +82,36 @@ def find_hint(tags: Tags, history: History, width: int, height: int) -> tuple[Fo
     error = math.hypot(LENS, sum(weights) ** -0.5, history.error, alone, contradicted)
     others = " and ".join(way.name for way in ways[1:])
     origin = ways[0].origin + (f", confirmed by {others}" if others else "")
-    hint = FocalHint(first * math.exp(mean) * history.scale, error, origin)
-    doubts += [f"{way.name} would give {way.focal * history.scale:.0f} px and is set aside" for way in aside]
-    return hint, ("; ".join([f"focal length from {origin}, standard error about {error:.0%}", *doubts]),)
+    found = ExifFocal(first * math.exp(mean) * history.scale, error, origin)
+    remarks += [f"{way.name} would give {way.focal * history.scale:.0f} px and is set aside" for way in aside]
+    return found, ("; ".join([f"focal length from {origin}, standard error about {error:.0%}", *remarks]),)
 
 
-def _ways(tags: Tags, history: History) -> tuple[list[_Way], list[str]]:
-    """The ways that there are, the most trusted first where they contradict each other; and doubts about them.
+def _ways(tags: Tags, history: CropHistory) -> tuple[list[_Way], list[str]]:
+    """The ways that there are, the most trusted first where they contradict each other; and remarks on them.
 
     The 35 mm equivalent comes first, since resolution is often that of another size and a database does not know
     which of a phone's cameras took the photo.
     """
     if not tags.length:
         return ([_equivalent(tags, history, 0.0, 1.0, 0.0)], []) if tags.equivalent else ([], [])
-    doubts = []
+    remarks = []
     from_sensor = []
-    crop, doubt = _crop_factor(tags)
+    crop, remark = _crop_factor(tags)
     if crop:
         from_sensor.append(_with_database(tags, history, crop))
     if tags.resolution and _is_sensor(math.hypot(history.long, history.short) / tags.resolution):
         from_sensor.append(_with_resolution(tags))
     if not tags.equivalent:
-        return from_sensor, [] if from_sensor or not doubt else [doubt]
+        return from_sensor, [] if from_sensor or not remark else [remark]
 
     implied = DIAGONAL_35MM * tags.length / tags.equivalent
     if not any(_is_sensor(implied * zoom) for zoom in {1.0, tags.zoom}):
         # Programs on iPhones have written equivalents that grow as the photo gets smaller: 177 mm for 640 x 480 px.
-        doubts.append(
+        remarks.append(
             f"the 35 mm equivalent of {tags.equivalent:g} mm would mean a sensor of {implied:.2g} mm and is ignored"
         )
-        return from_sensor, doubts
+        return from_sensor, remarks
     counted, spread = 1.0, 0.0
     if tags.zoom > 1 and tags.make not in ZOOM_IS_COUNTED:
         if from_sensor:
@@ -118,12 +120,12 @@ def _ways(tags: Tags, history: History) -> tuple[list[_Way], list[str]]:
             counted = min((1.0, tags.zoom), key=lambda zoom: abs(beside - math.log(zoom)))
         else:
             counted, spread = math.sqrt(tags.zoom), math.log(tags.zoom) / 2
-            doubts.append(f"whether it counts the digital zoom of {tags.zoom:g} is not known")
+            remarks.append(f"whether it counts the digital zoom of {tags.zoom:g} is not known")
     diagonal = DIAGONAL_35MM / crop if crop else implied
-    return [_equivalent(tags, history, diagonal, counted, spread), *from_sensor], doubts
+    return [_equivalent(tags, history, diagonal, counted, spread), *from_sensor], remarks
 
 
-def _equivalent(tags: Tags, history: History, diagonal: float, zoom: float, spread: float) -> _Way:
+def _equivalent(tags: Tags, history: CropHistory, diagonal: float, zoom: float, spread: float) -> _Way:
     """By the 35 mm equivalent, on a sensor of a `diagonal` in mm (0: not known).
 
     Where a camera stored other proportions than those of its sensor, most makers tell the equivalent of the whole
@@ -136,7 +138,7 @@ def _equivalent(tags: Tags, history: History, diagonal: float, zoom: float, spre
     return _Way(focal, error, f"EXIF's 35 mm equivalent ({tags.equivalent:g} mm)", "the 35 mm equivalent")
 
 
-def _with_database(tags: Tags, history: History, crop: float) -> _Way:
+def _with_database(tags: Tags, history: CropHistory, crop: float) -> _Way:
     photo, sensor = math.hypot(history.long, history.short), _sensor_in_px(history, DIAGONAL_35MM / crop)
     error = math.hypot(DATABASE, OTHER_ASPECT if sensor > photo * (1 + ASPECT_TOLERANCE) else 0.0)
     origin = f"EXIF's {tags.length:g} mm and the sensor size of {tags.model}"
@@ -164,7 +166,7 @@ def _is_sensor(diagonal: float) -> bool:
     return SENSOR_DIAGONALS[0] <= diagonal <= SENSOR_DIAGONALS[1]
 
 
-def _sensor_in_px(history: History, diagonal: float) -> float:
+def _sensor_in_px(history: CropHistory, diagonal: float) -> float:
     """Diagonal, in px of the photo as taken, of the whole sensor, whose own is `diagonal` in mm (0: not known)."""
     aspect = history.long / history.short
     if diagonal:

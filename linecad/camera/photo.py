@@ -9,12 +9,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.camera.crop_history import Framing as Framing
-from linecad.camera.crop_history import History, find_history
+from linecad.camera.crop_history import Crop, CropHistory, find_crop_history
 from linecad.camera.decoding import Decoded, decode_image
 from linecad.camera.exif import read_tags
-from linecad.camera.exif_focal import FocalHint as FocalHint
-from linecad.camera.exif_focal import find_hint
+from linecad.camera.exif_focal import ExifFocal, find_exif_focal
 from linecad.camera.intrinsics import DISTORTION_LENGTHS, Calibration, check_focal, read_calibration, undistort_photo
 from linecad.errors import CameraError
 from linecad.geometry import central_camera
@@ -42,9 +40,9 @@ class Photo:
     name: str  # file name, without its folder
     pixels: NDArray[np.uint8]  # (H, W, 3) RGB, read-only; upright, undistorted, square pixels
     camera: Camera | None  # None: the focal length must come from the vanishing points
-    notes: tuple[str, ...] = ()  # doubts that did not stop the work
-    hint: FocalHint | None = None  # of EXIF; None where it tells nothing or the camera was given
-    framing: Framing = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
+    notes: tuple[str, ...] = ()  # warnings: what did not stop the work
+    exif_focal: ExifFocal | None = None  # None where EXIF tells nothing or the camera was given
+    crop: Crop = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
     bend: Bend | None = None  # the distortion that was taken out because the photo's own lines showed it
     is_fisheye: bool = False  # its own lines showed more distortion than one coefficient can take out
 
@@ -94,20 +92,20 @@ def read_photo(path: Path, camera_file: Path | None = None, focal: float | None 
     decoded = decode_image(path)
     height, width = decoded.pixels.shape[:2]
     tags = read_tags(decoded.exif)
-    history = find_history(tags, width, height, decoded.turned)
+    history = find_crop_history(tags, width, height, decoded.turned)
     if calibration is not None:
         _check_belongs(calibration, f"{camera_file}", decoded, f"{path}")
         photo = _calibrated(path.name, decoded, calibration, f"{camera_file}", "as the camera file says")
         notes = (TURNED_NOTE, *photo.notes) if decoded.turned else photo.notes
-        return replace(photo, framing=history.framing, notes=notes)
+        return replace(photo, crop=history.crop, notes=notes)
     if focal is not None:
         check_focal(focal, width, height, "the focal length")
         given = _centred_camera(width, height, focal, "focal option")
-        return Photo(path.name, decoded.pixels, given, decoded.notes + _doubts(history), None, history.framing)
-    hint, told = find_hint(tags, history, width, height)
-    camera = None if hint is None else _centred_camera(width, height, hint.focal, "exif")
-    notes = decoded.notes + told + _doubts(history, hint)
-    return Photo(path.name, decoded.pixels, camera, notes, hint, history.framing)
+        return Photo(path.name, decoded.pixels, given, decoded.notes + _history_notes(history), None, history.crop)
+    exif_focal, told = find_exif_focal(tags, history, width, height)
+    camera = None if exif_focal is None else _centred_camera(width, height, exif_focal.focal, "exif")
+    notes = decoded.notes + told + _history_notes(history, exif_focal)
+    return Photo(path.name, decoded.pixels, camera, notes, exif_focal, history.crop)
 
 
 def read_photo_of(path: Path, camera: Camera) -> Photo:
@@ -128,11 +126,11 @@ def read_photo_of(path: Path, camera: Camera) -> Photo:
     return replace(_calibrated(path.name, decoded, calibration, "the scene", "as in the scene"), camera=camera)
 
 
-def _doubts(history: History, hint: FocalHint | None = None) -> tuple[str, ...]:
+def _history_notes(history: CropHistory, exif_focal: ExifFocal | None = None) -> tuple[str, ...]:
     """What the photo went through, where its focal length or principal point hangs on it."""
-    if history.framing == "cropped":
-        return (f"{history.doubt}; its principal point may lie off the middle",)
-    return (history.doubt,) if hint and history.doubt else ()
+    if history.crop == "cropped":
+        return (f"{history.remark}; its principal point may lie off the middle",)
+    return (history.remark,) if exif_focal and history.remark else ()
 
 
 def _centred_camera(width: int, height: int, focal: float, source: CameraSource) -> Camera:

@@ -112,7 +112,7 @@ def show_simulated(cache: Path, seed: int, count: int, kinds: set[str], photos: 
         if made.kind == PLAIN:
             shown[KNOWN] = replace(photo, camera=Camera(photo.width, photo.height, made.matrix, "file"))
         if made.kind == CROPPED:
-            shown = {CROPPED: replace(photo, framing="cropped"), CROP_NOT_SAID: photo}
+            shown = {CROPPED: replace(photo, crop="cropped"), CROP_NOT_SAID: photo}
         for kind in kinds & shown.keys():
             one = shown[kind]
             truth = (made.matrix, made.rotation, made.radial, made.second)
@@ -230,7 +230,7 @@ def _judge(case: Case, kind: str, known: Photo, reference: Reference, photo: Pho
 
 def _bare(photo: Photo) -> Photo:
     """The photo without anything that tells its camera."""
-    return replace(photo, camera=None, hint=None, framing="unknown", notes=())
+    return replace(photo, camera=None, exif_focal=None, crop="unknown", notes=())
 
 
 def _missing(error: float) -> float:

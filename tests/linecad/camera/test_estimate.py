@@ -6,17 +6,17 @@ import numpy as np
 import pytest
 
 from linecad.camera.estimate import calibrate, likely_fits, prior_of
-from linecad.camera.exif_focal import FocalHint
+from linecad.camera.exif_focal import ExifFocal
 from linecad.camera.photo import Photo
 from linecad.camera.vanishing_points import default_focal
 from linecad.line_graph import Segments
 from linecad.scene import Camera
 
 
-def photo_of(made, camera=None, hint=None, framing="whole"):
+def photo_of(made, camera=None, exif_focal=None, crop="whole"):
     """A photo of which only the size counts."""
     pixels = np.zeros((made.camera.height, made.camera.width, 3), np.uint8)
-    return Photo("made.png", pixels, camera, (), hint, framing)
+    return Photo("made.png", pixels, camera, (), exif_focal, crop)
 
 
 def frontal():
@@ -61,8 +61,8 @@ def test_a_camera_that_was_given_stays_as_it_is(made, source):
 
 
 def test_exif_tells_what_the_vanishing_points_do_not(made):
-    hint = FocalHint(900.0, 0.03, "EXIF")
-    found = calibrate(photo_of(made, hint=hint), frontal())
+    exif_focal = ExifFocal(900.0, 0.03, "EXIF")
+    found = calibrate(photo_of(made, exif_focal=exif_focal), frontal())
     assert found.camera.source == "exif"
     assert found.camera.focal == pytest.approx(900.0, rel=0.06)
 
@@ -70,22 +70,23 @@ def test_exif_tells_what_the_vanishing_points_do_not(made):
 def test_exif_and_vanishing_points_weigh_by_how_sure_they_are(made):
     segments = made.noisy(0.5, 1)
     alone = calibrate(photo_of(made), segments)
-    hint = FocalHint(1.03 * alone.camera.focal, 0.03, "EXIF")
-    both = calibrate(photo_of(made, hint=hint), segments)
-    assert alone.camera.focal < both.camera.focal < hint.focal
+    exif_focal = ExifFocal(1.03 * alone.camera.focal, 0.03, "EXIF")
+    both = calibrate(photo_of(made, exif_focal=exif_focal), segments)
+    assert alone.camera.focal < both.camera.focal < exif_focal.focal
     assert both.certainty.focal < alone.certainty.focal
 
 
-def test_a_contradiction_with_exif_is_said(made):
-    hint = FocalHint(1.6 * made.camera.focal, 0.03, "EXIF")
-    found = calibrate(photo_of(made, hint=hint), made.noisy(0.5, 0))
+def test_exif_of_a_whole_photo_wins_a_contradiction_which_is_noted(made):
+    exif_focal = ExifFocal(1.6 * made.camera.focal, 0.03, "EXIF")
+    found = calibrate(photo_of(made, exif_focal=exif_focal), made.noisy(0.5, 0))
     assert found.certainty.quality == "doubtful"
     assert "contradict" in found.certainty.reason
-    assert any("EXIF says a focal length of" in note for note in found.notes)
+    assert (found.camera.source, found.camera.focal) == ("exif", exif_focal.focal)
+    assert any("EXIF says a focal length of" in note and "EXIF is believed" in note for note in found.notes)
 
 
 def test_a_photo_that_may_be_cropped_is_not_called_good(made):
-    found = calibrate(photo_of(made, framing="cropped"), made.noisy(0.5, 0))
+    found = calibrate(photo_of(made, crop="cropped"), made.noisy(0.5, 0))
     assert found.certainty.quality != "good"
     assert found.certainty.center[0] > calibrate(photo_of(made), made.noisy(0.5, 0)).certainty.center[0]
 

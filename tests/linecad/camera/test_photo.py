@@ -162,13 +162,13 @@ def test_35_mm_equivalent_is_by_the_diagonal_however_the_photo_is_turned(tmp_pat
     assert focal == pytest.approx(28 / 43.27 * DIAGONAL)
 
 
-def test_hint_stands_beside_the_camera_and_is_noted(tmp_path: Path) -> None:
+def test_exif_focal_length_stands_beside_the_camera_and_is_noted(tmp_path: Path) -> None:
     photo = read_photo(save(tmp_path, FocalLengthIn35mmFilm=28, ExifImageWidth=WIDTH, ExifImageHeight=HEIGHT))
     assert photo.camera is not None
-    assert photo.hint is not None
-    assert photo.camera.focal == photo.hint.focal
-    assert photo.framing == "whole"
-    assert photo.notes == (f"focal length from {photo.hint.origin}, standard error about 4%",)
+    assert photo.exif_focal is not None
+    assert photo.camera.focal == photo.exif_focal.focal
+    assert photo.crop == "whole"
+    assert photo.notes == (f"focal length from {photo.exif_focal.origin}, standard error about 4%",)
 
 
 def test_resized_photo_says_so(tmp_path: Path) -> None:
@@ -180,15 +180,15 @@ def test_resized_photo_says_so(tmp_path: Path) -> None:
 def test_cropped_photo_keeps_the_focal_length_of_the_whole_and_says_so(tmp_path: Path) -> None:
     path = save(tmp_path, size=(80, 80), FocalLengthIn35mmFilm=28, ExifImageWidth=WIDTH, ExifImageHeight=HEIGHT)
     assert exif_focal(path) == pytest.approx(28 / 43.27 * DIAGONAL)
-    assert read_photo(path).framing == "cropped"
+    assert read_photo(path).crop == "cropped"
     assert "principal point" in read_photo(path).notes[1]
 
 
 def test_cropped_photo_of_unknown_focal_length_says_so_too(tmp_path: Path) -> None:
     path = save(tmp_path, size=(80, 80), ExifImageWidth=WIDTH, ExifImageHeight=HEIGHT)
     for photo in (read_photo(path), read_photo(path, focal=100.0)):
-        assert photo.framing == "cropped"
-        assert photo.hint is None
+        assert photo.crop == "cropped"
+        assert photo.exif_focal is None
         assert len(photo.notes) == 1
 
 
@@ -196,12 +196,12 @@ def test_size_of_the_larger_original_stands_in_a_part_of_its_own(tmp_path: Path)
     exif = Image.Exif()
     exif.get_ifd(IFD.Exif)[IFD.Interop] = {int(Base.RelatedImageWidth): 200, int(Base.RelatedImageLength): 80}
     Image.fromarray(picture()).save(tmp_path / "photo.jpg", exif=exif)
-    assert read_photo(tmp_path / "photo.jpg").framing == "cropped"
+    assert read_photo(tmp_path / "photo.jpg").crop == "cropped"
 
 
-def test_camera_file_leaves_the_framing_known(tmp_path: Path) -> None:
+def test_camera_file_leaves_the_crop_history_known(tmp_path: Path) -> None:
     path = save(tmp_path, ExifImageWidth=WIDTH, ExifImageHeight=HEIGHT)
-    assert read_photo(path, camera_file(tmp_path)).framing == "whole"
+    assert read_photo(path, camera_file(tmp_path)).crop == "whole"
 
 
 @pytest.mark.parametrize(
@@ -217,7 +217,7 @@ def test_camera_file_leaves_the_framing_known(tmp_path: Path) -> None:
 )
 def test_exif_that_does_not_say_the_focal_length(tmp_path: Path, tags: dict[str, Any]) -> None:
     photo = read_photo(save(tmp_path, **tags))
-    assert (photo.camera, photo.hint) == (None, None)
+    assert (photo.camera, photo.exif_focal) == (None, None)
     assert photo.notes == ()
 
 
@@ -263,7 +263,7 @@ def test_a_photo_read_again_for_its_scene_has_the_camera_of_the_scene(tmp_path: 
     assert again.notes == ("lens distortion removed, as in the scene",)
 
 
-def test_a_turned_photo_read_again_is_no_doubt(tmp_path: Path) -> None:
+def test_a_turned_photo_read_again_is_no_warning(tmp_path: Path) -> None:
     again = read_photo_of(save(tmp_path, orientation=6), scene_camera(HEIGHT, WIDTH))
     assert again.pixels.shape == (WIDTH, HEIGHT, 3)
     assert not any("turned" in note for note in again.notes)

@@ -1,20 +1,75 @@
-"""Standard errors and words of a camera and its frame."""
+"""Standard errors of a camera and its frame, and a second frame in the photo."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from linecad.camera.estimate import calibrate
-from linecad.camera.exif_focal import FocalHint
 from linecad.camera.joint_fit import CENTER_X, CENTER_Y, FOCAL, PARAMETERS, TURNS, Fit, View
-from linecad.camera.photo import Bend, Photo
-from linecad.camera.uncertainty import OTHER_GAIN, Doubts, Other, certainty_of, other_camera
-from linecad.geometry import rotation_about
+from linecad.camera.photo import Bend
+from linecad.camera.quality import Findings, Other
+from linecad.camera.uncertainty import (
+    FEW_LINES,
+    OTHER_GAIN,
+    certainty_of,
+    other_camera,
+    second_frame,
+    whole_lines,
+    widening,
+)
+from linecad.geometry import central_camera, directions_to, rotation_about, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
 
-MANY = np.array([60, 60, 60])
+SIXTY = np.array([60, 60, 60])
+WIDTH, HEIGHT, FOCAL_PX = 1200, 800, 1000.0
+LEVEL = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # world to camera, looking along y
+ROTATION = rotation_about(np.array([0.1, 0, 0])) @ LEVEL @ rotation_about(np.array([0, 0, 0.6]))
+CAMERA = Camera(WIDTH, HEIGHT, central_camera(FOCAL_PX, WIDTH, HEIGHT), "vanishing points")
+MANY = np.array([100, 120, 140])
+NO_SEGMENTS = Segments(np.zeros((0, 2, 2)), np.zeros(0))
+
+
+def along(rotation, counts, seed=0, length=80.0):
+    """Segments (N, 2, 2) px along the axes of a world that the camera sees turned so."""
+    rng = np.random.default_rng(seed)
+    points = vanishing_points(CAMERA.matrix, rotation)[np.repeat(np.arange(3), counts)]
+    middle = rng.uniform([0, 0], [WIDTH, HEIGHT], (len(points), 2))
+    reach = length / 2 * directions_to(middle, points)
+    return np.stack([middle - reach, middle + reach], axis=1)
+
+
+def clutter(count, seed=1):
+    """Segments (count, 2, 2) px in all directions."""
+    rng = np.random.default_rng(seed)
+    middle, angle = rng.uniform([0, 0], [WIDTH, HEIGHT], (count, 2)), rng.uniform(0, np.pi, count)
+    reach = 40 * np.column_stack([np.cos(angle), np.sin(angle)])
+    return np.stack([middle - reach, middle + reach], axis=1)
+
+
+def segments(*ends):
+    joined = np.concatenate(ends)
+    return Segments(joined, np.full(len(joined), -1))
+
+
+def judged(
+    turn=0.2, focal=0.01, own_turn=0.1, source="vanishing points", lines=MANY, explained=0.9, rotation=ROTATION,
+    raw=NO_SEGMENTS, findings=None, bend=None,
+):  # fmt: skip
+    """Certainty and notes for a standard error of the turns, degrees, and of the focal length, relative."""
+    error = np.zeros(PARAMETERS)
+    error[TURNS], error[FOCAL], error[CENTER_X], error[CENTER_Y] = (
+        np.radians([turn / 2, turn, turn / 4]),
+        focal,
+        0.01,
+        0.02,
+    )
+    view = View(rotation.T, FOCAL_PX, CAMERA.matrix[:2, 2])
+    fit = Fit(view, np.diag(error**2), 0.0, np.full(4, 0.25), view.axes, np.radians(own_turn), np.zeros((4, 0)))
+    frame = ManhattanFrame(rotation, 0.001, explained)
+    camera = replace(CAMERA, source=source)
+    return certainty_of(camera, frame, fit, np.array(lines), raw, findings or Findings(), bend)
 
 
 def fit_of(focal=900.0, turn=0.0, posterior=0.0):
@@ -26,13 +81,13 @@ def fit_of(focal=900.0, turn=0.0, posterior=0.0):
     return Fit(view, covariance, posterior, np.full(4, 0.25), axes, 0.004, np.zeros((4, 0)))
 
 
-def certainty(lines=MANY, source="vanishing points", doubts=None, fit=None, bend=None):
+def certainty(lines=SIXTY, source="vanishing points", findings=None, fit=None, bend=None):
     """The certainty of a frame that explains nearly everything."""
     fit = fit or fit_of()
     camera = Camera(1600, 1200, fit.view.matrix, source)
     frame = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1.0], [0, 1.0, 0]]), 0.001, 0.9)
     raw = Segments(np.array([[[0.0, 0.0], [100.0, 0.0]]] * 12), np.full(12, -1))
-    return certainty_of(camera, frame, fit, np.asarray(lines), raw, doubts or Doubts(), bend)[0]
+    return certainty_of(camera, frame, fit, np.asarray(lines), raw, findings or Findings(), bend)[0]
 
 
 def test_many_lines_along_each_axis_are_good():
@@ -54,13 +109,6 @@ def test_with_a_given_camera_two_axes_are_enough():
     assert certainty([60, 3, 0], "file").quality == "poor"
 
 
-@pytest.mark.parametrize(("radial", "word"), [(-0.02, "good"), (-0.13, "doubtful"), (0.13, "doubtful")])
-def test_a_strong_bend_is_not_called_good(radial, word):
-    found = certainty(bend=Bend(radial, 0.002, (799.5, 599.5), 5.0))
-    assert found.quality == word
-    assert found.radial is not None
-
-
 def test_k1_is_no_surer_than_the_focal_length_allows():
     bend = Bend(-0.05, 0.001, (799.5, 599.5), 5.0)
     k1 = bend.radial * (900 / 1000) ** 2
@@ -68,21 +116,8 @@ def test_k1_is_no_surer_than_the_focal_length_allows():
     assert certainty(bend=bend, source="focal option").radial == pytest.approx(0.001 * 0.9**2)
 
 
-def test_vanishing_points_alone_need_a_smaller_error_than_exif():
-    fit = fit_of()
-    fit.covariance[FOCAL, FOCAL] = 0.04**2
-    assert certainty(fit=fit).quality == "doubtful"
-    assert certainty(fit=fit, source="exif").quality == "good"
-
-
-def test_few_lines_in_all_are_said():
-    found = certainty([30, 30, 30])
-    assert found.quality == "doubtful"
-    assert "(90)" in found.reason
-
-
 def test_another_camera_that_does_as_well_is_within_two_standard_errors():
-    found = certainty(doubts=Doubts(other=Other(0.3, 0.1)))
+    found = certainty(findings=Findings(other=Other(0.3, 0.1)))
     assert found.quality == "doubtful"
     assert "another camera" in found.reason
     assert 2 * found.focal > 0.3 * 900
@@ -119,15 +154,74 @@ def test_principal_point_is_as_sure_as_the_fit_says():
     assert np.diag(fit.covariance)[TURNS].max() == 1e-6
 
 
-@pytest.fixture
-def photo(made):
-    return Photo("made.png", np.zeros((made.camera.height, made.camera.width, 3), np.uint8), None, (), None, "whole")
+@pytest.mark.parametrize("source", ["file", "focal option"])
+def test_what_was_given_has_no_error(source):
+    found, _ = judged(source=source, focal=0.9)
+    assert found.focal is None
+    assert found.center is None
 
 
-def test_exif_of_a_whole_photo_wins_a_contradiction(made, photo):
-    hint = FocalHint(1.6 * made.camera.focal, 0.03, "EXIF")
-    found = calibrate(replace(photo, hint=hint), made.noisy(0.3, 0))
-    assert found.camera.source == "exif"
-    assert found.camera.focal == hint.focal
-    assert found.certainty.quality != "good"
-    assert any("EXIF is believed" in note for note in found.notes)
+def test_errors_are_in_the_units_of_the_scene():
+    found, _ = judged(turn=0.4, focal=0.02, bend=Bend(-0.05, 0.002, (600.0, 400.0), 5.0))
+    assert np.degrees(found.rotation) == pytest.approx([0.2, 0.4, 0.1])
+    assert found.focal == pytest.approx(20.0)
+    assert found.center == pytest.approx((12.0, 24.0))
+    scale = FOCAL_PX**2 / (600**2 + 400**2)  # k1 grows with the square of the focal length, and errs twice as much
+    assert found.radial == pytest.approx(scale * np.hypot(0.002, 0.05 * 2 * 0.02))
+
+
+def test_a_distortion_that_was_not_fitted_has_no_error():
+    assert judged()[0].radial is None
+
+
+def test_errors_are_wider_for_few_lines():
+    factors = [widening(np.array([count, 10_000, 10_000])) for count in (0, 1, 10, 100, 10_000)]
+    assert factors == sorted(factors, reverse=True)
+    assert factors[-1] == pytest.approx(1.0, abs=0.01)
+    assert widening(np.array([20, 20, 20])) == pytest.approx(np.sqrt(1 + FEW_LINES / 20))
+
+
+def test_whole_lines_are_counted_by_axis():
+    """Those that run to a vanishing point and are not too short."""
+    ends = np.concatenate([along(ROTATION, (4, 7, 9)), along(ROTATION, (50, 50, 50), length=10.0)])
+    points = vanishing_points(CAMERA.matrix, ROTATION)
+    assert whole_lines(ends, points, WIDTH).tolist() == [4, 7, 9]
+    turned = vanishing_points(CAMERA.matrix, rotation_about(np.array([0, 0, 0.1])) @ ROTATION)
+    assert whole_lines(ends, turned, WIDTH).sum() < 10
+
+
+@pytest.mark.parametrize("degrees", [15, 30, 45, 70])
+def test_a_turned_house_is_a_second_frame(degrees):
+    turned = ROTATION @ rotation_about(np.array([0, 0, np.radians(degrees)]))
+    raw = segments(along(ROTATION, (60, 60, 80)), along(turned, (30, 30, 0), 2))
+    turn, share = second_frame(raw, CAMERA, ManhattanFrame(ROTATION, 0.001, 0.75))
+    assert np.degrees(turn) == pytest.approx(degrees, abs=1.0)
+    assert 0.12 < share < 60 / 260 + 0.01  # near the horizon, lines of both frames look alike
+
+
+def test_a_second_frame_is_told_with_its_turn_and_share():
+    turned = ROTATION @ rotation_about(np.array([0, 0, np.radians(30)]))
+    raw = segments(along(ROTATION, (60, 60, 80)), along(turned, (30, 30, 0), 2))
+    found, notes = judged(raw=raw, explained=0.77)
+    assert found.quality == "good"
+    assert len(notes) == 1
+    assert re.match(
+        r"a second Manhattan frame, turned by (29|30|31) degrees about the upright, explains \d+%", notes[0]
+    )
+    assert "the first 77%" in notes[0]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_clutter_is_no_second_frame(seed):
+    raw = segments(along(ROTATION, (60, 60, 80)), clutter(120, seed))
+    assert second_frame(raw, CAMERA, ManhattanFrame(ROTATION, 0.001, 0.6)) is None
+
+
+def test_a_few_lines_are_no_second_frame():
+    turned = ROTATION @ rotation_about(np.array([0, 0, np.radians(30)]))
+    raw = segments(along(ROTATION, (60, 60, 80)), along(turned, (5, 5, 0), 2))
+    assert second_frame(raw, CAMERA, ManhattanFrame(ROTATION, 0.001, 0.95)) is None
+
+
+def test_a_photo_all_of_whose_segments_run_along_the_axes_has_no_second_frame():
+    assert second_frame(segments(along(ROTATION, (60, 60, 80))), CAMERA, ManhattanFrame(ROTATION, 0.001, 1.0)) is None

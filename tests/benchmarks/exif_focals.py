@@ -1,10 +1,10 @@
-"""How far the focal length of EXIF is from the true one: python tests/benchmarks/exif_hints.py DATASET ...
+"""How far the focal length of EXIF is from the true one: python tests/benchmarks/exif_focals.py DATASET ...
 
 DATASET is a folder of photos, each with its camera matrix beside it as `K` in NAME.json. Every photo is read as it is
 and after edits that keep its EXIF data: resized to half, cropped by 30 % of its width, cropped by 30 % of its width and
 20 % of its height; each crop once more with the size of what is left written into EXIF, as editors do. For each edit
-the median and the largest error of the focal length, the largest in standard errors of the hint, and how often the
-framing was found to be what.
+the median and the largest error of the focal length, the largest in standard errors of it, and how often the
+crop history was found to be what.
 """
 
 import argparse
@@ -60,7 +60,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
     photos = [path for folder in parser.parse_args().datasets for path in sorted(folder.glob("*.jpg"))]
-    print(f"{'':20} photos hints  median  worst  in errors  framing")
+    print(f"{'':20} photos found  median  worst  in errors  crop")
     with tempfile.TemporaryDirectory() as folder:
         for name, edit, scale, is_rewritten in EDITS:
             measure(name, edit, scale, is_rewritten, photos, Path(folder) / "photo.jpg")
@@ -68,7 +68,7 @@ def main() -> None:
 
 def measure(name: str, edit: Edit, scale: float, is_rewritten: bool, photos: list[Path], scratch: Path) -> None:
     """Print the row of one edit."""
-    errors, in_standard_errors, framings = [], [], Counter[str]()
+    errors, in_standard_errors, crops = [], [], Counter[str]()
     for path in photos:
         with Image.open(path) as image:
             exif = image.getexif()
@@ -78,17 +78,17 @@ def measure(name: str, edit: Edit, scale: float, is_rewritten: bool, photos: lis
             camera[Base.ExifImageWidth], camera[Base.ExifImageHeight] = edited.size
         edited.save(scratch, exif=exif, quality=50)
         photo = read_photo(scratch)
-        framings[photo.framing] += 1
-        if photo.hint is not None:
+        crops[photo.crop] += 1
+        if photo.exif_focal is not None:
             truth = json.loads(path.with_suffix(".json").read_text(encoding="utf-8"))["K"][0][0] * scale
-            errors.append(photo.hint.focal / truth - 1)
-            in_standard_errors.append(abs(math.log(photo.hint.focal / truth)) / photo.hint.relative_error)
+            errors.append(photo.exif_focal.focal / truth - 1)
+            in_standard_errors.append(abs(math.log(photo.exif_focal.focal / truth)) / photo.exif_focal.relative_error)
     if errors:
         worst = max(errors, key=abs)
         figures = f"{median(errors):+7.1%} {worst:+6.1%} {max(in_standard_errors):10.1f}"
     else:
         figures = f"{'-':>7} {'-':>6} {'-':>10}"
-    print(f"{name:20} {len(photos):6} {len(errors):5} {figures}  {dict(framings)}")
+    print(f"{name:20} {len(photos):6} {len(errors):5} {figures}  {dict(crops)}")
 
 
 if __name__ == "__main__":
