@@ -22,7 +22,7 @@ from linecad.lines.segments import (
     group_segments,
     label_segments,
 )
-from linecad.lines.vanishing_point_lines import find_pencil_lines
+from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
 from linecad.options import LONG_REACH, MIN_COMPONENT, Options, Reach, Weights
 from linecad.scene import Camera, Certainty
 from solver.robust import RobustFit
@@ -115,7 +115,7 @@ def name_lines(
         on_stage("finding faint segments")
         raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
-    pieces = label_segments(raw, camera, frame).joined(find_pencil_lines(photo.grey, camera, frame))
+    pieces = label_segments(raw, camera, frame).joined(find_vanishing_point_lines(photo.grey, camera, frame))
     return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.geometry import REFERENCE_WIDTH, angles_to, directions_to, vanishing_points
+from linecad.geometry import PhotoLength, angles_to, directions_to, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
 
@@ -17,15 +17,15 @@ SMALL_WIDTH = 1280.0  # px; narrower photos show lines in fewer pixels than dete
 DETECTOR_SCALE = 0.8  # from SMALL_WIDTH on; more in proportion below: the detector's noise floor is in pixels
 DETECTOR_SCALE_LIMIT = 1.6  # an enlarged photo has no more to show
 GRAIN = 5  # px, side of the median filter before the second look
-MIN_FRAGMENT = 15.0  # px at the reference width; shorter ones are texture
-MIN_FRAGMENT_FLOOR = 6.0  # px in any photo; below it the direction of a fragment is noise
+# Shorter fragments are texture; below the floor the direction of one is noise.
+MIN_FRAGMENT = PhotoLength(15.0, floor=6.0)
 
 LABEL_ANGLE = np.radians(3.0)  # largest angle between a segment and its vanishing point, from SMALL_WIDTH on
 LABEL_ANGLE_LIMIT = np.radians(5.0)  # the most in narrower photos, where segments are short and it grows in proportion
-GROUP_ACROSS = 2.5  # px at the reference width, between fragments of one line
-GROUP_ACROSS_FLOOR = 1.25  # px in any photo: no segment is placed better, and the frame of a small photo is worse
+# Between fragments of one line; no segment is placed better than the floor, and the frame of a small photo is worse.
+GROUP_ACROSS = PhotoLength(2.5, floor=1.25)
 GROUP_ALONG = 31.0  # px at the reference width; longer gaps fuse lines of two planes
-GROUP_ALONG_FLOOR = 4.0  # px
+GROUP_ALONG_FLOOR = 4.0  # px in any photo
 
 
 def detector_scale(width: int) -> float:
@@ -43,8 +43,7 @@ def find_segments(grey: NDArray[np.uint8]) -> Segments:
     detector = cv2.createLineSegmentDetector(cv2.LSD_REFINE_ADV, scale=detector_scale(grey.shape[1]))
     found = detector.detect(grey)[0]
     ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
-    scale = grey.shape[1] / REFERENCE_WIDTH
-    long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) >= max(MIN_FRAGMENT * scale, MIN_FRAGMENT_FLOOR)
+    long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) >= MIN_FRAGMENT.px(grey.shape[1])
     ends = ends[long_enough]
     return Segments(ends, np.full(len(ends), -1))
 
@@ -66,7 +65,7 @@ def group_segments(
     """Labelled fragments joined into whole segments that pass exactly through their vanishing points.
 
     The longest fragment of a line leads: it gathers the fragments of its axis within GROUP_ACROSS of its image line
-    whose gaps along the line are at most `largest_gap`, in px at REFERENCE_WIDTH. The joined segment runs through the
+    whose gaps along the line are at most `largest_gap`, in px at the reference width. The joined segment runs through the
     length-weighted mean.
     """
     across, along = _reach(camera.width, largest_gap)
@@ -92,8 +91,7 @@ def fit_whole(ends: Float, vanishing: Float, width: int) -> Float:
 
 def _reach(width: int, largest_gap: float) -> tuple[float, float]:
     """How far, px, fragments of one line may lie apart across it and along it."""
-    scale = width / REFERENCE_WIDTH
-    return max(GROUP_ACROSS * scale, GROUP_ACROSS_FLOOR), max(largest_gap * scale, GROUP_ALONG_FLOOR)
+    return GROUP_ACROSS.px(width), PhotoLength(largest_gap, GROUP_ALONG_FLOOR).px(width)
 
 
 def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> list[Int]:

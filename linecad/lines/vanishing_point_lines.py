@@ -1,8 +1,7 @@
-"""Whole lines along each vanishing point: where the edge is on and where it is off, by dynamic programming.
+"""Vanishing-point lines: whole lines through each vanishing point, where the edge is on and where it is off.
 
-All image lines through one vanishing point are a *pencil*. The photo is sampled along them, a row a line; along each
-row the most likely switching between on and off is found from the brightness steps across it, in time linear in its
-length (the idea of MCMLSD: Almazan, Tal, Qian and Elder, CVPR 2017). A detector of fragments asks each fragment to
+The photo is sampled along the image lines through one vanishing point, a row a line; along each row the most likely switching between on and off is found from the brightness steps across it, by dynamic
+programming in time linear in its length (the idea of MCMLSD: Almazan, Tal, Qian and Elder, CVPR 2017). A detector of fragments asks each fragment to
 stand out by itself; a faint line that stands out by its length alone is found here, for its direction is known.
 """
 
@@ -28,7 +27,7 @@ SURROUNDINGS = 31  # px, side of the square whose mean gradient is the noise of 
 GRADIENT_CUT = 20.0  # grey levels per px; a stronger gradient counts as that much noise
 LEAST_NOISE = 2.0  # grey levels per px
 STEP = 1.0  # noises, the step across a line that is on
-LARGEST_STEP = 3.0  # noises; a stronger one is no better witness
+LARGEST_STEP = 3.0  # noises; a stronger one is no better evidence
 START = 15.0  # nats that switching on costs: a gap of 30 px without any step parts a line
 LEAST_EVIDENCE = 24.0  # nats for a line against nothing, in small photos (least_evidence)
 ROWS = 1024  # rows sampled at a time: bounds the memory
@@ -37,8 +36,8 @@ Float32 = NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False)
-class _Pencil:
-    """The rows of one vanishing point: place (row, column) is vanishing + radius[column] * direction(angle[row])."""
+class _PolarGrid:
+    """Samples about one vanishing point: place (row, column) is vanishing + radius[column] * direction(angle[row])."""
 
     vanishing: Float  # (2,) px
     towards: Float  # (2,) unit vector of angle 0
@@ -62,7 +61,7 @@ def least_evidence(width: int) -> float:
     return LEAST_EVIDENCE / min(room * SMALL_WIDTH / (WIDE - SMALL_WIDTH), 1.0) if room > 0 else np.inf
 
 
-def find_pencil_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame) -> Segments:
+def find_vanishing_point_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame) -> Segments:
     """Segments of a grey photo (H, W) on lines through its vanishing points, labelled by their axis.
 
     None in photos of WIDE px or more.
@@ -77,10 +76,10 @@ def find_pencil_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanF
     noise = np.maximum(cv2.boxFilter(size, -1, (SURROUNDINGS, SURROUNDINGS)), np.float32(LEAST_NOISE))
     ends, axes = [np.zeros((0, 2, 2))], [np.zeros(0, np.int64)]
     for axis in range(3):
-        pencil = _pencil_of(points[axis], grey.shape[1], grey.shape[0])
-        for first in range(0, len(pencil.angle), ROWS):
-            rows = np.arange(first, min(first + ROWS, len(pencil.angle)))
-            found = _lines_of_rows(pencil, rows, gradient, noise, least)
+        grid = _grid_about(points[axis], grey.shape[1], grey.shape[0])
+        for first in range(0, len(grid.angle), ROWS):
+            rows = np.arange(first, min(first + ROWS, len(grid.angle)))
+            found = _lines_of_rows(grid, rows, gradient, noise, least)
             ends.append(found)
             axes.append(np.full(len(found), axis))
     return Segments(np.concatenate(ends), np.concatenate(axes))
@@ -92,7 +91,7 @@ def _derivative(smooth: Float32, along_x: int, along_y: int) -> Float32:
     return np.asarray(scharr / SCHARR_UNIT, np.float32)
 
 
-def _pencil_of(vanishing: Float, width: int, height: int) -> _Pencil:
+def _grid_about(vanishing: Float, width: int, height: int) -> _PolarGrid:
     """The rows that cover a photo, at most 1 px apart."""
     reach = max(float(np.linalg.norm(vanishing[:2])), 1.0)
     point = vanishing[:2] / (vanishing[2] if abs(vanishing[2]) * FAR > reach else reach / FAR)
@@ -109,41 +108,41 @@ def _pencil_of(vanishing: Float, width: int, height: int) -> _Pencil:
         angle = np.arctan2(towards[0] * to_corners[:, 1] - towards[1] * to_corners[:, 0], to_corners @ towards)
         low, high = float(angle.min()), float(angle.max())
     rows = int(np.ceil((high - low) * furthest)) + 1
-    return _Pencil(point, towards, np.linspace(low, high, rows), np.arange(max(nearest, NEAR), furthest))
+    return _PolarGrid(point, towards, np.linspace(low, high, rows), np.arange(max(nearest, NEAR), furthest))
 
 
 def _lines_of_rows(
-    pencil: _Pencil, rows: Int, gradient: tuple[Float32, Float32], noise: Float32, least: float
+    grid: _PolarGrid, rows: Int, gradient: tuple[Float32, Float32], noise: Float32, least: float
 ) -> Float:
-    """Segments (M, 2, 2) on some neighbouring rows of a pencil."""
+    """Segments (M, 2, 2) on some neighbouring rows."""
     margin = 1  # a row on either side, with which steps are compared
-    first, last = max(rows[0] - margin, 0), min(rows[-1] + margin, len(pencil.angle) - 1)
-    step, step_noise, inside = _sample(pencil, np.arange(first, last + 1), gradient, noise)
+    first, last = max(rows[0] - margin, 0), min(rows[-1] + margin, len(grid.angle) - 1)
+    step, step_noise, inside = _sample(grid, np.arange(first, last + 1), gradient, noise)
     strength = np.abs(cv2.blur(step, (ALONG, 1)))
     padded = np.pad(strength, ((1, 1), (0, 0)))
     is_peak = (strength >= padded[:-2]) & (strength >= padded[2:])
-    witness = np.where(is_peak, np.clip(step / step_noise, -LARGEST_STEP, LARGEST_STEP), 0)
+    vote = np.where(is_peak, np.clip(step / step_noise, -LARGEST_STEP, LARGEST_STEP), 0)
     own = slice(rows[0] - first, rows[0] - first + len(rows))
     ends = [np.zeros((0, 2, 2))]
     for sign in (1, -1):  # from dark to bright and back: one line keeps its sign
-        evidence = np.where(inside, STEP * sign * witness - STEP**2 / 2, -START).astype(np.float32)[own]
+        evidence = np.where(inside, STEP * sign * vote - STEP**2 / 2, -START).astype(np.float32)[own]
         row, start, end = _runs(evidence)
         total = np.concatenate([np.zeros((len(evidence), 1)), np.cumsum(evidence, axis=1, dtype=np.float64)], axis=1)
         enough = total[row, end + 1] - total[row, start] >= least
         row, start, end = row[enough], start[enough], end[enough]
-        angle = pencil.angle[rows[row]] + _between_rows(pencil, step, row + own.start, start, end)
-        away = pencil.directions(angle)
-        ends.append(pencil.vanishing + pencil.radius[np.stack([start, end], axis=1)][..., None] * away[:, None])
+        angle = grid.angle[rows[row]] + _between_rows(grid, step, row + own.start, start, end)
+        away = grid.directions(angle)
+        ends.append(grid.vanishing + grid.radius[np.stack([start, end], axis=1)][..., None] * away[:, None])
     return np.concatenate(ends)
 
 
 def _sample(
-    pencil: _Pencil, rows: Int, gradient: tuple[Float32, Float32], noise: Float32
+    grid: _PolarGrid, rows: Int, gradient: tuple[Float32, Float32], noise: Float32
 ) -> tuple[Float32, Float32, Bool]:
     """Brightness step across each row, its noise, and whether the place lies in the photo; all (N, S)."""
-    away = pencil.directions(pencil.angle[rows])
-    x = (pencil.vanishing[0] + away[:, :1] * pencil.radius).astype(np.float32)
-    y = (pencil.vanishing[1] + away[:, 1:] * pencil.radius).astype(np.float32)
+    away = grid.directions(grid.angle[rows])
+    x = (grid.vanishing[0] + away[:, :1] * grid.radius).astype(np.float32)
+    y = (grid.vanishing[1] + away[:, 1:] * grid.radius).astype(np.float32)
     height, width = noise.shape
     inside: Bool = (x >= 0) & (x <= width - 1) & (y >= 0) & (y <= height - 1)
     along_x = cv2.remap(gradient[0], x, y, cv2.INTER_LINEAR)
@@ -179,9 +178,9 @@ def _runs(evidence: Float32) -> tuple[Int, Int, Int]:
     return row, start, end
 
 
-def _between_rows(pencil: _Pencil, step: Float32, row: Int, start: Int, end: Int) -> Float:
+def _between_rows(grid: _PolarGrid, step: Float32, row: Int, start: Int, end: Int) -> Float:
     """Angle, rad, from a row to the peak of the mean step of a line among it and its neighbours, by a parabola."""
-    width = pencil.angle[1] - pencil.angle[0]
+    width = grid.angle[1] - grid.angle[0]
     total = np.pad(np.cumsum(np.pad(step, ((1, 1), (0, 0)), mode="edge"), axis=1, dtype=np.float64), ((0, 0), (1, 0)))
     before, here, after = (np.abs(total[row + k, end + 1] - total[row + k, start]) for k in range(3))
     bend = before - 2 * here + after

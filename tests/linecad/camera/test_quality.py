@@ -7,7 +7,7 @@ import pytest
 
 from linecad.camera import quality, uncertainty
 from linecad.camera.photo import Bend
-from linecad.camera.quality import ENOUGH_LINES, Findings, Other, Fitted, quality_of
+from linecad.camera.quality import ENOUGH_LINES, Findings, Fitted, Other, quality_of
 from linecad.geometry import rotation_about
 from linecad.line_graph import ManhattanFrame
 

@@ -119,7 +119,7 @@ def test_fragments_are_joined_over_short_gaps_only(made, fragments, share, piece
 
 @pytest.mark.parametrize(("share", "pieces"), [(0.8, 1), (1.3, 2)])
 def test_fragments_side_by_side_are_joined_only_when_near(made, fragments, share, pieces):
-    across = share * GROUP_ACROSS * made.camera.width / REFERENCE_WIDTH
+    across = share * GROUP_ACROSS.px(made.camera.width)
     grouped = group_segments(fragments(2.0, across), made.camera, made.frame)
     assert len(grouped) == pieces
 

@@ -16,7 +16,7 @@ from linecad.finding import find_lines
 from linecad.geometry import angles_to, central_camera, rotation_about, vanishing_points
 from linecad.line_graph import ManhattanFrame
 from linecad.lines.segments import find_segments
-from linecad.lines.vanishing_point_lines import START, _runs, find_pencil_lines, least_evidence
+from linecad.lines.vanishing_point_lines import START, _runs, find_vanishing_point_lines, least_evidence
 from linecad.scene import Camera
 
 WIDTH, HEIGHT = 640, 480
@@ -66,7 +66,7 @@ def test_a_line_near_the_noise_is_found_where_no_fragment_stands_out(view, axis)
     camera, frame = seen(view)
     ends = edge_towards(camera, frame, axis, 150)
     photo = with_edge(ends, step=11, noise=4)
-    lines = find_pencil_lines(photo, camera, frame)
+    lines = find_vanishing_point_lines(photo, camera, frame)
     assert overlap(find_segments(photo).ends, ends, reach=1.5) < 0.3
     assert overlap(lines.ends[lines.axis == axis], ends, reach=1.5) > 0.8
 
@@ -74,18 +74,18 @@ def test_a_line_near_the_noise_is_found_where_no_fragment_stands_out(view, axis)
 @pytest.mark.parametrize("view", VIEWS)
 def test_noise_has_no_lines(view):
     photo = np.random.default_rng(0).normal(120, 12, (HEIGHT, WIDTH)).clip(0, 255).astype(np.uint8)
-    assert len(find_pencil_lines(photo, *seen(view))) == 0
+    assert len(find_vanishing_point_lines(photo, *seen(view))) == 0
 
 
 def test_a_flat_photo_has_no_lines():
-    assert len(find_pencil_lines(np.full((HEIGHT, WIDTH), 128, np.uint8), *seen("turned"))) == 0
+    assert len(find_vanishing_point_lines(np.full((HEIGHT, WIDTH), 128, np.uint8), *seen("turned"))) == 0
 
 
 @pytest.mark.parametrize("view", VIEWS)
 def test_lines_pass_through_their_vanishing_points(view):
     camera, frame = seen(view)
     photo = with_edge(edge_towards(camera, frame, 2, 200), step=40, noise=2)
-    lines = find_pencil_lines(photo, camera, frame)
+    lines = find_vanishing_point_lines(photo, camera, frame)
     sines = angles_to(lines.ends, vanishing_points(camera.matrix, frame.rotation))
     assert len(lines) > 0
     assert sines[lines.axis, np.arange(len(lines))].max() < 1e-5
@@ -94,7 +94,7 @@ def test_lines_pass_through_their_vanishing_points(view):
 def test_a_line_ends_where_its_edge_ends():
     camera, frame = seen("turned")
     ends = edge_towards(camera, frame, 2, 150)
-    lines = find_pencil_lines(with_edge(ends, step=30, noise=2), camera, frame)
+    lines = find_vanishing_point_lines(with_edge(ends, step=30, noise=2), camera, frame)
     upright = lines.ends[(lines.axis == 2) & (np.abs(lines.ends[..., 0] - ends[0, 0]).max(axis=1) < 1)]
     assert len(upright) == 1
     assert np.sort(upright[0, :, 1]) == pytest.approx(np.sort(ends[:, 1]), abs=4)
@@ -105,7 +105,7 @@ def test_two_lines_far_apart_on_one_row_stay_two():
     ends = edge_towards(camera, frame, 2, 300)
     first, second = (ends[0] + np.array([[low], [high]]) * (ends[1] - ends[0]) for low, high in [(0, 0.35), (0.65, 1)])
     photo = np.maximum(with_edge(first, step=30, noise=0), with_edge(second, step=30, noise=0))
-    lines = find_pencil_lines(photo, camera, frame)
+    lines = find_vanishing_point_lines(photo, camera, frame)
     on_row = lines.subset((lines.axis == 2) & (np.abs(lines.ends[..., 0] - ends[0, 0]).max(axis=1) < 1))
     assert len(on_row) == 2
 
@@ -113,7 +113,7 @@ def test_two_lines_far_apart_on_one_row_stay_two():
 def test_wide_photos_are_left_to_the_fragments():
     camera, frame = seen("turned", 1280, 960)
     ends = edge_towards(camera, frame, 2, 600)
-    assert len(find_pencil_lines(with_edge(ends, 40, 2, 1280, 960), camera, frame)) == 0
+    assert len(find_vanishing_point_lines(with_edge(ends, 40, 2, 1280, 960), camera, frame)) == 0
 
 
 @given(some.integers(16, 1400))
