@@ -9,11 +9,11 @@ from exporters.options import Value
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import read_calibration
 from linecad.camera.photo import Photo
-from linecad.finding import StageReport
 from linecad.model.scale import Known, set_scale
 from linecad.options import Options
 from linecad.outputs import write_outputs
 from linecad.pipeline import reconstruct
+from linecad.progress import StageReport
 from linecad.scene import Scene
 from solver.options import Progress
 

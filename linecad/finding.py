@@ -1,14 +1,13 @@
 """From a photo to its line graph: the camera, the lines along its axes, and what of them is connected."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.camera.estimate import Calibrated, calibrate, calibrate_again
 from linecad.camera.photo import Photo
+from linecad.camera.refit import find_calibration
 from linecad.corrections.edits import SetFrame
 from linecad.decide.stability import FITS_FOR_INCONSISTENCY, MOST_INCONSISTENT, inconsistency_of, resample
 from linecad.errors import ReconstructionError
@@ -24,10 +23,9 @@ from linecad.lines.segments import (
 )
 from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
 from linecad.options import LONG_REACH, MIN_COMPONENT, Options, Reach, Weights
+from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Certainty
 from solver.robust import RobustFit
-
-StageReport = Callable[[str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,10 +82,6 @@ class FoundLines:
         return self.inconsistency > MOST_INCONSISTENT
 
 
-def silent(_stage: str) -> None:
-    """Report nothing."""
-
-
 def find_lines(
     photo: Photo, on_stage: StageReport = silent, faint: bool = False, drawn: SetFrame | None = None
 ) -> FoundLines:
@@ -117,26 +111,6 @@ def name_lines(
     on_stage("following lines along their vanishing points")
     pieces = label_segments(raw, camera, frame).joined(find_vanishing_point_lines(photo.grey, camera, frame))
     return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
-
-
-def find_calibration(
-    photo: Photo, raw: Segments, on_stage: StageReport = silent, drawn: SetFrame | None = None
-) -> Calibrated:
-    """Camera and frame of a photo with segments `raw`; from vanishing points alone, fitted again to lines that meet.
-
-    Raises ReconstructionError when the photo has no Manhattan frame.
-    """
-    first = calibrate(photo, raw, drawn)
-    if first.prior is None or drawn is not None:
-        return first
-    on_stage("fitting the camera again to the lines that meet in space")
-    pieces = label_segments(raw, first.camera, first.frame)
-    graph = FoundLines(first.camera, first.frame, pieces, ()).widest_graph
-    agrees = graph.informative & (graph.misfit(RobustFit(graph).depths()) <= graph.tolerance)
-    met = [part for part in components(graph, agrees) if len(part) >= MIN_COMPONENT]
-    if not met:
-        return first
-    return calibrate_again(photo, raw, first, graph.segments.subset(np.concatenate(met)))
 
 
 def connect(found: FoundLines, options: Options) -> tuple[LineGraph, LineGraph]:

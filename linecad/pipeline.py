@@ -8,11 +8,12 @@ from linecad.corrections.edits import Corrections
 from linecad.corrections.lengths import measured
 from linecad.decide.annotations import annotate, solve_annotated
 from linecad.decide.decision import Decision, decide
-from linecad.finding import FoundLines, StageReport, connect, find_lines, silent
+from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Solution
 from linecad.model.build import View, build_scene
 from linecad.model.lifting import Lifted, lift
 from linecad.options import Options
+from linecad.progress import StageReport, silent
 from linecad.scene import Scene
 from solver.options import OnProgress
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Float, Int
 from linecad.camera.crop_history import usual_aspect
 from linecad.camera.exif_focal import ExifFocal
 from linecad.camera.joint_fit import FOCAL, Fit, Prior, View, fit_view, known
@@ -22,7 +22,7 @@ from linecad.camera.vanishing_points import (
     search_axes,
 )
 from linecad.corrections.edits import SetFrame
-from linecad.geometry import REFERENCE_WIDTH, angles_to, central_camera
+from linecad.geometry import angles_to, central_camera
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.segments import fit_whole
 from linecad.scene import Camera, CameraSource, Certainty
@@ -45,9 +45,6 @@ MIN_LENGTH = 10.0  # px at up to SCALE_WIDTH; shorter segments have no say about
 MIN_WHOLE_LENGTH = 15.0  # px, the same of whole segments
 SCALE_WIDTH = 1500.0  # px; the lengths grow with larger photos
 LABEL_ANGLE = np.radians(3.0)  # between fragments and the axis along which they are gathered
-NEAR_LINE = 3.0  # px at REFERENCE_WIDTH: across a line, what lies within it is a piece of it
-LEAST_SCALE = 0.3  # of NEAR_LINE, for small photos
-MATCHED_AT_ONCE = 500  # segments; bounds the memory
 REAL_SCENES = 1.5  # by which the focal lengths of York Urban's photos err more than standard errors say
 CONTRADICTION = 3.0  # standard errors between EXIF and vanishing points
 
@@ -74,16 +71,13 @@ def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Cal
     return _calibrated(photo, raw, raw, _Finder(photo, raw).find(), drawn)
 
 
-def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segments) -> Calibrated:
-    """The same from those segments alone that lie on `lines`, which a first calibration let meet in space.
+def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, chosen: Segments) -> Calibrated:
+    """The same from the `chosen` ones of the segments alone, beginning at a first calibration.
 
-    What meets nothing is mostly no line of the scene. For a focal length from the vanishing points alone: cameras that
-    were given, or that EXIF tells of, get no better by it (docs/decisions/0009).
+    Only a camera whose focal length comes from the vanishing points alone is fitted again; the first calibration comes
+    back where the chosen segments are too few or do not tell the focal length.
     """
-    if first.prior is None:
-        return first
-    chosen = raw.subset(_lies_on(raw.ends, lines.ends, NEAR_LINE * max(photo.width / REFERENCE_WIDTH, LEAST_SCALE)))
-    if len(chosen) < MIN_SEGMENTS:
+    if first.prior is None or len(chosen) < MIN_SEGMENTS:
         return first
     finder = _Finder(photo, chosen)
     focal, K = first.camera.focal, first.camera.matrix
@@ -94,20 +88,6 @@ def calibrate_again(photo: Photo, raw: Segments, first: Calibrated, lines: Segme
         return first
     found = _Found(_widened(fit, wider), counts, first.camera.source, first.findings, prior=first.prior)
     return _calibrated(photo, raw, chosen, found, None)
-
-
-def _lies_on(ends: Float, lines: Float, reach: float) -> Bool:
-    """Which segments (N, 2, 2) have their middle within `reach` px of one of the lines (M, 2, 2)."""
-    along = lines[:, 1] - lines[:, 0]
-    length = np.linalg.norm(along, axis=1)
-    along = along / length[:, None]
-    near = []
-    for some in np.array_split(ends.mean(axis=1), max(len(ends) // MATCHED_AT_ONCE, 1)):
-        off = some[:, None] - lines[:, 0]
-        place = (off * along).sum(axis=-1)
-        across = np.abs(off[..., 0] * along[:, 1] - off[..., 1] * along[:, 0])
-        near.append(((across < reach) & (place > -reach) & (place < length + reach)).any(axis=1))
-    return np.concatenate(near)
 
 
 def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", drawn: SetFrame | None) -> Calibrated:

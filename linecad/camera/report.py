@@ -16,11 +16,12 @@ from linecad.arrays import Float
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import Calibration, read_calibration
 from linecad.camera.photo import Photo
+from linecad.camera.refit import find_calibration
 from linecad.camera.vanishing_points import INLIER_ANGLE
-from linecad.finding import StageReport, find_calibration, silent
 from linecad.geometry import DIAGONAL_35MM, angles_to, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.segments import find_segments
+from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Certainty
 
 FLATTEST = 0.01  # sine of the angle between an axis and the image plane; a flatter one vanishes at infinity

@@ -5,7 +5,7 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.camera.joint_fit import CENTER_X, CENTER_Y, FOCAL, TURNS, Fit
 from linecad.camera.photo import Bend
-from linecad.camera.quality import Findings, Other, Fitted, quality_of
+from linecad.camera.quality import Findings, Fitted, Other, quality_of
 from linecad.geometry import angle_between_frames, angles_to, plane_normals, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera, Certainty

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from linecad.arrays import Float, Int
 from linecad.geometry import PhotoLength, angles_to, directions_to, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
+from linecad.options import SHORT_REACH
 from linecad.scene import Camera
 
 SMALL_WIDTH = 1280.0  # px; narrower photos show lines in fewer pixels than detector and labels ask for
@@ -24,8 +25,7 @@ LABEL_ANGLE = np.radians(3.0)  # largest angle between a segment and its vanishi
 LABEL_ANGLE_LIMIT = np.radians(5.0)  # the most in narrower photos, where segments are short and it grows in proportion
 # Between fragments of one line; no segment is placed better than the floor, and the frame of a small photo is worse.
 GROUP_ACROSS = PhotoLength(2.5, floor=1.25)
-GROUP_ALONG = 31.0  # px at the reference width; longer gaps fuse lines of two planes
-GROUP_ALONG_FLOOR = 4.0  # px in any photo
+GAP_FLOOR = 4.0  # px in any photo, of the largest gap between fragments of one line
 
 
 def detector_scale(width: int) -> float:
@@ -60,7 +60,7 @@ def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) ->
 
 
 def group_segments(
-    segments: Segments, camera: Camera, frame: ManhattanFrame, largest_gap: float = GROUP_ALONG
+    segments: Segments, camera: Camera, frame: ManhattanFrame, largest_gap: float = SHORT_REACH.largest_gap
 ) -> Segments:
     """Labelled fragments joined into whole segments that pass exactly through their vanishing points.
 
@@ -85,13 +85,13 @@ def fit_whole(ends: Float, vanishing: Float, width: int) -> Float:
 
     They are gathered as by `group_segments` but not turned to the vanishing point, so that they can tell where it is.
     """
-    whole = [_fit(ends[members]) for members in _gathered(ends, vanishing, *_reach(width, GROUP_ALONG))]
+    whole = [_fit(ends[members]) for members in _gathered(ends, vanishing, *_reach(width, SHORT_REACH.largest_gap))]
     return np.array(whole).reshape(-1, 2, 2)
 
 
 def _reach(width: int, largest_gap: float) -> tuple[float, float]:
     """How far, px, fragments of one line may lie apart across it and along it."""
-    return GROUP_ACROSS.px(width), PhotoLength(largest_gap, GROUP_ALONG_FLOOR).px(width)
+    return GROUP_ACROSS.px(width), PhotoLength(largest_gap, GAP_FLOOR).px(width)
 
 
 def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> list[Int]:

@@ -1,7 +1,8 @@
 """Vanishing-point lines: whole lines through each vanishing point, where the edge is on and where it is off.
 
-The photo is sampled along the image lines through one vanishing point, a row a line; along each row the most likely switching between on and off is found from the brightness steps across it, by dynamic
-programming in time linear in its length (the idea of MCMLSD: Almazan, Tal, Qian and Elder, CVPR 2017). A detector of fragments asks each fragment to
+The photo is sampled along the image lines through one vanishing point, a row a line; along each row the most likely
+switching between on and off is found from the brightness steps across it, by dynamic programming in time linear in its
+length (the idea of MCMLSD: Almazan, Tal, Qian and Elder, CVPR 2017). A detector of fragments asks each fragment to
 stand out by itself; a faint line that stands out by its length alone is found here, for its direction is known.
 """
 

@@ -10,8 +10,8 @@ from linecad.arrays import Float
 from linecad.camera.distortion import straighten
 from linecad.camera.estimate import Calibrated
 from linecad.camera.photo import Photo
+from linecad.camera.refit import find_calibration
 from linecad.errors import LinecadError
-from linecad.finding import find_calibration
 from linecad.geometry import angle_between_frames, angles_to, vanishing_points
 from linecad.line_graph import Segments
 from linecad.lines.segments import find_segments

@@ -18,8 +18,8 @@ from PIL import Image
 
 from exporters.formats import FORMATS
 from linecad import __version__
+from linecad.camera.refit import find_calibration
 from linecad.cli.main import main
-from linecad.finding import find_calibration
 from linecad.io.scene_file import read_scene
 from linecad.lines.segments import find_segments
 from solver.options import BACKENDS, FORMULATIONS

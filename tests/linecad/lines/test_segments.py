@@ -8,7 +8,6 @@ from linecad.geometry import REFERENCE_WIDTH, angles_to, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.segments import (
     GROUP_ACROSS,
-    GROUP_ALONG,
     detector_scale,
     find_faint_segments,
     find_segments,
@@ -17,6 +16,7 @@ from linecad.lines.segments import (
     label_angle,
     label_segments,
 )
+from linecad.options import SHORT_REACH
 from linecad.scene import Camera
 
 
@@ -109,7 +109,7 @@ def test_grouping_leaves_exact_segments_where_they_are(made):
 
 @pytest.mark.parametrize(("share", "pieces"), [(-0.5, 1), (0.1, 1), (0.9, 1), (1.1, 2), (2.0, 2)])
 def test_fragments_are_joined_over_short_gaps_only(made, fragments, share, pieces):
-    gap = share * GROUP_ALONG * made.camera.width / REFERENCE_WIDTH
+    gap = share * SHORT_REACH.largest_gap * made.camera.width / REFERENCE_WIDTH
     grouped = group_segments(fragments(gap), made.camera, made.frame)
     assert len(grouped) == pieces
     if pieces == 1:
@@ -219,6 +219,6 @@ def test_no_fragments_are_no_segments(made):
 
 @pytest.mark.parametrize(("share", "whole"), [(0.8, 1), (1.3, 2)])
 def test_whole_segments_end_at_long_gaps(made, fragments, share, whole):
-    gap = share * GROUP_ALONG * made.camera.width / REFERENCE_WIDTH
+    gap = share * SHORT_REACH.largest_gap * made.camera.width / REFERENCE_WIDTH
     point = vanishing_points(made.camera.matrix, made.frame.rotation)[0]
     assert len(fit_whole(fragments(gap).ends, point, made.camera.width)) == whole
