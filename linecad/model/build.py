@@ -14,7 +14,7 @@ from linecad.model.body_scales import join_bodies
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
 from linecad.model.planes import find_planes
-from linecad.model.window_grids import find_grid_ties
+from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, Intersections, Lines, Scene, SolveReport
 
@@ -138,7 +138,9 @@ def _tie_parts(
     in the order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The
     mask (N,) tells the lines of parts that are not the largest of those they were joined with.
     """
-    joined = join_bodies(find_grid_ties(graph, view.camera, view.frame.rotation, parts, lifted.offset), len(parts))
+    joined = join_bodies(
+        find_window_grid_cues(graph, view.camera, view.frame.rotation, parts, lifted.offset), len(parts)
+    )
     sizes = [(int(rigid[part].sum()), len(part)) for part in parts]
     scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
     groups: list[Int] = []

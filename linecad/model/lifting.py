@@ -9,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags_array
-from scipy.sparse.csgraph import connected_components
 from scipy.sparse.linalg import spsolve
 
 from linecad.arrays import Bool, Float, Int
@@ -115,8 +114,7 @@ def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = 
     if merges is not None:
         coordinate = np.r_[coordinate, merges.axis]
         i, j = np.r_[i, merges.lines[:, 0]], np.r_[j, merges.lines[:, 1]]
-    links = csr_matrix((np.ones(len(i)), (3 * i + coordinate, 3 * j + coordinate)), (count, count))
-    shared: Int = connected_components(links, directed=False)[1].reshape(-1, 3).astype(np.int64)
+    shared = group_numbers(count, np.column_stack([3 * i + coordinate, 3 * j + coordinate])).reshape(-1, 3)
     shared[np.arange(len(graph.segments)), graph.axis] = -1
     return shared
 

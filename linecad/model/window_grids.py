@@ -1,4 +1,4 @@
-"""Window grids that continue from one body of lines to another: ties between bodies of one facade.
+"""Window grids that continue from one body of lines to another: scale cues between bodies of one facade.
 
 The storeys of a facade are often bodies of their own, since nothing between them crosses. But their jambs stand above
 each other, and the sills of one row lie on one image line through their vanishing point. Each such pair is a
@@ -9,17 +9,15 @@ each other by a little more. If there are too many for chance, both bodies lie i
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int
-from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points
+from linecad.geometry import PhotoLength, directions_to, vanishing_points
+from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineGraph
-from linecad.model.body_scales import Ties
+from linecad.model.body_scales import ScaleCues
 from linecad.scene import Camera
 
-ACROSS = 2.5  # px at the reference width between two segments of one image line
-ACROSS_FLOOR = 0.8  # px
+ACROSS = PhotoLength(2.5, floor=0.8)  # between two segments of one image line
 WIDER = 6.0  # times that distance, in which pairs are counted that are chance
 RELIEF = 0.02  # of a wall's distance, by which its lines may stand off its plane
 FEWEST_LINES = 4  # of a wall
@@ -35,12 +33,14 @@ class _Wall:
     side: int  # of the camera, 1 or -1
 
 
-def find_grid_ties(graph: LineGraph, camera: Camera, rotation: Float, bodies: list[Int], offset: Float) -> Ties:
-    """Ties between bodies, each given by its lines, whose lines have coordinates `offset` (N, 3).
+def find_window_grid_cues(
+    graph: LineGraph, camera: Camera, rotation: Float, bodies: list[Int], offset: Float
+) -> ScaleCues:
+    """Scale cues between bodies, each given by its lines, whose lines have coordinates `offset` (N, 3).
 
     `rotation` (3, 3) takes world to camera.
     """
-    across = max(ACROSS * camera.width / REFERENCE_WIDTH, ACROSS_FLOOR)
+    across = ACROSS.px(camera.width)
     distance = _line_distances(graph, vanishing_points(camera.matrix, rotation))
     found: list[tuple[int, int, float, int, float]] = []
     for normal in range(2):
@@ -54,7 +54,13 @@ def find_grid_ties(graph: LineGraph, camera: Camera, rotation: Float, bodies: li
                 if seen:
                     found.append((first, second, one.log_offset - other.log_offset, seen, expected))
     table = np.array(found, float).reshape(-1, 5)
-    return Ties(table[:, :2].astype(np.int64), table[:, 2], np.full(len(table), TOLERANCE), table[:, 3], table[:, 4])
+    return ScaleCues(
+        bodies=table[:, :2].astype(np.int64),
+        log_ratio=table[:, 2],
+        tolerance=np.full(len(table), TOLERANCE),
+        seen=table[:, 3],
+        expected=table[:, 4],
+    )
 
 
 def _find_wall(graph: LineGraph, body: Int, offset: Float, normal: int) -> _Wall | None:
@@ -119,6 +125,5 @@ def _image_lines(same: Bool) -> int:
     one, other = np.nonzero(same)
     if len(one) == 0:
         return 0
-    count = sum(same.shape)
-    group = connected_components(csr_matrix((np.ones(len(one)), (one, len(same) + other)), (count, count)))[1]
+    group = group_numbers(sum(same.shape), np.column_stack([one, len(same) + other]))
     return len(np.unique(group[one]))

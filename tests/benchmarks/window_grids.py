@@ -15,7 +15,7 @@ from linecad.evaluation.labels import find_true_lines
 from linecad.evaluation.references import open_case
 from linecad.finding import find_lines
 from linecad.graph.connectivity import components
-from linecad.model.window_grids import find_grid_ties
+from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT, Options
 from linecad.pipeline import reconstruct_lines
 from solver.options import SolveOptions
@@ -53,8 +53,8 @@ def errors_of(case, limit):
     ratio = log_true_depths(reference.truth, graph, found.frame.rotation) - log_depth
     parts = [part for part in parts if np.isfinite(ratio[part]).any()]
     grow = np.array([np.nanmedian(ratio[part]) for part in parts])
-    ties = find_grid_ties(graph, found.camera, found.frame.rotation, parts, offset)
-    for (one, other), ratio, evidence in zip(ties.bodies, ties.log_ratio, ties.evidence, strict=True):
+    cues = find_window_grid_cues(graph, found.camera, found.frame.rotation, parts, offset)
+    for (one, other), ratio, evidence in zip(cues.bodies, cues.log_ratio, cues.evidence, strict=True):
         step = int(np.searchsorted(EVIDENCE, evidence, side="right"))
         yield f"grids, {EVIDENCE[step - 1]} to {EVIDENCE[step]} decades", grow[other] - grow[one] - ratio
     body = np.full(len(graph.segments), -1)
