@@ -7,14 +7,14 @@ import numpy as np
 from linecad.arrays import Bool, Float
 from linecad.dataset.modelling import Model
 from linecad.dataset.truth import NOTHING, Truth
-from linecad.geometry import REFERENCE_WIDTH
+from linecad.geometry import PhotoLength
 from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
 
 MOST_TRIES = 12  # drawings of one scene; the last one is taken as it is
-LONG = 40.0  # px at the reference width; shorter pieces do not count
+LONG = PhotoLength(40.0)  # shorter pieces do not count
 CROSSINGS = {"street": (3000, 6500), "courtyard": (1500, 9000), "room": (800, 6500)}
 LEAST_REAL = {"street": 0.75, "courtyard": 0.75, "room": 0.58}  # books and boards have more relief for their distance
 SAME_DEPTH = 0.02  # by which the depths of two lines that meet may differ: the relief of a facade
@@ -65,7 +65,7 @@ def judge(truth: Truth, model: Model) -> Verdict:
 def _largest_component(truth: Truth) -> tuple[int, int, float]:
     """Lines, crossings and share of real crossings of the paper's graph of visible pieces of Manhattan edges."""
     length = np.linalg.norm(truth.pieces[:, 1] - truth.pieces[:, 0], axis=1)
-    keep = manhattan(truth.edges)[truth.piece_edge] & (length >= LONG * truth.width / REFERENCE_WIDTH)
+    keep = manhattan(truth.edges)[truth.piece_edge] & (length >= LONG.px(truth.width))
     edges = truth.edges[truth.piece_edge[keep]]
     axis = np.abs(edges[:, 1] - edges[:, 0]).argmax(axis=1)
     camera = Camera(truth.width, truth.height, truth.matrix, "file")

@@ -10,14 +10,14 @@ import cv2
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.geometry import REFERENCE_WIDTH, project, world_rays
+from linecad.geometry import PhotoLength, project, world_rays
 from linecad.model.outlines import Cells, Edges, build_cells
 from linecad.scene import Camera, Lines, Plane
 
 COLUMNS = 480  # of samples across the photo
-SAME = 3.0  # px at the reference width; lines that are nearer are one line of an outline
-ENDS_REACH = 12.0  # px at the reference width; an end so near to a line ends there
-BORDER = 30.0  # px at the reference width; a line that ends so near to the photo's border goes on outside
+SAME = PhotoLength(3.0)  # lines that are nearer are one line of an outline
+ENDS_REACH = PhotoLength(12.0)  # an end so near to a line ends there
+BORDER = PhotoLength(30.0)  # a line that ends so near to the photo's border goes on outside
 BEHIND = 0.01  # relative depth by which a line is behind a plane for sure
 SPEAKS = 12.0  # samples; a line behind says nothing about the wall further away from it
 WALLS_OF_LEVEL = 4  # sides of a cell of a horizontal plane that lines close
@@ -48,12 +48,12 @@ class Samples:
 
 
 @dataclass(eq=False)
-class Sheet:
-    """A plane with its cells while it is decided which of them are wall."""
+class PlaneCells:
+    """The cells of one plane while it is decided which of them are wall."""
 
     plane: Plane
     flat: tuple[int, int]  # u and v among the axes
-    cells: Cells
+    grid: Cells
     possible: Bool  # (U, V)
     kept: Bool  # (U, V)
     at: Int  # (S,) cell of each sample, -1 outside
@@ -96,7 +96,7 @@ def take_samples(lines: Lines, camera: Camera, rotation: Float) -> Samples:
     )
 
 
-def build_sheet(
+def build_plane_cells(
     plane: Plane,
     members: Int,
     planes: tuple[Plane, ...],
@@ -104,63 +104,77 @@ def build_sheet(
     samples: Samples,
     camera: Camera,
     rotation: Float,
-) -> Sheet | None:
+) -> PlaneCells | None:
     """The cells of a plane that its lines close in, and what the photo says about them; None where there is none."""
     u, v = (axis for axis in range(3) if axis != plane.axis)
-    scale = camera.width / REFERENCE_WIDTH
     along_u, along_v = (members[lines.axis[members] == axis] for axis in (u, v))
     if not (len(along_u) and len(along_v)):
         return None
     offsets = [np.array([other.offset for other in planes if other.axis == axis]) for axis in (u, v)]
-    cells = build_cells(
-        _edges(lines, along_u, v, camera, rotation, scale),
-        _edges(lines, along_v, u, camera, rotation, scale),
-        (offsets[0], offsets[1]),
-    )
-    if cells is None:
+    edges_u, edges_v = _edges(lines, along_u, v, camera, rotation), _edges(lines, along_v, u, camera, rotation)
+    grid = build_cells(edges_u, edges_v, (offsets[0], offsets[1]))
+    if grid is None:
         return None
-    corners = np.empty((len(cells.u), len(cells.v), 3))
-    corners[..., plane.axis], corners[..., u], corners[..., v] = plane.offset, cells.u[:, None], cells.v
+    corners = np.empty((len(grid.u), len(grid.v), 3))
+    corners[..., plane.axis], corners[..., u], corners[..., v] = plane.offset, grid.u[:, None], grid.v
     own = np.isin(samples.line, members)
     depth = corners @ rotation[2]
     far = depth > NEAREST * float(np.median(samples.line_depth[own])) if own.any() else np.zeros(depth.shape, bool)
-    walls = np.sum(cells.walls, axis=0)
-    possible = walls >= WALLS_OF_LEVEL if plane.axis == 2 else (walls >= WALLS) & (cells.walls[3] | cells.framed)
-    possible = possible & far[:-1, :-1] & far[1:, :-1] & far[:-1, 1:] & far[1:, 1:]
+    possible = _possible(plane, grid, far)
     if not possible.any():
         return None
     pixels = project(np.where(far[..., None], corners, rotation[2]), camera.matrix, rotation)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        sample_depth = plane.offset / samples.rays[:, plane.axis]
-        plane_depth = plane.offset / samples.line_rays[:, plane.axis]
-    seen = np.isfinite(sample_depth) & (sample_depth > 0)
-    points = samples.rays[:, [u, v]] * np.where(seen, sample_depth, 0)[:, None]
+    component = lines.component[members[0]]
     # Other components have scales of their own: what is behind what is not known there.
-    comparable = lines.component[samples.line] == lines.component[members[0]]
-    behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
-    # Only a line that would be seen through the wall speaks against it, not one beside it.
-    through = cells.find(samples.line_rays[behind][:, [u, v]] * plane_depth[behind, None])
-    behind[behind] = (through >= 0) & possible.ravel()[through]
-    distance, speaks = samples.distance(own), samples.distance(behind)
-    return Sheet(
+    comparable = lines.component[samples.line] == component
+    at, distance, sample_depth = _seen(plane, grid, possible, samples, own, comparable)
+    return PlaneCells(
         plane=plane,
         flat=(u, v),
-        cells=cells,
+        grid=grid,
         possible=possible,
         kept=possible,
-        at=np.where(seen, cells.find(points), -1),
-        distance=np.where(
-            distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5,
-            distance * (WEAK_FACTOR if lines.component[members[0]] else 1.0),
-            np.inf,
-        ),
-        depth=np.where(seen, sample_depth, np.inf),
+        at=at,
+        distance=distance * (WEAK_FACTOR if component else 1.0),
+        depth=sample_depth,
         width=np.linalg.norm(np.diff(pixels, axis=0), axis=2)[:, :-1],
         height=np.linalg.norm(np.diff(pixels, axis=1), axis=2)[:-1],
     )
 
 
-def _edges(lines: Lines, own: Int, across: int, camera: Camera, rotation: Float, scale: float) -> Edges:
+def _possible(plane: Plane, grid: Cells, far: Bool) -> Bool:
+    """Which cells (U, V) may be wall: those that lines close in and whose corners are `far` enough (U + 1, V + 1)."""
+    walls = np.sum(grid.walls, axis=0)
+    possible = walls >= WALLS_OF_LEVEL if plane.axis == 2 else (walls >= WALLS) & (grid.walls[3] | grid.framed)
+    whole: Bool = possible & far[:-1, :-1] & far[1:, :-1] & far[:-1, 1:] & far[1:, 1:]
+    return whole
+
+
+def _seen(
+    plane: Plane, grid: Cells, possible: Bool, samples: Samples, own: Bool, comparable: Bool
+) -> tuple[Int, Float, Float]:
+    """For each sample (S,): the cell of a plane that it shows, the distance to the plane's nearest line, the depth.
+
+    The distance is in samples, infinite where a line behind the plane is nearer. Of the points on lines (T,), those
+    are `own` that lie on lines of the plane, and `comparable` whose depth can be compared with the plane's.
+    """
+    flat = [axis for axis in range(3) if axis != plane.axis]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sample_depth = plane.offset / samples.rays[:, plane.axis]
+        plane_depth = plane.offset / samples.line_rays[:, plane.axis]
+    seen = np.isfinite(sample_depth) & (sample_depth > 0)
+    points = samples.rays[:, flat] * np.where(seen, sample_depth, 0)[:, None]
+    behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
+    # Only a line that would be seen through the wall speaks against it, not one beside it.
+    through = grid.find(samples.line_rays[behind][:, flat] * plane_depth[behind, None])
+    behind[behind] = (through >= 0) & possible.ravel()[through]
+    distance, speaks = samples.distance(own), samples.distance(behind)
+    nearest = distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5
+    at = np.where(seen, grid.find(points), -1)
+    return at, np.where(nearest, distance, np.inf), np.where(seen, sample_depth, np.inf)
+
+
+def _edges(lines: Lines, own: Int, across: int, camera: Camera, rotation: Float) -> Edges:
     """Lines of one direction in a plane, with how far the photo can tell coordinates apart."""
     along = int(lines.axis[own[0]])
     matrix = camera.matrix @ rotation
@@ -180,7 +194,7 @@ def _edges(lines: Lines, own: Int, across: int, camera: Camera, rotation: Float,
     return Edges(
         at=ends[:, 0, across],
         ends=ends[:, :, along],
-        reach=SAME * scale / np.maximum(speed[across].max(axis=1), tiny),
-        end_reach=ENDS_REACH * scale / np.maximum(speed[along], tiny),
-        goes_on=margin <= BORDER * scale,
+        reach=SAME.px(camera.width) / np.maximum(speed[across].max(axis=1), tiny),
+        end_reach=ENDS_REACH.px(camera.width) / np.maximum(speed[along], tiny),
+        goes_on=margin <= BORDER.px(camera.width),
     )

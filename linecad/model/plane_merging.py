@@ -41,38 +41,48 @@ def find_merges(
     `normal` (N, N) is the matrix of the normal equations that gave `log_depth` (N,), in units of 1 / tolerance ** 2.
     Equal classes are one plane already.
     """
-    count = len(graph.segments)
-    classes, axes, members = _planes(graph, shared)
-    if len(classes) < 2:
+    planes = _planes(graph, shared, log_depth)
+    if len(planes.number) < 2:
+        count = len(graph.segments)
         return Merges(csr_matrix((0, count)), np.zeros(0), np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
-    size = np.array([len(own) for own in members])
-    means = csr_matrix(
-        (np.repeat(1 / size, size), (np.repeat(np.arange(len(size)), size), np.concatenate(members))),
-        (len(size), count),
-    )
-    ray = np.concatenate([graph.rays[own, axis] for own, axis in zip(members, axes.tolist(), strict=True)])
-    side = np.sign([graph.rays[own[0], axis] for own, axis in zip(members, axes.tolist(), strict=True)])
-    log_ray = np.bincount(np.repeat(np.arange(len(size)), size), np.log(np.abs(ray))) / size
-    log_offset = means @ log_depth + log_ray
-    spread = splu(normal.tocsc()).solve(means.T.toarray())  # (N, P)
-    covariance = np.asarray(means @ spread) / NOISE_FACTOR**2
-    apart = _steps(graph, chosen, shared)
-    group = np.array([component[own[0]] for own in members])
+    spread = splu(normal.tocsc()).solve(planes.means.T.toarray())  # (N, P)
+    covariance = np.asarray(planes.means @ spread) / NOISE_FACTOR**2
+    group = np.array([component[own[0]] for own in planes.lines])
+    alike = np.stack([planes.axis, group, planes.side])  # what two planes must have in common
     candidates = []
-    for a in range(len(size)):
-        others = np.arange(a + 1, len(size))
-        others = others[(axes[others] == axes[a]) & (group[others] == group[a]) & (side[others] == side[a])]
-        difference = np.abs(log_offset[others] - log_offset[a])
+    for a in range(len(group)):
+        others = np.arange(a + 1, len(group))
+        others = others[(alike[:, others] == alike[:, a, None]).all(axis=0)]
+        difference = np.abs(planes.log_offset[others] - planes.log_offset[a])
         sigma = np.sqrt(np.maximum(covariance[a, a] + covariance[others, others] - 2 * covariance[a, others], 0))
         allowed = np.minimum(np.hypot(NOISE_FACTOR * sigma, SYSTEMATIC), FARTHEST)
         for b in np.flatnonzero(difference <= allowed).tolist():
             candidates.append((float(difference[b] / allowed[b]), a, int(others[b])))
-    return _joined(sorted(candidates), means, log_ray, log_offset, size, members, classes, axes, apart)
+    taken = _joined(sorted(candidates), planes, _steps(graph, chosen, shared))
+    one, other = np.array(taken, np.int64).reshape(-1, 2).T
+    return Merges(
+        rows=csr_matrix(planes.means[one] - planes.means[other]),
+        log_ratio=planes.log_ray[other] - planes.log_ray[one],
+        lines=np.array([(planes.lines[a][0], planes.lines[b][0]) for a, b in taken], np.int64).reshape(-1, 2),
+        axis=planes.axis[one],
+    )
 
 
-def _planes(graph: LineGraph, shared: Int) -> tuple[list[int], Int, list[Int]]:
-    """Classes of coordinates that span a plane on one side of the camera: their number, axis and lines."""
-    classes: list[int] = []
+@dataclass(frozen=True, eq=False)
+class _Planes:
+    """P classes of coordinates that span a plane on one side of the camera."""
+
+    number: list[int]  # P, of the class
+    axis: Int  # (P,) the normal
+    lines: list[Int]  # P, ascending
+    side: Float  # (P,) of the camera, 1 or -1
+    means: csr_matrix  # (P, N) takes a value of each line to the mean over the lines of each plane
+    log_ray: Float  # (P,) mean log of the lines' rays along the normal
+    log_offset: Float  # (P,) of the plane's distance from the camera
+
+
+def _planes(graph: LineGraph, shared: Int, log_depth: Float) -> _Planes:
+    numbers: list[int] = []
     axes: list[int] = []
     members: list[Int] = []
     for axis in range(3):
@@ -80,14 +90,21 @@ def _planes(graph: LineGraph, shared: Int) -> tuple[list[int], Int, list[Int]]:
         if len(own) == 0:
             continue
         order = own[np.argsort(shared[own, axis], kind="stable")]
-        numbers, starts = np.unique(shared[order, axis], return_index=True)
-        for number, lines in zip(numbers.tolist(), np.split(order, starts[1:]), strict=True):
+        found, starts = np.unique(shared[order, axis], return_index=True)
+        for number, lines in zip(found.tolist(), np.split(order, starts[1:]), strict=True):
             side = np.sign(graph.rays[lines, axis])
             if len(lines) >= FEWEST_LINES and len(np.unique(graph.axis[lines])) == 2 and abs(side.sum()) == len(side):
-                classes.append(number)
+                numbers.append(number)
                 axes.append(axis)
                 members.append(np.sort(lines))
-    return classes, np.array(axes, np.int64), members
+    size = np.array([len(own) for own in members], np.int64)
+    plane = np.repeat(np.arange(len(size)), size)
+    line = np.concatenate([np.zeros(0, np.int64), *members])
+    ray = graph.rays[line, np.repeat(axes, size).astype(np.int64)]
+    means = csr_matrix((np.repeat(1 / size, size), (plane, line)), (len(size), len(graph.segments)))
+    log_ray = np.bincount(plane, np.log(np.abs(ray)), len(size)) / size
+    side = np.sign([graph.rays[own[0], axis] for own, axis in zip(members, axes, strict=True)])
+    return _Planes(numbers, np.array(axes, np.int64), members, side, means, log_ray, means @ log_depth + log_ray)
 
 
 def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
@@ -110,38 +127,21 @@ def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
 
 
 def _joined(
-    candidates: list[tuple[float, int, int]],
-    means: csr_matrix,
-    log_ray: Float,
-    log_offset: Float,
-    size: Int,
-    members: list[Int],
-    classes: list[int],
-    axes: Int,
-    apart: set[tuple[int, int]],
-) -> Merges:
-    """The candidates that can be joined at once, the surest first: no group is wider than FARTHEST or has a step."""
-    groups = {plane: [plane] for plane in range(len(size))}
-    home = list(range(len(size)))
+    candidates: list[tuple[float, int, int]], planes: _Planes, apart: set[tuple[int, int]]
+) -> list[tuple[int, int]]:
+    """The pairs of planes that can be joined at once, the surest first: no group is wider than FARTHEST or has a step.
+
+    Not simply connected components: whether a pair is taken depends on those that were taken before.
+    """
+    group = np.arange(len(planes.number))
     taken = []
     for _, a, b in candidates:
-        first, second = groups[home[a]], groups[home[b]]
-        if first is second:
+        if group[a] == group[b]:
             continue
-        both = log_offset[[*first, *second]]
-        stepped = any(
-            (min(classes[p], classes[q]), max(classes[p], classes[q])) in apart for p in first for q in second
-        )
-        if np.ptp(both) > FARTHEST or stepped:
+        first, second = (np.flatnonzero(group == group[plane]).tolist() for plane in (a, b))
+        pairs = {tuple(sorted((planes.number[p], planes.number[q]))) for p in first for q in second}
+        if np.ptp(planes.log_offset[[*first, *second]]) > FARTHEST or pairs & apart:
             continue
-        for plane in second:
-            home[plane] = home[a]
-        groups[home[a]] = first + second
+        group[second] = group[a]
         taken.append((a, b))
-    one, other = np.array(taken, np.int64).reshape(-1, 2).T
-    return Merges(
-        rows=csr_matrix(means[one] - means[other]),
-        log_ratio=log_ray[other] - log_ray[one],
-        lines=np.array([(members[a][0], members[b][0]) for a, b in taken], np.int64).reshape(-1, 2),
-        axis=axes[one],
-    )
+    return taken
