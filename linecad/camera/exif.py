@@ -1,7 +1,7 @@
 """What EXIF says of a photo and its camera, freed from values that cannot be: every number positive, every text short.
 
 EXIF comes from anywhere: zero denominators, NaN, texts where numbers belong, numbers where texts belong. Whatever is
-no such value counts as not said.
+no such value counts as missing.
 """
 
 import math

@@ -6,7 +6,7 @@ from linecad.camera.report import Angle, CameraReport, VanishingPoint
 from linecad.scene import AXES, Camera, Certainty
 
 NAME_WIDTH = 19  # characters, of the names in the table
-FINEST = 0.005  # px and degrees; smaller errors are not said with more digits
+FINEST = 0.005  # px and degrees; smaller errors are not given with more digits
 
 SOURCES = {
     "file": "the camera file",

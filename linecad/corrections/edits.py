@@ -1,4 +1,4 @@
-"""What a person said about a photo, edit by edit: another input of a reconstruction, never a change in place.
+"""What a person corrects about a photo, edit by edit: another input of a reconstruction, never a change in place.
 
 Lines are named by what they looked like when the edit was made (an *anchor*: both ends and the axis), crossings by the
 anchors of their two lines and their place. So corrections can be applied again to lines that were found anew.
@@ -93,7 +93,7 @@ Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | Se
 
 @dataclass(frozen=True)
 class Corrections:
-    """Everything that a person said about one photo, in order; what was undone and can come back, the next one last."""
+    """Everything that a person corrected about one photo, in order; what was undone and can come back, the next one last."""
 
     photo: str  # file name, without its folder
     width: int  # px

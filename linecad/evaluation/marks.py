@@ -25,7 +25,7 @@ class MarkedCrossings:
 
     pixel: Float  # (M, 2) px
     segments: Float  # (M, 2, 2, 2) px, the ends of both segments
-    axis: Int  # (M, 2) axis of each, UNKNOWN_AXIS where nobody said
+    axis: Int  # (M, 2) axis of each, UNKNOWN_AXIS where it is not known
     label: Int  # (M,) REAL, FAKE or UNDECIDED
 
 

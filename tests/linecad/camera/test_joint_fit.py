@@ -151,10 +151,10 @@ def test_standard_errors_are_as_large_as_the_scatter():
         turns.append(turn_between(found.view, CORNER))
         focals.append(np.log(found.view.focal / CORNER.focal))
         errors.append(np.sqrt(np.diag(found.covariance)))
-    said = np.sqrt(np.mean(np.square(errors), axis=0))
+    predicted = np.sqrt(np.mean(np.square(errors), axis=0))
     scatter = np.sqrt(np.mean(np.square(turns), axis=0))
-    assert (np.abs(np.log(scatter / said[TURNS])) < np.log(2)).all()
-    assert 0.5 < np.sqrt(np.mean(np.square(focals))) / said[FOCAL] < 2
+    assert (np.abs(np.log(scatter / predicted[TURNS])) < np.log(2)).all()
+    assert 0.5 < np.sqrt(np.mean(np.square(focals))) / predicted[FOCAL] < 2
 
 
 def test_standard_errors_grow_when_segments_are_few():

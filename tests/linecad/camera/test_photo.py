@@ -1,4 +1,4 @@
-"""Photos with a camera file, a focal length, EXIF data or nothing, and what is said about each."""
+"""Photos with a camera file, a focal length, EXIF data or nothing, and the notes about each."""
 
 import json
 from pathlib import Path

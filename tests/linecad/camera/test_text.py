@@ -77,8 +77,8 @@ def test_vanishing_points_are_places_or_at_infinity():
 
 
 def test_notes_come_last_and_every_line_is_one():
-    lines = table(report(GIVEN, "file", notes=("a doubt", "another")))
-    assert lines[-2:] == ["note: a doubt", "note: another"]
+    lines = table(report(GIVEN, "file", notes=("a warning", "another")))
+    assert lines[-2:] == ["note: a warning", "note: another"]
     assert lines[0] == "photo              a photo.jpg, 1600 x 1067 px"
     assert all(len(line.splitlines()) == 1 for line in lines)
 

@@ -1,4 +1,4 @@
-"""The corrections file: it reads back as it was written, and whatever is wrong in it is said in one line."""
+"""The corrections file: it reads back as it was written, and whatever is wrong in it is told in one line."""
 
 import json
 
@@ -58,14 +58,14 @@ def with_edit(**edit):
 
 @given(corrections)
 @settings(max_examples=40)
-def test_what_is_written_reads_back_as_the_same(said):
-    assert corrections_from_json(corrections_to_json(said)) == said
+def test_what_is_written_reads_back_as_the_same(corrections):
+    assert corrections_from_json(corrections_to_json(corrections)) == corrections
 
 
 def test_a_file_reads_back_as_the_same(tmp_path):
-    said = Corrections("a.jpg", 640, 480, (Delete(Anchor(((1.5, 2.0), (3.0, 40.0)), 2)),))
-    write_corrections(said, tmp_path / "a.corrections.json")
-    assert read_corrections(tmp_path / "a.corrections.json") == said
+    corrections = Corrections("a.jpg", 640, 480, (Delete(Anchor(((1.5, 2.0), (3.0, 40.0)), 2)),))
+    write_corrections(corrections, tmp_path / "a.corrections.json")
+    assert read_corrections(tmp_path / "a.corrections.json") == corrections
 
 
 def test_what_was_undone_may_be_missing():

@@ -1,4 +1,4 @@
-"""Differences between what the solver said and what the planes and faces show."""
+"""Differences between what the solver decided and what the planes and faces show."""
 
 import numpy as np
 import pytest

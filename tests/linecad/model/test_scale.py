@@ -51,7 +51,7 @@ def made_scene():
     )
     none = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
     report = SolveReport("x", "gain", "optimal", 0, 0, 0, 0)
-    return Scene("a.jpg", Camera(1280, 960, K, "file"), R, lines, none, planes, report, notes=("a doubt",))
+    return Scene("a.jpg", Camera(1280, 960, K, "file"), R, lines, none, planes, report, notes=("a warning",))
 
 
 @pytest.fixture
@@ -77,7 +77,7 @@ def test_nothing_but_the_unit_and_a_note_changes(scene):
     measured = set_scale(scene, LineLength(13, 7 * UNIT))
     assert measured.lines is scene.lines
     assert measured.planes is scene.planes
-    assert measured.notes == ("a doubt", "scale: line 13 is 1.75 m long, so a unit is 0.25 m")
+    assert measured.notes == ("a warning", "scale: line 13 is 1.75 m long, so a unit is 0.25 m")
     assert scene_from_json(scene_to_json(measured)).metres_per_unit == measured.metres_per_unit
 
 
