@@ -93,7 +93,7 @@ Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | Se
 
 @dataclass(frozen=True)
 class Corrections:
-    """Everything that a person corrected about one photo, in order; what was undone and can come back, the next one last."""
+    """All that a person corrected about one photo, in order; what was undone and can come back, the next one last."""
 
     photo: str  # file name, without its folder
     width: int  # px

@@ -65,8 +65,8 @@ def group_segments(
     """Labelled fragments joined into whole segments that pass exactly through their vanishing points.
 
     The longest fragment of a line leads: it gathers the fragments of its axis within GROUP_ACROSS of its image line
-    whose gaps along the line are at most `largest_gap`, in px at the reference width. The joined segment runs through the
-    length-weighted mean.
+    whose gaps along the line are at most `largest_gap`, in px at the reference width. The joined segment runs through
+    the length-weighted mean.
     """
     across, along = _reach(camera.width, largest_gap)
     points = vanishing_points(camera.matrix, frame.rotation)

@@ -1,4 +1,4 @@
-"""Where planes and faces differ from what the solver decided about planar families and boundaries, in words for the notes.
+"""Where planes and faces differ from the solver's planar families and boundaries, in words for the notes.
 
 The solver decides both from crossings alone (the paper's pi and B); planes and faces come from the lines in space.
 """

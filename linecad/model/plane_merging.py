@@ -17,7 +17,7 @@ from linecad.line_graph import LineGraph
 
 NOISE_FACTOR = 3.0  # standard deviations; the tolerances of the crossings cover as many
 SYSTEMATIC = 0.004  # relative offset; what the frame, the calibration and the detector do to all lines of a plane alike
-FARTHEST = 0.015  # relative offset; planes that lie further apart are never merged, however few crossings lead from one to the other
+FARTHEST = 0.015  # relative offset; planes further apart are never merged, however few crossings connect them
 MIN_TOLERANCE = 0.002  # relative depth by which merged planes may differ before they become one number
 FEWEST_LINES = 3  # of a plane that is merged
 SHOWN_STEP = 8.0  # px in any photo; a line along the normal that goes so far shows that two planes are apart

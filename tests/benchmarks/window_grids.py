@@ -42,7 +42,7 @@ def main() -> None:
 
 
 def errors_of(case, limit):
-    """Kind of tie and error of its log scale, for each tie between two bodies whose true scales are known."""
+    """Kind of cue and error of its log scale, for each cue between two bodies whose true scales are known."""
     photo, reference = open_case(case)
     found = find_lines(photo)
     made = reconstruct_lines(photo.name, found, Options(solve=SolveOptions(time_limit_s=limit)))

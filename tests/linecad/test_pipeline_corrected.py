@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from linecad.decide.rigid_bodies import find_held, tied
 
 from linecad.camera.photo import Photo
 from linecad.camera.vanishing_points import fit_frame

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.corrections.apply import Said
+from linecad.corrections.annotations import Annotations
 from linecad.decide.annotations import annotate
 from linecad.decide.decision import decide
 from linecad.line_graph import LineGraph, Segments, Solution
@@ -63,7 +63,7 @@ def decided(graph, options=ALL, connected=None, said=None, inconsistency=None):
 def said_of(graph, real=(), fake=()):
     flags = np.zeros((2, len(graph.edges)), bool)
     flags[0, list(real)], flags[1, list(fake)] = True, True
-    return Said(*flags, (None,) * len(graph.edges), ())
+    return Annotations(*flags, (None,) * len(graph.edges), ())
 
 
 def crossing(graph, pair):
