@@ -20,11 +20,12 @@ PACKAGES = ("linecad", "exporters", "solver")
 
 # A package imports only what stands in rows above its own; packages of one row do not know each other.
 LAYERS = (
-    ("linecad", "linecad.errors", "linecad.arrays", "linecad.threads"),
+    ("linecad", "linecad.errors", "linecad.arrays", "linecad.progress", "linecad.threads"),
     ("linecad.line_graph",),
     ("linecad.scene",),
     ("linecad.geometry", "linecad.io"),
-    ("linecad.options", "linecad.corrections", "linecad.lines"),
+    ("linecad.options", "linecad.corrections"),
+    ("linecad.lines",),
     ("linecad.graph",),
     ("linecad.camera",),
     ("linecad.decide",),
