@@ -92,19 +92,20 @@ def test_a_strong_bend_is_not_called_good(radial, word):
     "row",
     [
         f"standard error of the focal length | above {100 * quality.GOOD_FOCAL_ERROR:.0f} %, or the value is "
-        f"assumed; above {100 * quality.GOOD_FOCAL_ERROR_ALONE:.0f} % where the vanishing points alone tell it "
+        f"assumed; above {100 * quality.GOOD_FOCAL_ERROR_ALONE:.0f} % from vanishing points alone "
         f"| above {100 * quality.POOR_FOCAL_ERROR:.0f} %",
         f"the largest of the three | above {np.degrees(quality.GOOD_TURN):.0f} degree "
         f"| above {np.degrees(quality.POOR_TURN):.0f} degrees",
         f"segment length that runs along the axes | below {100 * quality.GOOD_SHARE:.0f} % "
         f"| below {100 * quality.POOR_SHARE:.0f} %",
-        f"where vanishing points tell the focal length | below {quality.ENOUGH_LINES} ",
+        f"if the focal length comes from vanishing points | below {quality.ENOUGH_LINES} ",
+        f"whole lines along all three together, likewise | below {quality.ENOUGH_TOGETHER} ",
         f"whole lines along the second axis | below {quality.ENOUGH_LINES_KNOWN} ",
         f"turns of the axes off a right angle | above {np.degrees(quality.LARGEST_OWN_TURN):.0f} degree",
         f"roll | above {np.degrees(quality.EVEN_ROLL):.0f} degrees",
         f"the root of 1 + {uncertainty.FEW_LINES:.0f} / n for n whole lines",
-        f"if that is {100 * uncertainty.SECOND_FRAME_SHARE:.0f} % or more",
+        f"bend at the corners that was taken out | above {100 * quality.STRONG_BEND:.0f} %",
     ],
 )
 def test_the_page_about_the_camera_tells_the_limits(row):
-    assert row in (ROOT / "docs" / "camera.md").read_text(encoding="utf-8")
+    assert row in (ROOT / "docs" / "guide" / "camera.md").read_text(encoding="utf-8")
