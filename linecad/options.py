@@ -48,7 +48,7 @@ MIDDLE_REACH = Reach(37.5, 62.5, 18.75, 0.002)  # for photos whose crossings con
 
 @dataclass(frozen=True)
 class Options:
-    """What a user can choose about a reconstruction. None: what suits the formulation, and the photo where said."""
+    """What a user can choose about a reconstruction. None: what suits the formulation, and for the reach the photo."""
 
     # px at 3840 px width by which segments are extended to find crossings; None: that of the reach.
     extension: float | None = None
@@ -68,7 +68,7 @@ class Options:
 
     @property
     def is_paper(self) -> bool:
-        """Whether what is not said is as in the paper."""
+        """Whether what is left open is as in the paper."""
         return self.formulation == "paper"
 
     @property

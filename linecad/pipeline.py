@@ -39,8 +39,8 @@ def reconstruct(
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little.
 
-    With `corrections`, lines and crossings are what a person said about them; a ContradictionError where that cannot
-    all be true, a note where it names what is not there.
+    With `corrections`, lines and crossings are as a person annotated them; a ContradictionError where that cannot all
+    be true, a note where it names what is not there.
     """
     found = find_lines(photo, on_stage, options.faint, None if corrections is None else corrections.frame)
     if corrections is None:
@@ -66,13 +66,14 @@ def reconstruct_lines(
     if corrected is not None:
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)
-    graph, said = annotate(graph, corrected)
+    graph, annotations = annotate(graph, corrected)
     on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
-    solution = solve_annotated(graph, options.solve, said, corrected, on_progress)
+    solution = solve_annotated(graph, options.solve, annotations, corrected, on_progress)
     on_stage("deciding which crossings are real")
-    decision = decide(graph, solution, options, found.inconsistency if options.joins_used == "stable" else None, said)
+    inconsistency = found.inconsistency if options.joins_used == "stable" else None
+    decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
-    notes = found.notes + said.notes + decision.notes
+    notes = found.notes + annotations.notes + decision.notes
     view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes)
     lifted = lift(graph, decision.real, solution.log_depth)
     scene = build_scene(view, graph, solution, decision, lifted, options.largest_component)

@@ -24,22 +24,22 @@ def annotate(graph: LineGraph, corrected: CorrectedLines | None) -> tuple[LineGr
     if corrected is None:
         none = np.zeros(len(graph.edges), bool)
         return graph, Annotations(none, none, (None,) * len(graph.edges), ())
-    said = annotations_of(graph, corrected)
-    taken = said.real & graph.possible
+    annotations = annotations_of(graph, corrected)
+    taken = annotations.real & graph.possible
     wider = np.minimum(SURE_FACTOR * graph.tolerance, WIDEST_TOLERANCE)
     tolerance = np.where(taken, wider, graph.tolerance)
-    return replace(graph, tolerance=tolerance, informative=graph.informative | taken), said
+    return replace(graph, tolerance=tolerance, informative=graph.informative | taken), annotations
 
 
 def solve_annotated(
     graph: LineGraph,
     options: SolveOptions,
-    said: Annotations,
+    annotations: Annotations,
     corrected: CorrectedLines | None,
     on_progress: OnProgress,
 ) -> Solution:
     """The solution that keeps to the annotations; ContradictionError, by places in the photo, where none can."""
-    real, fake = (tuple(np.flatnonzero(flags).tolist()) for flags in (said.real, said.fake))
+    real, fake = (tuple(np.flatnonzero(flags).tolist()) for flags in (annotations.real, annotations.fake))
     try:
         return solve(graph, replace(options, real=real, fake=fake), on_progress)
     except ContradictionError as error:

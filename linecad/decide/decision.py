@@ -45,23 +45,23 @@ class Decision:
 
 
 def decide(
-    graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, said: Annotations
+    graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, annotations: Annotations
 ) -> Decision:
     """Decide about every crossing of a solved graph.
 
-    `inconsistency` is that of the photo, needed where joins must be stable; `said` are a person's annotations.
+    `inconsistency` is that of the photo, needed where joins must be stable; `annotations` are a person's annotations.
     """
     reason = np.full(len(graph.edges), "chosen", dtype="<U13")
     reason[~solution.connected] = "not chosen"
     reason[~graph.possible] = "impossible"
     reason[solution.connected & ~_within_groups(graph, solution.connected)] = "uninformative"
-    joined = _joins(graph, solution, options, inconsistency, said)
+    joined = _joins(graph, solution, options, inconsistency, annotations)
     refused = (reason == "chosen") & (joined.reason != "")
     reason[refused] = joined.reason[refused]
     reason[(reason == "chosen") & _in_small_group(graph, reason == "chosen")] = "small group"
     real = reason == "chosen"
-    real |= said.real
-    reason[said.real | said.fake] = "annotated"
+    real |= annotations.real
+    reason[annotations.real | annotations.fake] = "annotated"
     touched = np.zeros(len(graph.segments), bool)
     touched[graph.edges[refused]] = True
     return Decision(
@@ -86,14 +86,14 @@ class _Joins:
 
 
 def _joins(
-    graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, said: Annotations
+    graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, annotations: Annotations
 ) -> _Joins:
     """Which crossings join what must not be joined."""
     count, may = len(graph.segments), np.full(len(graph.edges), "", dtype="<U13")
     if options.joins_used == "all":
         return _Joins(None, np.ones(count, bool), may)
     agrees = agreeing(graph, solution.connected, solution.log_depth)
-    sure = graph.edges[said.real & solution.connected & graph.informative]
+    sure = graph.edges[annotations.real & solution.connected & graph.informative]
     if options.joins_used == "biconnected":
         bodies = find_blocks(graph, agrees).merged(sure)
         return _Joins(bodies, bodies.rigid, np.where(bodies.joins(graph), may, "loose"))

@@ -20,7 +20,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.decide.bodies import Bodies, with_hanging
-from linecad.geometry import REFERENCE_WIDTH
+from linecad.geometry import PhotoLength
 from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineGraph
 from linecad.threads import thread_count
@@ -35,7 +35,7 @@ LEAST_SEEN = 3  # fits in which two lines of a core are tied and in place
 MANY_BODIES = 40  # bodies that are sought; what is left after so many is crumbs
 FIRM = 0.95  # stability from which a line is as sure as the solution
 
-WIDE_CORNER = 20.0  # px at the reference width that the wider gap of a corner has at least
+WIDE_CORNER = PhotoLength(20.0)  # that the wider gap of a corner has at least
 CONTRADICTION = 3.0  # tolerances, and CONTRADICTION times LEAST_TOLERANCE at least, from which a crossing contradicts
 LEAST_TOLERANCE = 0.01  # log depth
 PRIOR_CORNERS, PRIOR_FAKE = 20.0, 0.1  # corners that are taken as seen, with this share of contradictions
@@ -170,7 +170,7 @@ def inconsistency_of(graph: LineGraph, log_depth: Float, fits: Fits, width: int)
     agrees = graph.informative & (off <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
     part = _largest_part(len(graph.segments), graph.edges[agrees], np.ones(len(graph.segments), bool))
     inside = graph.informative & part[first] & part[second]
-    wide = inside & (graph.kind == "L") & (graph.gap.max(axis=1) * REFERENCE_WIDTH / width > WIDE_CORNER)
+    wide = inside & (graph.kind == "L") & (graph.gap.max(axis=1) > WIDE_CORNER.px(width))
     against = off > CONTRADICTION * np.maximum(graph.tolerance, LEAST_TOLERANCE)
     fake = (float((wide & against).sum()) + PRIOR_CORNERS * PRIOR_FAKE) / (float(wide.sum()) + PRIOR_CORNERS)
     lack = float(1 - stability(part, log_depth, fits)[part].mean()) if part.any() else 0.0

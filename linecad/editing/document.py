@@ -21,7 +21,7 @@ def document_of(now: Now, levels: int, is_saved: bool) -> dict[str, object]:
     """The answer to GET /api/state; `levels` of the photo's tiles."""
     camera = now.found.camera
     scene = None if now.model is None else now.model.scene
-    labelled = sum(label is not None for label in now.lines.said.label)
+    labelled = sum(label is not None for label in now.lines.annotations.label)
     return {
         "version": now.version,
         "photo": {
@@ -115,11 +115,16 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
 
 
 def _crossings(now: Now) -> list[dict[str, object]]:
-    graph, said, ids = now.lines.graph, now.lines.said, now.lines.ids
+    graph, annotations, ids = now.lines.graph, now.lines.annotations, now.lines.ids
     decided = {} if now.model is None else now.model.decided
     changed = frozenset() if now.model is None else now.model.changed
     rows = zip(
-        now.lines.crossings, graph.edges.tolist(), graph.kind.tolist(), graph.crossing.tolist(), said.label, strict=True
+        now.lines.crossings,
+        graph.edges.tolist(),
+        graph.kind.tolist(),
+        graph.crossing.tolist(),
+        annotations.label,
+        strict=True,
     )
     return [
         {

@@ -1,6 +1,6 @@
 """A person's labels of crossings as a file that `linecad evaluate` reads (docs/reference/evaluation.md).
 
-Only what a person said is written: what the solver proposes is no label.
+Only annotations are written: what the program proposes is no label.
 """
 
 import json
@@ -39,10 +39,10 @@ def check_labels(path: Path, photo_file: Path, camera_file: Path | None) -> None
         raise OutputError(f"{path.name} must end in .json, or linecad evaluate does not find it")
 
 
-def labels_to_json(photo: Photo, camera: object, graph: LineGraph, said: Annotations) -> str:
+def labels_to_json(photo: Photo, camera: object, graph: LineGraph, annotations: Annotations) -> str:
     """The text of the labels file, with one crossing in each line."""
     rows = []
-    for edge, label in enumerate(said.label):
+    for edge, label in enumerate(annotations.label):
         if label is not None:
             pair = graph.edges[edge]
             record = {

@@ -76,8 +76,8 @@ def _edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], o
         def write(newest: ToSave) -> None:
             write_corrections(newest.corrections, options.corrections)
             if options.labels is not None:
-                graph, said = newest.lines.graph, newest.lines.said
-                write_text_atomically(options.labels, labels_to_json(photo, camera, graph, said))
+                graph, annotations = newest.lines.graph, newest.lines.annotations
+                write_text_atomically(options.labels, labels_to_json(photo, camera, graph, annotations))
 
         saver = Saver(write)
         session = Session(photo, raw, options.reconstruct, corrections, saver.save)

@@ -177,7 +177,9 @@ class Editor:
     def _labels(self) -> Response:
         """GET /api/export/labels: what `linecad evaluate` reads."""
         lines, photo = self.session.lines, self.session.photo
-        return self._attached(labels_to_json(photo, self.camera, lines.graph, lines.said).encode(), ".labels.json")
+        return self._attached(
+            labels_to_json(photo, self.camera, lines.graph, lines.annotations).encode(), ".labels.json"
+        )
 
     def _attached(self, data: bytes, ending: str) -> Response:
         stem = Path(self.session.photo.name).stem

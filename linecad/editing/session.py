@@ -1,4 +1,4 @@
-"""One photo being corrected: its lines, what was said about them, the model of the last solve, undo and redo.
+"""One photo being corrected: its lines, their annotations, the model of the last solve, undo and redo.
 
 Everything here is kept by one lock; the server's threads and the one that hears the solver call in.
 """
@@ -37,7 +37,7 @@ class Lines:
 
     corrected: CorrectedLines
     graph: LineGraph  # of all lines that are long enough
-    said: Annotations
+    annotations: Annotations
     ids: tuple[int, ...]  # of the graph's nodes
     crossings: tuple[int, ...]  # ids of the graph's edges
 
@@ -93,7 +93,7 @@ class Now:
     corrections: Corrections
     model: Model | None
     progress: Progress | None  # of the solve that runs, or of the last one
-    is_fresh: bool  # the model holds all that was said
+    is_fresh: bool  # the model holds all edits
     is_running: bool
     error: str  # of the last solve
     contradiction: Contradiction | None
@@ -198,7 +198,7 @@ class Session:
             lines = self._lines
             start = lines.edge.get(after, -1) + 1 if after is not None else 0
             for edge in [*range(start, len(lines.crossings)), *range(start)]:
-                if lines.said.label[edge] is None:
+                if lines.annotations.label[edge] is None:
                     crossing: int = lines.crossings[edge]
                     return crossing
             return None

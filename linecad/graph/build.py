@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, Text
-from linecad.geometry import REFERENCE_WIDTH, directions_to, vanishing_points, world_rays
+from linecad.geometry import PhotoLength, directions_to, vanishing_points, world_rays
 from linecad.graph.cues import Known, weigh
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.options import SHORT_REACH, Reach, Weights
@@ -19,18 +19,14 @@ from linecad.scene import Camera
 
 EXTENSION_FLOOR = 5.0  # px in any photo: the ends of a segment are not known better
 MIN_LENGTH_FLOOR = 10.0  # px in any photo
-END_ZONE = 10.0  # px at the reference width; a crossing so near an end counts as at the end
-END_ZONE_FLOOR = 2.5  # px
-CORNER_REACH = 12.0  # px at the reference width between the crossings of a Y or W junction
-CORNER_REACH_FLOOR = 3.0  # px
+END_ZONE = PhotoLength(10.0, 2.5)  # a crossing so near an end counts as at the end
+CORNER_REACH = PhotoLength(12.0, 3.0)  # between the crossings of a Y or W junction
 
-COLLINEAR_ACROSS = 2.5  # px at the reference width between two segments of one line
-COLLINEAR_ACROSS_FLOOR = 1.25  # px, as for grouping (linecad.lines.segments)
-COLLINEAR_GAP = 1000.0  # px at the reference width; what is further apart says nothing about each other
+COLLINEAR_ACROSS = PhotoLength(2.5, 1.25)  # between two segments of one line, as for grouping (linecad.lines.segments)
+COLLINEAR_GAP = PhotoLength(1000.0)  # what is further apart says nothing about each other
 COLLINEAR_GAP_SHARE = 1.5  # of the shorter segment; a larger gap needs longer segments to be believed
 
-NOISE = 1.25  # px across the segment at the reference width, one standard deviation
-NOISE_FLOOR = 0.5  # px in any photo: the detector is not better
+NOISE = PhotoLength(1.25, 0.5)  # across the segment, one standard deviation; the detector is never better
 NOISE_FACTOR = 3.0  # standard deviations that a tolerance covers
 MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
 
@@ -60,20 +56,20 @@ def build_line_graph(
     not have: two segments on one image line may be one line in space. `weights` names the cues that weigh the edges;
     `pixels` (H, W, 3) are those of the photo, for cues that look at it.
     """
-    scale = camera.width / REFERENCE_WIDTH
-    segments = segments.subset(segments.length >= max(reach.least_length * scale, MIN_LENGTH_FLOOR))
-    found = _find_crossings(segments, max(reach.extension * scale, EXTENSION_FLOOR))
-    kind = _junction_kinds(found, max(END_ZONE * scale, END_ZONE_FLOOR))
-    corner = _corners(found, segments.axis, max(CORNER_REACH * scale, CORNER_REACH_FLOOR))
+    width = camera.width
+    segments = segments.subset(segments.length >= PhotoLength(reach.least_length, MIN_LENGTH_FLOOR).px(width))
+    found = _find_crossings(segments, PhotoLength(reach.extension, EXTENSION_FLOOR).px(width))
+    kind = _junction_kinds(found, END_ZONE.px(width))
+    corner = _corners(found, segments.axis, CORNER_REACH.px(width))
     rays = world_rays(segments.ends.mean(axis=1), camera.matrix, frame.rotation)
     coordinate = 3 - segments.axis[found.edges].sum(axis=1)
     if collinear:
-        pieces = _find_collinear(segments, _directions(segments, camera, frame), scale)
+        pieces = _find_collinear(segments, _directions(segments, camera, frame), width)
         found = _joined(found, pieces)
         kind = np.r_[kind, np.full(len(pieces.edges), "collinear")]
         corner = np.r_[corner, np.zeros(len(pieces.edges), bool)]
         coordinate = np.r_[coordinate, _telling_coordinates(rays, segments.axis, pieces.edges)]
-    spread = _ray_spread(segments, camera, frame, max(NOISE * scale, NOISE_FLOOR))
+    spread = _ray_spread(segments, camera, frame, NOISE.px(width))
     equation = _equations(rays, spread, found.edges, coordinate)
     tolerance = np.maximum(equation.tolerance, reach.least_tolerance)
     graph = LineGraph(
@@ -142,9 +138,9 @@ def _find_crossings(segments: Segments, extension: float) -> _Crossings:
     return _Crossings(pairs, np.concatenate(points), np.maximum(-to_end, 0), np.maximum(to_end, 0))
 
 
-def _find_collinear(segments: Segments, direction: Float, scale: float) -> _Crossings:
+def _find_collinear(segments: Segments, direction: Float, width: int) -> _Crossings:
     """Pairs of segments of one axis that lie on one image line, one after the other; the point is between them."""
-    across = max(COLLINEAR_ACROSS * scale, COLLINEAR_ACROSS_FLOOR)
+    across = COLLINEAR_ACROSS.px(width)
     middle, length = segments.ends.mean(axis=1), segments.length
     edges, points, gaps = [], [], []
     for i in range(len(segments)):
@@ -157,7 +153,7 @@ def _find_collinear(segments: Segments, direction: Float, scale: float) -> _Cros
         behind = -length[i] / 2 - reach.max(axis=1)
         gap = np.maximum(ahead, behind)
         shorter = np.minimum(length[i], length[others])
-        limit = np.minimum(COLLINEAR_GAP * scale, COLLINEAR_GAP_SHARE * shorter)
+        limit = np.minimum(COLLINEAR_GAP.px(width), COLLINEAR_GAP_SHARE * shorter)
         one_line = (np.maximum(own, other) < across) & (gap > 0) & (gap <= limit)
         side = np.where(ahead > behind, 1, -1)[one_line]
         edges.append(np.column_stack([np.full(one_line.sum(), i), others[one_line]]))

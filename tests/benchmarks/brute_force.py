@@ -19,10 +19,10 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 ROOT = Path(__file__).resolve().parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "solver"), str(Path(__file__).resolve().parent)]
 
-from conftest import line_graph
 from run import COLUMNS
 from test_brute_force import ALL_WITHOUT, problems, values
 
+from conftest import line_graph
 from linecad.line_graph import LineGraph
 from solver.options import SolveOptions
 from solver.solve import solve

@@ -75,7 +75,8 @@ export class Inspector {
 
   #crossing(crossing) {
     const found = REASONS[crossing.reason] ?? "not solved yet";
-    const why = crossing.label === null ? found : crossing.label === "unsure" ? `you are unsure; ${found}` : "as you said";
+    const unsure = crossing.label === "unsure" ? `you are unsure; ${found}` : "as you said";
+    const why = crossing.label === null ? found : unsure;
     const names = crossing.lines.map((id) => `${id} (${this.store.lines.get(id)?.axis ?? "gone"})`);
     const changed = crossing.changed ? ", changed by the last solve" : "";
     const text = element(

@@ -10,7 +10,6 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely import LineString
 
-from linecad.geometry import REFERENCE_WIDTH
 from linecad.graph import build as graph_module
 from linecad.graph.build import MAX_TOLERANCE, build_line_graph
 from linecad.graph.connectivity import components, in_no_block, spanning_tree
@@ -164,7 +163,7 @@ def test_log_ratio_of_a_fake_crossing_is_not_that_of_the_depths(made, depth_on):
 
 def test_tolerance_is_three_standard_deviations_of_pixel_noise(made):
     graph = made.graph()
-    sigma = max(graph_module.NOISE * made.camera.width / REFERENCE_WIDTH, graph_module.NOISE_FLOOR)
+    sigma = graph_module.NOISE.px(made.camera.width)
     rng = np.random.default_rng(0)
     along = graph.segments.ends[:, 1] - graph.segments.ends[:, 0]
     normal = np.stack([-along[:, 1], along[:, 0]], axis=1) / np.linalg.norm(along, axis=1)[:, None]
