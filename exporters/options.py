@@ -82,7 +82,7 @@ def read_options(texts: Iterable[str], formats: Mapping[str, tuple[Option, ...]]
             written = ", ".join(sorted(formats)) or "the scene file"
             raise OutputError(
                 f"there is no option {_shown(key)} for {written}, which {given}; "
-                "`linecad export --formats` lists them all"
+                "`linecad options` lists them all"
             )
         values[key] = known[key].read(value)
     return values

@@ -1,21 +1,22 @@
-"""One photo to files, with everything a user chooses about it as one value: what each photo of a batch gets."""
+"""A photo to files, with everything a user chooses as one value: Python, command line and batch go this way."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Self
 
+import linecad.pipeline
 from exporters.options import Value
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import read_calibration
 from linecad.camera.photo import Photo
+from linecad.corrections.file import check_belongs, read_corrections
 from linecad.model.scale import Known, set_scale
 from linecad.options import Options
 from linecad.outputs import write_outputs
-from linecad.pipeline import reconstruct
-from linecad.progress import StageReport
+from linecad.progress import StageReport, silent
 from linecad.scene import Scene
-from solver.options import Progress
+from solver.options import OnProgress
 
 
 @dataclass(frozen=True)
@@ -26,23 +27,63 @@ class Conversion:
     focal: float | None = None  # px
     options: Options = field(default_factory=Options)
     known: Known | None = None  # a length that sets the scale
-    values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as exporters.formats reads them
+    values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as linecad.outputs reads them
+    corrections: Path | None = None  # what a person said about this one photo
 
     def checked(self) -> Self:
-        """This conversion, once it is known that its camera can be read at all. Raises CameraError."""
+        """This conversion, once its files are known to be readable. Raises CameraError or CorrectionsFileError."""
         if self.camera is not None:
             read_calibration(self.camera)
+        if self.corrections is not None:
+            read_corrections(self.corrections)
         return self
 
     def read(self, photo: Path) -> Photo:
         """The photo with its camera. Raises PhotoError or CameraError."""
         return open_photo(photo, self.camera, self.focal)
 
-    def reconstruct(self, photo: Photo, on_progress: Callable[[Progress], None] | None, on_stage: StageReport) -> Scene:
-        """The scene of the photo. Raises ReconstructionError, SolverError, or LinecadError for an unknown length."""
-        scene = reconstruct(photo, self.options, on_progress, on_stage)
+    def reconstruct(self, photo: Photo, on_progress: OnProgress = None, on_stage: StageReport = silent) -> Scene:
+        """The scene of the photo.
+
+        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, or ScaleError
+        for a length that the scene does not hold.
+        """
+        corrections = None
+        if self.corrections is not None:
+            corrections = read_corrections(self.corrections)
+            check_belongs(corrections, str(self.corrections), photo.width, photo.height)
+        scene = linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections)
         return scene if self.known is None else set_scale(scene, self.known)
 
-    def write(self, scene: Scene, photo: Photo, outputs: Sequence[Path]) -> None:
+    def write(
+        self,
+        scene: Scene,
+        photo: Photo,
+        outputs: Sequence[Path],
+        on_stage: Callable[[str], None] | None = None,
+    ) -> None:
         """Write a scene in the formats that the suffixes choose, each file whole or not at all. Raises OutputError."""
-        write_outputs(scene, photo.pixels, outputs, self.values)
+        write_outputs(scene, photo.pixels, outputs, self.values, on_stage)
+
+
+def reconstruct(
+    photo: Path | str,
+    camera: Path | str | None = None,
+    focal: float | None = None,
+    options: Options = Options(),
+    corrections: Path | str | None = None,
+) -> Scene:
+    """The lines, planes and boundaries of a photo's scene.
+
+    The camera comes from the calibration in the file `camera`, else from `focal` (px), else from EXIF and the photo's
+    vanishing points; `corrections` is a file that `linecad edit` wrote. Raises PhotoError, CameraError or
+    CorrectionsFileError for a file that cannot be used, ReconstructionError where the photo shows too little, and
+    SolverError: all of them a LinecadError, in one line.
+    """
+    conversion = Conversion(
+        None if camera is None else Path(camera),
+        focal,
+        options,
+        corrections=None if corrections is None else Path(corrections),
+    ).checked()
+    return conversion.reconstruct(conversion.read(Path(photo)))

@@ -5,7 +5,7 @@ table SWITCHES lists them, `linecad options` prints it.
 """
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
@@ -155,8 +155,9 @@ def _families(text: str) -> frozenset[str]:
     return names
 
 
-def _listed(words: Iterable[str]) -> str:
-    return " or ".join(words)
+def _listed(words: Sequence[str]) -> str:
+    *others, last = words
+    return f"{', '.join(others)} or {last}"
 
 
 _ANY = 1e6
@@ -209,7 +210,8 @@ def read_options(texts: Iterable[str], options: Options | None = None) -> Option
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals or key not in _BY_KEY:
-            raise OptionError(f"{text[:LONGEST_VALUE]!a} is no option; write KEY=VALUE, `linecad options` lists them")
+            found = f"{text[:LONGEST_VALUE]!a} is no option"
+            raise OptionError(f"{found}; write KEY=VALUE, `linecad options` lists them all")
         switch = _BY_KEY[key]
         try:
             (of_solver if switch.of_solver else others)[switch.name] = switch.read(value)

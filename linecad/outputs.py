@@ -1,17 +1,66 @@
-"""A scene to all the files that were asked for, each in the format that its suffix chooses."""
+"""A scene to files, each in the format that its suffix chooses, with the photo where a format shows it."""
 
-from collections.abc import Callable, Mapping, Sequence
+import warnings
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from exporters.formats import export
+import exporters.formats
+from exporters.formats import SCENE_FILE, TEXTURES, find_format, options_for
 from exporters.options import Value
+from linecad.errors import LinecadError, OutputError
+from linecad.io.files import check_output
 from linecad.io.scene_file import write_scene
 from linecad.scene import Scene
 
-SCENE_SUFFIX = ".json"
+if TYPE_CHECKING:
+    from linecad.camera.photo import Photo
+
+
+@dataclass(frozen=True)
+class PhotoOfScene:
+    """Where to look for the photo of a scene."""
+
+    named: Path | None = None  # by the user; it must be right
+    camera: Path | None = None  # its calibration, if the scene was made with one
+    scene_file: Path | None = None  # beside which it may lie
+
+
+def export(
+    scene: Scene,
+    path: Path | str,
+    photo: Path | str | None = None,
+    camera: Path | str | None = None,
+    **options: Value,
+) -> None:
+    """Write a scene to a file: the suffix of `path` chooses the format, .json the scene file.
+
+    `photo` is the scene's photo, for formats that show it, and `camera` its calibration if the scene was made with one.
+    Without a photo faces have no textures, and a warning says so. `options` are those of the format
+    (`linecad options` lists them), hyphens as underscores: `texture_size=1024`. Raises OutputError where the file
+    cannot be written or an option is not accepted, and PhotoError or CameraError where the photo is not the scene's.
+    """
+    path = Path(path)
+    values = format_values([path], [f"{key.replace('_', '-')}={_text(value)}" for key, value in options.items()])
+    check_output(path)
+    where = PhotoOfScene(None if photo is None else Path(photo), None if camera is None else Path(camera))
+    notes: list[str] = []
+    pixels = pixels_for(scene, [path], values, where, notes.append)
+    for note in notes:
+        warnings.warn(note, stacklevel=2)
+    write_outputs(scene, pixels, [path], values)
+
+
+def format_values(outputs: Iterable[Path], texts: Iterable[str]) -> dict[str, Value]:
+    """The values of the formats' options in texts KEY=VALUE, by key.
+
+    Raises OutputError for an unknown suffix, a value that is not accepted, or a key that none of the formats has.
+    """
+    return options_for([path for path in outputs if not _is_scene_file(path)], texts)
 
 
 def write_outputs(
@@ -24,12 +73,75 @@ def write_outputs(
     """Write a scene, each file whole or not at all. Raises OutputError.
 
     `pixels` (H, W, 3) RGB are those of its photo, for formats that show it; `values` are options of formats as
-    exporters.formats reads them.
+    `format_values` reads them.
     """
     for path in outputs:
         if on_stage is not None:
             on_stage(f"writing {path}")
-        if path.suffix.lower() == SCENE_SUFFIX:
+        if _is_scene_file(path):
             write_scene(scene, path)
         else:
-            export(scene, path, pixels, values)
+            exporters.formats.export(scene, path, pixels, values)
+
+
+def pixels_for(
+    scene: Scene,
+    outputs: Sequence[Path],
+    values: Mapping[str, Value],
+    photo: PhotoOfScene,
+    on_note: Callable[[str], None],
+) -> NDArray[np.uint8] | None:
+    """(H, W, 3) RGB of the scene's photo if an output shows it; None where none does, or it is not found.
+
+    Textures do without the photo, and `on_note` is told, unless they were asked for. Raises PhotoError or CameraError
+    where the photo cannot be used, OutputError where textures were asked for and there is none.
+    """
+    formats = [find_format(path) for path in outputs if not _is_scene_file(path)]
+    switch = TEXTURES[0]
+    able = bool(scene.faces) and any(switch in row.options for row in formats)
+    drawn = any(row.shows_photo for row in formats)
+    textured = able and values.get(switch.key, switch.default) is True
+    if not drawn and not textured:
+        return None
+    asked = able and values.get(switch.key) is True
+    try:
+        found = _read(scene, photo)
+    except LinecadError as error:
+        if drawn or asked or photo.named is not None:
+            raise
+        on_note(f"{error}; the faces have no textures")
+        return None
+    if found is None and textured:
+        missing = _missing(scene, photo)
+        if asked:
+            raise OutputError(f"textures were asked for, but {missing}")
+        on_note(f"{missing}; the faces have no textures")
+    return None if found is None else found.pixels
+
+
+def _read(scene: Scene, photo: PhotoOfScene) -> "Photo | None":
+    """The photo as named, else beside the scene file, else none."""
+    from linecad.camera.reread import find_beside, reread_photo  # loads what decodes photos
+
+    path = photo.named
+    if path is None and photo.scene_file is not None:
+        path = find_beside(scene.photo, photo.scene_file)
+    return None if path is None else reread_photo(path, scene.photo, scene.camera, photo.camera)
+
+
+def _missing(scene: Scene, photo: PhotoOfScene) -> str:
+    from exporters.model import photo_name
+
+    name = photo_name(scene)
+    if photo.scene_file is None:
+        return f"the photo {name!r} was not given"
+    return f"the photo {name!r} is not beside {photo.scene_file}; name it with --photo"
+
+
+def _is_scene_file(path: Path) -> bool:
+    return path.suffix.lower() == SCENE_FILE
+
+
+def _text(value: Value) -> str:
+    """A value as it stands behind KEY=."""
+    return ("on" if value else "off") if isinstance(value, bool) else str(value)

@@ -48,6 +48,7 @@ class Camera:
     matrix: Float  # (3, 3) K, px; K[0, 0] == K[1, 1]
     source: CameraSource
     distortion: tuple[float, ...] = ()  # OpenCV's coefficients, as they were before the photo was undistorted
+    is_resampled: bool = False  # its pixels were not square; how they were made so, the camera file alone tells
 
     def __post_init__(self) -> None:
         freeze(self, "matrix", np.float64, (3, 3))

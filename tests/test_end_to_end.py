@@ -122,8 +122,8 @@ def test_the_command_turns_a_photo_into_every_kind_of_file(tmp_path):
     outputs = ["scene.json", "model.step", "model.dxf", "model.glb", "model.usdz", "model.obj", "model.png"]
     command = [
         sys.executable, "-m", "linecad", "convert", str(SAMPLES / "courtyard.jpg"), "--camera",
-        str(SAMPLES / "courtyard.json"), "--time-limit", str(TIME_LIMIT), "--gap", str(GAP), "--quiet",
-        "--largest-component",
+        str(SAMPLES / "courtyard.json"), "--time-limit", str(TIME_LIMIT), "--quiet",
+        "--option", f"gap={GAP}", "--option", "largest-component=on",
         *[word for output in outputs for word in ("-o", output)],
     ]  # fmt: skip
     ended = subprocess.run(

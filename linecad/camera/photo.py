@@ -171,6 +171,11 @@ def _calibrated(name: str, decoded: Decoded, calibration: Calibration, camera_na
                 f"{outside:.1%} of the undistorted photo lies outside the photo as taken and repeats its border"
             )
     camera = Camera(
-        calibration.width, calibration.height, calibration.square_matrix, "file", distortion=calibration.distortion
+        calibration.width,
+        calibration.height,
+        calibration.square_matrix,
+        "file",
+        calibration.distortion,
+        not calibration.has_square_pixels,
     )
     return Photo(name, pixels, camera, tuple(notes))

@@ -15,7 +15,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
-from exporters.formats import FORMATS, SCENE_FILE, export
+from exporters.formats import FORMATS, SCENE_FILE
 from linecad.editing.document import document_of, solve_of
 from linecad.editing.edits import proposal, read_edit
 from linecad.editing.guard import HOST, Guard, TooLargeError
@@ -26,8 +26,8 @@ from linecad.editing.solving import Task
 from linecad.editing.tabs import Tabs
 from linecad.editing.tiles import Pyramid
 from linecad.errors import EditorError, LinecadError
-from linecad.io.scene_file import write_scene
 from linecad.io.strict_json import JsonError, Node, parse
+from linecad.outputs import write_outputs
 
 PAGE = Path(__file__).parent / "page"
 MEDIA_TYPES = {
@@ -191,10 +191,7 @@ class Editor:
         scene = self.session.scene()
         with tempfile.TemporaryDirectory(prefix="linecad-") as folder:
             path = Path(folder) / f"scene{suffix}"
-            if suffix == SCENE_FILE:
-                write_scene(scene, path)
-            else:
-                export(scene, path, self.session.photo.pixels)
+            write_outputs(scene, self.session.photo.pixels, [path], {})
             return path.read_bytes()
 
 

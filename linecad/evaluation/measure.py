@@ -100,7 +100,7 @@ def measure_photo(case: Case, settings: Settings) -> PhotoResult:
 
 def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -> PhotoResult:
     """Measure a photo against its reference. Raises ReconstructionError or SolverError."""
-    found = find_lines(photo)
+    found = find_lines(photo, faint=settings.reconstruction.faint)
     statistics: GraphStatistics | None = None
     methods: dict[Formulation, dict[str, Run]] = {}
     if reference.has_labels:

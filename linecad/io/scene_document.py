@@ -49,6 +49,7 @@ def document_of(scene: Scene) -> dict[str, object]:
             "height": int(camera.height),
             "K": camera.matrix.tolist(),
             "distortion": [float(coefficient) for coefficient in camera.distortion],
+            "resampled": camera.is_resampled,
             "source": camera.source,
             "R_cam_from_world": scene.rotation.tolist(),
         },
@@ -160,12 +161,14 @@ def _camera(node: Node) -> tuple[Camera, Float]:
     off = np.abs(rotation @ rotation.T - np.eye(3)).max()
     if off > ROTATION_ERROR or np.linalg.det(rotation) < 0:
         raise JsonError(f"camera.R_cam_from_world is not a rotation (off by {off:.3g})")
+    resampled = node.get("resampled")
     camera = Camera(
         width=node["width"].integer(1, LARGEST_PHOTO),
         height=node["height"].integer(1, LARGEST_PHOTO),
         matrix=matrix,
         source=cast(CameraSource, node["source"].one_of(CAMERA_SOURCES)),
         distortion=tuple(item.number(LARGEST_NUMBER) for item in _optional_items(node, "distortion")),
+        is_resampled=resampled is not None and resampled.boolean(),
     )
     return camera, rotation
 

@@ -82,7 +82,7 @@ def main():
     parsed = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         photo = large_street(Path(folder))
-        options = ("--extension", parsed.extension, "--time-limit", "5", "--quiet")
+        options = ("--option", f"extension={parsed.extension}", "--time-limit", "5", "--quiet")
         with served(photo, *options) as address, opened(address, WIDTH, HEIGHT) as page:
             counts = page.evaluate("[linecad.store.state.lines.length, linecad.store.state.crossings.length]")
             print(f"{counts[0]} lines, {counts[1]} crossings, 24 megapixels, {WIDTH} x {HEIGHT} px window")

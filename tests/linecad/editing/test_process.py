@@ -135,7 +135,7 @@ def test_kill_9_loses_nothing_that_was_saved_and_leaves_no_process(serve, folder
 
 @posix
 def test_it_solves_at_the_start_and_stop_keeps_the_best(serve, folder):
-    served = serve("--formulation", "paper", "-o", "said.json", "--labels", "room.labels.json")
+    served = serve("--option", "formulation=paper", "-o", "said.json", "--labels", "room.labels.json")
     served.until(lambda progress: progress["solve"]["objective"] is not None)
     served.post("stop")
     done = served.until(lambda progress: progress["solve"]["state"] == "idle")

@@ -1,0 +1,48 @@
+"""`linecad dataset`: made scenes with exact ground truth."""
+
+import argparse
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from linecad.cli.arguments import add_loudness
+from linecad.cli.progress import ProgressDisplay
+
+if TYPE_CHECKING:
+    from linecad.cli.arguments import Commands
+
+
+def add_to(commands: "Commands") -> None:
+    """Add the command."""
+    command = commands.add_parser(
+        "dataset",
+        help="street scenes of our own with exact ground truth",
+        description="Draw, render and measure scenes; a run that was stopped goes on where it was.",
+        epilog="example: linecad dataset scenes --scenes 50 --seed 1 --size 1920x1080",
+    )
+    command.set_defaults(run=run)
+    command.add_argument("folder", type=Path, metavar="DIR")
+    command.add_argument("--scenes", type=int, required=True, metavar="N", help="how many scenes the dataset has")
+    command.add_argument("--seed", type=int, required=True, metavar="S", help="the same seed gives the same scenes")
+    command.add_argument("--size", type=_size, default=(3840, 2160), metavar="WxH", help="of the photos (3840x2160)")
+    command.add_argument("--samples", type=int, default=32, metavar="N", help="rays a pixel: time against noise (32)")
+    add_loudness(command)
+
+
+def run(parsed: argparse.Namespace) -> int:
+    """Make the scenes that are not there yet."""
+    from linecad.dataset.make import DatasetOptions, make_dataset
+
+    width, height = parsed.size
+    options = DatasetOptions(parsed.scenes, parsed.seed, width, height, parsed.samples)
+    with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
+        made = make_dataset(parsed.folder, options, show.stage)
+    print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")
+    return 0
+
+
+def _size(text: str) -> tuple[int, int]:
+    found = re.fullmatch(r"(\d{1,6})x(\d{1,6})", text)
+    if found is None:
+        raise argparse.ArgumentTypeError(f"{text!r} is no size; write it like 1920x1080")
+    return int(found[1]), int(found[2])

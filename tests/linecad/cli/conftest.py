@@ -1,0 +1,51 @@
+"""A working folder, a command that must fail in one line, and a scene file."""
+
+from pathlib import Path
+
+import pytest
+
+from linecad.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[3]
+SAMPLES = ROOT / "samples"
+ROOM = SAMPLES / "room.jpg"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """An empty working folder."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
+def fails(folder, capsys):
+    """A function that runs the command, expects it to fail in one line and to change no file, and gives that line."""
+
+    def contents():
+        return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+    def run(*arguments, code=1):
+        before = contents()
+        try:
+            ended = main([*map(str, arguments), "--quiet"])
+        except SystemExit as leaving:  # argparse leaves so
+            ended = leaving.code
+        out, err = capsys.readouterr()
+        assert ended == code
+        assert out == ""
+        assert contents() == before
+        assert err.endswith("\n")
+        assert err.startswith("linecad")
+        assert len(err.splitlines()) == 1, err
+        return err.strip()
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def scene_file(tmp_path_factory):
+    """The scene of a sample photo."""
+    path = tmp_path_factory.mktemp("scene") / "room.json"
+    assert main(["convert", str(ROOM), "-o", str(path), "--option", "largest-component=on", "--quiet"]) == 0
+    return path

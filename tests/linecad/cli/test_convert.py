@@ -1,0 +1,216 @@
+"""`linecad convert`: what it refuses, in one line, and what it never leaves behind."""
+
+import json
+import os
+import re
+import shutil
+import signal
+import struct
+import subprocess
+import sys
+import threading
+import zlib
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from linecad.cli.main import main
+from linecad.corrections.edits import Corrections
+from linecad.corrections.file import write_corrections
+from linecad.io.scene_file import read_scene
+
+ROOT = Path(__file__).resolve().parents[3]
+SAMPLES = ROOT / "samples"
+ROOM = SAMPLES / "room.jpg"
+posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
+
+
+def png_that_claims(width, height):
+    """A PNG with a header and no pixels."""
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    return b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"")) + chunk(b"IEND", b"")
+
+
+def stripes():
+    """Parallel edges that meet in one vanishing point, and nothing else."""
+    image = np.full((600, 800), 220, np.uint8)
+    for u in range(-1200, 2000, 160):
+        corners = np.array([[400 + (u - 400) * 0.25, -10], [400 + (u - 320) * 0.25, -10], [u + 80, 610], [u, 610]])
+        cv2.fillPoly(image, [np.round(corners * 16).astype(np.int32)], 60, cv2.LINE_AA, shift=4)
+    return image
+
+
+def lonely_lines():
+    """Long thin lines of two directions that stay far from each other."""
+    image = np.full((900, 1200), 220, np.uint8)
+    for i in range(8):
+        image[60 + 100 * i : 63 + 100 * i, 80:400] = 40
+        image[80:800, 560 + 80 * i : 563 + 80 * i] = 40
+    return image
+
+
+BAD_PHOTOS = {
+    "text": (lambda: b"no picture, just words\n" * 20, "is not an image that linecad can read"),
+    "empty": (lambda: b"", "is empty"),
+    "truncated": (lambda: ROOM.read_bytes()[:60_000], "is damaged or incomplete"),
+    "huge": (lambda: png_that_claims(20_000, 10_001), "200 megapixels"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_PHOTOS)
+def test_files_that_are_no_photo(fails, folder, name):
+    content, words = BAD_PHOTOS[name]
+    (folder / "photo.png").write_bytes(content())
+    said = fails("convert", "photo.png", "-o", "a.json", "-o", "a.step")
+    assert "photo.png" in said
+    assert words in said
+
+
+@pytest.mark.parametrize(
+    ("draw", "words"),
+    [
+        (lambda: np.full((100, 63), 128, np.uint8), "64"),
+        (lambda: np.full((480, 640), 128, np.uint8), "0 straight segments found"),
+        (stripes, "run in one direction"),
+        (lonely_lines, "hardly touch each other"),
+    ],
+    ids=["tiny", "flat", "stripes", "lonely lines"],
+)
+def test_photos_that_show_too_little(fails, folder, draw, words):
+    Image.fromarray(draw()).save(folder / "photo.png")
+    assert words in fails("convert", "photo.png", "--focal", "900" if words != "64" else "90", "-o", "a.json")
+
+
+def test_a_photo_that_is_not_there(fails):
+    assert "nowhere.jpg" in fails("convert", "nowhere.jpg", "-o", "a.json")
+
+
+@pytest.mark.parametrize(
+    ("camera", "words"),
+    [
+        ("{", "camera.json"),
+        ("[]", "camera.json"),
+        ('{"width": 1600, "height": 1067}', "K"),
+        ('{"width": 1600, "height": 1067, "K": [[1, 2], [3, 4]]}', "K"),
+        ('{"width": 800, "height": 600, "K": [[700, 0, 400], [0, 700, 300], [0, 0, 1]]}', "800 x 600"),
+        ('{"width": 1600, "height": 1067, "K": [[NaN, 0, 800], [0, 700, 500], [0, 0, 1]]}', "camera.json"),
+    ],
+)
+def test_camera_files_that_do_not_fit(fails, folder, camera, words):
+    (folder / "camera.json").write_text(camera)
+    assert words in fails("convert", ROOM, "--camera", "camera.json", "-o", "a.json")
+
+
+@posix
+@pytest.mark.usefixtures("bound_by_permissions")
+def test_a_folder_that_cannot_be_written(fails, folder):
+    locked = folder / "locked"
+    locked.mkdir()
+    locked.chmod(0o555)
+    assert "cannot be written" in fails("convert", ROOM, "-o", "locked/a.json")
+
+
+def test_the_photo_is_never_overwritten(fails, folder):
+    Image.open(ROOM).save(folder / "photo.png")
+    assert "is an input too" in fails("convert", "photo.png", "-o", "photo.png")
+
+
+@posix
+def test_the_photo_is_never_overwritten_through_a_link(fails, folder):
+    Image.open(ROOM).save(folder / "photo.png")
+    (folder / "link.png").symlink_to("photo.png")
+    os.link(folder / "photo.png", folder / "hard.png")
+    assert "is an input too" in fails("convert", "photo.png", "-o", "link.png")
+    assert "is an input too" in fails("convert", "link.png", "-o", "photo.png")
+    assert "is an input too" in fails("convert", "photo.png", "-o", "hard.png")
+
+
+def test_the_camera_file_is_never_overwritten(fails, folder):
+    shutil.copy(SAMPLES / "room.json", folder)
+    assert "is an input too" in fails("convert", ROOM, "--camera", "room.json", "-o", "room.json")
+
+
+def interrupt(arguments, folder, moment):
+    """Run the command on a terminal and press Ctrl-C when that shows `moment`: exit code, stdout and what it showed."""
+    import pty
+
+    ours, theirs = pty.openpty()
+    child = subprocess.Popen(
+        [sys.executable, "-m", "linecad", *map(str, arguments)], cwd=folder, text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT)}, stdout=subprocess.PIPE, stderr=theirs,
+    )  # fmt: skip
+    os.close(theirs)
+    watchdog = threading.Timer(300, child.kill)
+    watchdog.start()
+    shown, is_sent = b"", False
+    try:
+        while piece := read_terminal(ours):
+            shown += piece
+            if moment in shown.decode(errors="replace") and not is_sent:
+                child.send_signal(signal.SIGINT)
+                is_sent = True
+        return child.wait(), child.stdout.read(), shown.decode()
+    finally:
+        watchdog.cancel()
+        child.kill()
+        child.wait()
+        child.stdout.close()
+        os.close(ours)
+
+
+def read_terminal(descriptor):
+    """What a terminal shows next, nothing when its programs have ended."""
+    try:
+        return os.read(descriptor, 4096)
+    except OSError:  # Linux says so in this way
+        return b""
+
+
+@posix
+def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
+    street = [SAMPLES / "street.jpg", "--camera", SAMPLES / "street.json", "--option", "extension=90"]
+    code, out, _ = interrupt(["convert", *street, "-o", "a.json", "-o", "a.obj"], folder, "Ctrl-C keeps the best")
+    assert code == 0
+    scene = json.loads((folder / "a.json").read_text())
+    assert scene["solve"]["status"] == "interrupted"
+    assert any("was interrupted" in note for note in scene["notes"])
+    assert len(scene["lines"]) > 100
+    assert "program: interrupted in " in out
+    assert sorted(path.name for path in folder.iterdir()) == ["a.json", "a.obj", "a.obj.mtl", "a.obj.textures"]
+
+
+@posix
+def test_ctrl_c_before_the_solver_writes_nothing(folder):
+    code, out, shown = interrupt(["convert", ROOM, "-o", "a.json"], folder, "reading the photo")
+    assert code == 1
+    assert out == ""
+    assert shown.splitlines()[-1].endswith(
+        "\033[Klinecad: interrupted; a file that was not written yet is as it was before"
+    )
+    assert "Traceback" not in shown
+    assert list(folder.iterdir()) == []
+
+
+def test_the_summary_tells_the_status_as_the_programs(folder, capsys):
+    assert main(["convert", str(ROOM), "-o", "a.json", "--fast", "--quiet"]) == 0
+    out = capsys.readouterr().out.splitlines()
+    scene = read_scene(folder / "a.json")
+    real = int(scene.intersections.real.sum())
+    counts = (
+        f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes"
+    )
+    assert re.fullmatch(re.escape(counts) + r"; program: fast in \d+\.\d s, gap unknown", out[0])
+    assert out[1].startswith("camera ")
+    assert out[2:] == [f"note: {note}" for note in scene.notes]
+
+
+def test_corrections_of_another_photo_are_refused(fails, folder):
+    write_corrections(Corrections("room.jpg", 400, 300), folder / "said.json")
+    assert "said.json" in fails("convert", ROOM, "-o", "a.json", "--corrections", "said.json")

@@ -1,0 +1,240 @@
+"""`linecad export`: files from a scene file, with its photo where a format shows it."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from exporters.formats import FORMATS
+from linecad.cli.main import main
+
+ROOT = Path(__file__).resolve().parents[3]
+SAMPLES = ROOT / "samples"
+ROOM = SAMPLES / "room.jpg"
+COURTYARD = SAMPLES / "courtyard.jpg"
+posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
+
+
+def test_the_scene_file_is_never_overwritten(fails, folder, scene_file):
+    shutil.copy(scene_file, folder)
+    assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json")
+
+
+@pytest.mark.parametrize("text", ["", "{", "{}", "[1]", '{"format": "linecad-scene", "version": 99}', "\x00\xff"])
+def test_broken_scene_files(fails, folder, text):
+    (folder / "broken.json").write_text(text, encoding="latin-1")
+    assert "broken.json" in fails("export", "broken.json", "-o", "a.step")
+
+
+def test_a_scene_file_cut_off_in_the_middle(fails, folder, scene_file):
+    (folder / "cut.json").write_bytes(scene_file.read_bytes()[:5000])
+    assert "cut.json" in fails("export", "cut.json", "-o", "a.obj")
+
+
+def test_export_without_a_scene(fails):
+    assert "no scene file was given" in fails("export", "-o", "a.step")
+
+
+def test_formats_lists_every_suffix(capsys):
+    assert main(["export", "--formats"]) == 0
+    out, err = capsys.readouterr()
+    assert [line.split()[0] for line in out.splitlines() if line.startswith(".")] == [".json", *FORMATS]
+    assert err == ""
+
+
+def test_formats_lists_every_option_with_its_default(capsys):
+    main(["export", "--formats"])
+    listed = [line.strip() for line in capsys.readouterr().out.splitlines() if line.startswith(" ")]
+    expected = [option for row in FORMATS.values() for option in row.options]
+    assert len(listed) == len(expected) >= 3
+    for line, option in zip(listed, expected, strict=True):
+        assert line.startswith(f"--option {option.key}={option.usual}: ")
+        assert option.accepted in line
+
+
+@pytest.mark.parametrize(
+    ("option", "words"),
+    [
+        (["--scale", "12"], "is no length; write it like 12=3.5"),
+        (["--scale", "=3"], "'' is neither the id of a line nor two px"),
+        (["--scale", "12="], "'' is not a number"),
+        (["--scale", "12=0"], "0 is not a positive number"),
+        (["--scale", "12=inf"], "inf is not a number of zero or more"),
+        (["--scale=-1=2"], "neither the id of a line"),
+        (["--scale", "1,2:3=2"], "neither the id of a line"),
+        (["--scale", "1,2,3,4=2"], "neither the id of a line"),
+        (["--scale", "1,2:3,x=2"], "'x' is not a number of px"),
+        (["--scale", "1,2:3,nan=2"], "nan px lies outside every photo"),
+        (["--camera-height", "-2"], "-2 is not a number of zero or more"),
+        (["--camera-height", "2", "--scale", "1=2"], "not allowed with"),
+    ],
+)
+def test_a_length_that_is_none_is_wrong_usage(fails, scene_file, option, words):
+    assert words in fails("export", scene_file, "-o", "a.json", *option, code=2)
+
+
+def test_a_line_that_is_not_there_cannot_be_measured(fails, scene_file):
+    assert "no line 99999" in fails("export", scene_file, "-o", "a.json", "--scale", "99999=2")
+
+
+def test_a_known_length_scales_the_files_and_not_the_scene(folder, scene_file):
+    before = json.loads(scene_file.read_text())
+    line = before["lines"][7]
+    length = float(np.linalg.norm(np.subtract(*line["ends"])))
+    arguments = ["-o", "a.json", "-o", "a.obj", "-o", "a.dxf", "--scale", f"{line['id']}={length / 4}", "--quiet"]
+    assert main(["export", str(scene_file), *arguments]) == 0
+    after = json.loads((folder / "a.json").read_text())
+    assert after["metres_per_unit"] == pytest.approx(0.25)
+    assert after["lines"] == before["lines"]
+    assert after["planes"] == before["planes"]
+    (u, v), (x, y) = line["segment"]
+    arguments = ["-o", "b.json", "--scale", f"{u},{v}:{x},{y}={length / 4}", "--quiet"]
+    assert main(["export", str(scene_file), *arguments]) == 0
+    assert json.loads((folder / "b.json").read_text())["metres_per_unit"] == pytest.approx(0.25, rel=0.2)
+    assert "lengths are in metres" in (folder / "a.obj").read_text()
+
+
+def test_an_option_reaches_its_format(folder, scene_file):
+    outputs = ["-o", "a.dxf", "-o", "a.glb", "-o", "a.json"]
+    options = ["--option", "version=R2018", "--option", "tubes=on"]
+    assert main(["export", str(scene_file), *outputs, *options, "--quiet"]) == 0
+    assert main(["export", str(scene_file), "-o", "b.dxf", "-o", "b.glb", "--quiet"]) == 0
+    versions = [(folder / name).read_text()[:400].count("AC1032") for name in ("a.dxf", "b.dxf")]
+    assert versions == [1, 0]
+    assert (folder / "a.glb").stat().st_size > (folder / "b.glb").stat().st_size
+
+
+@pytest.mark.usefixtures("folder")
+def test_without_the_photo_the_faces_have_no_textures_and_a_line_says_so(scene_file, capsys):
+    assert main(["export", str(scene_file), "-o", "a.obj", "-o", "a.glb", "--quiet"]) == 0
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert "room.jpg" in said[0]
+    assert "--photo" in said[0]
+    assert said[0].endswith("the faces have no textures")
+    assert main(["export", str(scene_file), "-o", "b.obj", "--option", "textures=off", "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+    assert Path("a.obj").read_bytes() == Path("b.obj").read_bytes()
+
+
+def test_textures_that_were_asked_for_need_the_photo(folder, scene_file, capsys):
+    assert main(["export", str(scene_file), "-o", "a.glb", "--option", "textures=on", "--quiet"]) == 1
+    assert "textures were asked for, but the photo 'room.jpg' is not beside" in capsys.readouterr().err
+    assert list(folder.iterdir()) == []
+
+
+def test_textures_find_the_photo_beside_the_scene_or_by_its_name(folder, scene_file, capsys):
+    assert main(["export", str(scene_file), "--photo", str(ROOM), "-o", "a.obj", "--quiet"]) == 0
+    shutil.copy(scene_file, folder / "room.json")
+    shutil.copy(ROOM, folder / "room.jpg")
+    assert main(["export", "room.json", "-o", "b.obj", "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+    pictures = [sorted(path.name for path in (folder / f"{name}.obj.textures").iterdir()) for name in "ab"]
+    assert pictures[0] == pictures[1]
+    assert len(pictures[0]) == 1
+
+
+def test_a_photo_that_its_own_lines_straightened_is_straightened_again_for_its_textures(folder, capsys):
+    """The courtyard without its camera file: the scene alone says by how much."""
+    shutil.copy(COURTYARD, folder / "courtyard.jpg")
+    assert main(["convert", "courtyard.jpg", "-o", "a.json", "-o", "at-once.obj", "--fast", "--quiet"]) == 0
+    assert main(["export", "a.json", "-o", "later.obj", "--quiet"]) == 0
+    assert capsys.readouterr().err == ""
+    scene = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert scene["camera"]["source"] == "vanishing points"
+    assert len(scene["camera"]["distortion"]) == 4
+    scene["camera"]["distortion"] = []
+    (folder / "unbent.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert main(["export", "unbent.json", "-o", "bent.obj", "--quiet"]) == 0
+    at_once, later, bent = (
+        np.asarray(Image.open(next((folder / f"{name}.obj.textures").iterdir())), int)
+        for name in ("at-once", "later", "bent")
+    )
+    assert np.abs(at_once - later).max() <= 2
+    assert np.abs(at_once - bent).mean() > 2
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_wrong_photo_is_an_error_where_it_was_named_and_a_line_where_it_was_found(scene_file, folder, capsys):
+    Image.new("RGB", (400, 300)).save(folder / "other.png")
+    assert main(["export", str(scene_file), "--photo", "other.png", "-o", "a.glb", "--quiet"]) == 1
+    assert "has 400 x 300 px" in capsys.readouterr().err
+    shutil.copy(scene_file, folder / "room.json")
+    Image.new("RGB", (400, 300)).save(folder / "room.jpg")
+    assert main(["export", "room.json", "-o", "a.glb", "--quiet"]) == 0
+    said = capsys.readouterr().err.splitlines()
+    assert len(said) == 1
+    assert "has 400 x 300 px" in said[0]
+    assert said[0].endswith("the faces have no textures")
+
+
+def test_an_exported_scene_file_is_the_same(folder, scene_file):
+    assert main(["export", str(scene_file), "-o", "again.json", "--quiet"]) == 0
+    assert (folder / "again.json").read_bytes() == scene_file.read_bytes()
+
+
+def test_the_picture_finds_the_photo_beside_the_scene(folder, scene_file):
+    shutil.copy(scene_file, folder / "room.json")
+    assert main(["export", "room.json", "-o", "without.png", "--quiet"]) == 0
+    shutil.copy(ROOM, folder)
+    assert main(["export", "room.json", "-o", "beside.png", "--quiet"]) == 0
+    (folder / "room.jpg").unlink()
+    assert main(["export", "room.json", "--photo", str(ROOM), "-o", "named.png", "--quiet"]) == 0
+    assert (folder / "beside.png").read_bytes() == (folder / "named.png").read_bytes()
+    assert (folder / "beside.png").read_bytes() != (folder / "without.png").read_bytes()
+
+
+WITH_A_SMALL_DISK = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+from linecad.cli.main import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
+@posix
+@pytest.mark.parametrize("output", ["a.json", "a.obj"])
+def test_a_full_disk_leaves_what_was_there(folder, scene_file, output):
+    (folder / output).write_text("from yesterday")
+    command = [sys.executable, "-c", WITH_A_SMALL_DISK, "export", str(scene_file), "-o", output, "--quiet"]
+    ended = subprocess.run(
+        command, cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)}, capture_output=True, text=True, timeout=60,
+        check=False,
+    )  # fmt: skip
+    assert ended.returncode == 1
+    assert ended.stderr.splitlines()[-1] == (
+        f"linecad: {output} was not written: no space is left for it; free some or choose another disk"
+    )
+    assert (folder / output).read_text() == "from yesterday"
+    assert [path.name for path in folder.rglob("*") if path.name.startswith(".linecad-")] == []
+
+
+def test_a_photo_of_another_size_is_refused_for_the_picture(scene_file, folder, capsys):
+    Image.new("RGB", (400, 300)).save("other.png")
+    assert main(["export", str(scene_file), "--photo", "other.png", "-o", "a.png", "--quiet"]) == 1
+    assert "has 400 x 300 px, the scene's photo 1600 x 1067" in capsys.readouterr().err
+    assert not (folder / "a.png").exists()
+
+
+def test_a_calibration_that_is_not_the_scenes_is_refused_for_the_picture(scene_file, folder, capsys):
+    arguments = ["--photo", str(SAMPLES / "courtyard.jpg"), "--camera", str(SAMPLES / "courtyard.json")]
+    assert main(["export", str(scene_file), *arguments, "-o", "a.png", "--quiet"]) == 1
+    assert "not the calibration that the scene was made with" in capsys.readouterr().err
+    assert not (folder / "a.png").exists()
+
+
+def test_a_scene_file_sends_nobody_to_another_folder(scene_file, folder):
+    (folder / "inside").mkdir()
+    shutil.copy(ROOM, folder / "secret.jpg")
+    text = scene_file.read_text(encoding="utf-8").replace('"room.jpg"', '"../secret.jpg"')
+    (folder / "inside" / "scene.json").write_text(text, encoding="utf-8")
+    assert main(["export", "inside/scene.json", "-o", "without.png", "--quiet"]) == 0
+    assert main(["export", "inside/scene.json", "--photo", "secret.jpg", "-o", "with.png", "--quiet"]) == 0
+    assert (folder / "without.png").read_bytes() != (folder / "with.png").read_bytes()

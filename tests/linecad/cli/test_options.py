@@ -1,0 +1,58 @@
+"""Options as KEY=VALUE: listed by one command, read by all, refused before the work."""
+
+import re
+
+import pytest
+
+from exporters.formats import FORMATS
+from linecad.cli.main import main
+from linecad.options import SWITCHES
+
+BAD = [
+    ("seed=1.5", "option seed is '1.5', expected a whole number from 0 to 2147483647"),
+    ("seed=2147483648", "expected a whole number from 0 to 2147483647"),
+    ("without=nonsense", "option without is 'nonsense', expected one or more of cycles, planarity, boundary"),
+    ("weights=heavy", "option weights is 'heavy', expected odds, junctions or ones"),
+    ("formulation=other", "option formulation is 'other', expected gain or paper"),
+    ("mu-boundary=1e300", "option mu-boundary is '1e300', expected a number from 0 to 1000000"),
+    ("extension=1e9", "option extension is '1e9', expected px from 1 to 500"),
+    ("joins=3", "option joins is '3', expected stable, biconnected or all"),
+    ("nothing=1", "`linecad options` lists them all"),
+    ("extension", "KEY=VALUE"),
+]
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["convert", "none.jpg", "-o", "a.json"], ["batch", "none.jpg", "-o", "out"], ["edit", "none.jpg"],
+        ["evaluate", "none"],
+    ],
+    ids=lambda command: command[0],
+)  # fmt: skip
+@pytest.mark.parametrize(("text", "words"), BAD, ids=[text for text, _ in BAD])
+def test_a_bad_option_is_refused_before_the_photo_is_looked_for(fails, command, text, words):
+    assert words in fails(*command, "--option", text)
+
+
+def test_the_paper_has_no_fast_answer(fails):
+    said = fails("convert", "none.jpg", "-o", "a.json", "--fast", "--option", "formulation=paper")
+    assert "a fast answer has no formulation 'paper'" in said
+
+
+def test_the_page_has_no_options_of_formats(fails):
+    assert "'tubes=on' is no option" in fails("edit", "none.jpg", "--option", "tubes=on")
+
+
+def test_all_options_are_listed(capsys):
+    assert main(["options"]) == 0
+    out, err = capsys.readouterr()
+    assert err == ""
+    assert max(map(len, out.splitlines())) <= 80
+    text = " ".join(out.split())
+    listed = re.findall(r"^  (\S+) ", out, re.MULTILINE)
+    of_formats = dict.fromkeys(option for row in FORMATS.values() for option in row.options)
+    assert listed == [*(switch.key for switch in SWITCHES), *(option.key for option in of_formats)]
+    for switch in (*SWITCHES, *of_formats):
+        assert f"{switch.accepted} (default: {switch.usual})" in text
+    assert "tubes .glb: lines as thin tubes" in text
