@@ -81,8 +81,7 @@ def read_options(texts: Iterable[str], formats: Mapping[str, tuple[Option, ...]]
             given = f"has {', '.join(known)}" if known else "has no options"
             written = ", ".join(sorted(formats)) or "the scene file"
             raise OutputError(
-                f"there is no option {_shown(key)} for {written}, which {given}; "
-                "`linecad options` lists them all"
+                f"there is no option {_shown(key)} for {written}, which {given}; `linecad options` lists them all"
             )
         values[key] = known[key].read(value)
     return values

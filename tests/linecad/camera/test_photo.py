@@ -79,6 +79,7 @@ def test_distortion_is_removed_and_recorded(tmp_path: Path) -> None:
     photo = read_photo(save(tmp_path), camera_file(tmp_path, distortion=[-0.1, 0.01, 0, 0]))
     assert photo.camera is not None
     assert photo.camera.distortion == (-0.1, 0.01, 0, 0)
+    assert not photo.camera.is_resampled
     assert photo.pixels.shape == (HEIGHT, WIDTH, 3)
     assert not np.array_equal(photo.pixels, picture())
     assert photo.notes == ("lens distortion removed, as the camera file says",)
@@ -89,6 +90,7 @@ def test_pixels_are_made_square(tmp_path: Path) -> None:
     assert photo.camera is not None
     assert photo.camera.matrix.tolist() == [[150, 0, 61], [0, 150, 37], [0, 0, 1]]
     assert "pixels made square" in photo.notes[0]
+    assert photo.camera.is_resampled
     # Row 37 stays, and what lay 33 rows below it now lies 30 rows below it.
     np.testing.assert_array_equal(photo.pixels[37], picture()[37])
     np.testing.assert_allclose(photo.pixels[67, 5:115].astype(int), picture()[70, 5:115], atol=1)

@@ -60,6 +60,7 @@ def cameras(draw: st.DrawFn) -> Camera:
         matrix=np.array([[focal, 0, cx], [0, focal, cy], [0, 0, 1]]),
         source=draw(st.sampled_from(CAMERA_SOURCES)),
         distortion=tuple(draw(st.lists(numbers, max_size=14))),
+        is_resampled=draw(st.booleans()),
     )
 
 
@@ -258,7 +259,8 @@ REQUIRED = [
     *(f"certainty.{key}" for key in ("quality", "reason", "rotation_degrees")),
 ]
 OPTIONAL = [
-    *("camera.distortion", "metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
+    *("camera.distortion", "camera.resampled"),
+    *("metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
     *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
 ]
@@ -333,6 +335,7 @@ WRONG = [
     ("camera.distortion", [0.1, "0"], 'camera.distortion[1] is "0", expected a number'),
     ("camera.R_cam_from_world[0][0]", 1.001, "camera.R_cam_from_world is not a rotation (off by 0.002)"),
     ("camera.R_cam_from_world[0][0]", -1, "camera.R_cam_from_world is not a rotation"),
+    ("camera.resampled", 1, "camera.resampled is 1, expected true or false"),
     ("certainty", [], "certainty is a list of 0, expected an object"),
     ("certainty.quality", "excellent", 'certainty.quality is "excellent", expected one of good, doubtful, poor'),
     ("certainty.reason", None, "certainty.reason is null, expected a string"),
@@ -483,6 +486,11 @@ def test_nothing_proven_is_null_in_the_file() -> None:
     text = scene_to_json(unproven)
     assert '"bound": null, "gap": null' in text
     assert scene_from_json(text).solve == unproven.solve
+
+
+def test_a_camera_that_does_not_tell_was_not_resampled() -> None:
+    assert not scene_from_json(without("camera.resampled")).camera.is_resampled
+    assert scene_from_json(changed("camera.resampled", True)).camera.is_resampled
 
 
 def test_certainty_is_null_in_the_file_where_there_is_none() -> None:
