@@ -15,7 +15,7 @@ from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, co
 from linecad.evaluation.depth import DepthScore, score_dense, score_depth
 from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.labels import FAKE, REAL
-from linecad.evaluation.methods import ROWS, Run, Settings, run_method
+from linecad.evaluation.methods import ROWS, Run, Settings, proven_gap, run_method
 from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
@@ -49,7 +49,7 @@ class WholeResult:
     planes: int
     seconds: float  # s, of the solver
     status: str
-    gap: float
+    gap: float | None  # None: nothing was proven
     decisions: Decisions | None  # the final ones, as in the scene; None where no crossing has a label
     rotation_error: float | None  # degrees
     edges: DepthScore | None  # component 0 alone
@@ -133,7 +133,7 @@ def _whole(
         planes=len(scene.planes),
         seconds=solution.seconds,
         status=solution.status,
-        gap=solution.gap,
+        gap=proven_gap(solution),
         decisions=compare(graph, made.decision.real, made.lifted.residual, label, length)
         if reference.has_labels
         else None,

@@ -1,12 +1,13 @@
 """The rows of the paper's table 1: which families of constraints each method has, and how it is run on a graph."""
 
+import math
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.evaluation.decisions import Decisions, compare
-from linecad.line_graph import Formulation, LineGraph
+from linecad.line_graph import Formulation, LineGraph, Solution
 from linecad.model.lifting import lift
 from linecad.options import SHORT_REACH, Options
 from solver.options import FAMILIES, Family, SolveOptions
@@ -47,7 +48,12 @@ class Run:
     decisions: Decisions
     seconds: float  # s, of the solver
     status: str
-    gap: float
+    gap: float | None  # None: nothing was proven
+
+
+def proven_gap(solution: Solution) -> float | None:
+    """The gap of a solution; None where nothing was proven, which JSON has no number for."""
+    return solution.gap if math.isfinite(solution.gap) else None
 
 
 def run_method(
@@ -60,7 +66,7 @@ def run_method(
     chosen: Bool = solution.connected
     residual: Float = lift(graph, chosen, solution.log_depth).residual
     decisions = compare(graph, chosen, residual, label, total_length)
-    return Run(decisions, solution.seconds, solution.status, solution.gap)
+    return Run(decisions, solution.seconds, solution.status, proven_gap(solution))
 
 
 def _run_baseline(graph: LineGraph, label: Int, total_length: float, settings: Settings) -> Run:

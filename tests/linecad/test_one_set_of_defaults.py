@@ -87,11 +87,15 @@ def by_page(folder, monkeypatch):
     return answers[0].made.scene
 
 
-def by_evaluation(folder, monkeypatch):
-    """A photo with labels, of which none are needed."""
+def labelled(folder):
+    """A dataset of one photo with labels, of which none are needed."""
     shutil.copy(ROOM, folder)
     labels = {"format": "linecad-labels", "version": 1, "photo": ROOM.name, "crossings": []}
     (folder / "labels.json").write_text(json.dumps(labels))
+    return folder
+
+
+def by_evaluation(folder, monkeypatch):
     scenes, reconstruct_lines = [], linecad.evaluation.measure.reconstruct_lines
 
     def kept(*arguments):
@@ -100,9 +104,22 @@ def by_evaluation(folder, monkeypatch):
         return made
 
     monkeypatch.setattr(linecad.evaluation.measure, "reconstruct_lines", kept)
-    [case] = find_dataset(folder).cases
+    [case] = find_dataset(labelled(folder)).cases
     assert measure_photo(case, Settings(ablation=False, reconstruction=FAST)).error is None
     return scenes[0]
+
+
+@pytest.mark.parametrize("faint", [False, True])
+def test_the_evaluation_looks_for_faint_segments_where_it_is_told(tmp_path, monkeypatch, faint):
+    class LookedError(linecad.LinecadError):
+        """The lines need not be found."""
+
+    def look(_photo, **more):
+        raise LookedError(str(more))
+
+    monkeypatch.setattr(linecad.evaluation.measure, "find_lines", look)
+    [case] = find_dataset(labelled(tmp_path)).cases
+    assert measure_photo(case, Settings(reconstruction=Options(faint=faint))).error == str({"faint": faint})
 
 
 @pytest.fixture(scope="module")

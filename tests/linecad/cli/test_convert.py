@@ -206,7 +206,7 @@ def test_the_summary_tells_the_status_as_the_programs(folder, capsys):
     counts = (
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes"
     )
-    assert re.fullmatch(re.escape(counts) + r"; program: fast in \d+\.\d s, gap unknown", out[0])
+    assert re.fullmatch(re.escape(counts) + r"; program: robust fit in \d+\.\d s, gap unknown", out[0])
     assert out[1].startswith("camera ")
     assert out[2:] == [f"note: {note}" for note in scene.notes]
 

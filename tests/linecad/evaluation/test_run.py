@@ -61,6 +61,19 @@ def test_without_ablation_only_the_default_settings_are_solved(labels_folder, tm
     assert "Table 1" not in capsys.readouterr().out
 
 
+def test_options_reach_the_reconstruction_and_the_record(labels_folder, tmp_path, capsys):
+    out = tmp_path / "a.json"
+    options = ["--fast", "--no-ablation", "--option", "weights=ones", "--option", "without=planarity,boundary"]
+    assert main(["evaluate", str(labels_folder), "--json", str(out), *options, "--quiet"]) == 0
+    document = json.loads(out.read_text())
+    settings = document["settings"]["reconstruction"]
+    assert settings["weights"] == "ones"
+    assert settings["solve"]["without"] == ["boundary", "planarity"]
+    assert settings["solve"]["time_limit_s"] is None
+    assert document["photos"][0]["whole"]["status"] == "robust fit"
+    assert capsys.readouterr().err == ""
+
+
 def test_one_photo_that_fails_does_not_stop_the_others(york_folder, tmp_path, capsys):
     (tmp_path / "P1.png").write_bytes(b"")
     cases = list(find_dataset(york_folder).cases)
