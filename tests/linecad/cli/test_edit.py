@@ -6,8 +6,8 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from linecad.cli.main import main
 from linecad.camera.refit import find_calibration
+from linecad.cli.main import main
 from linecad.io.scene_file import read_scene
 from linecad.lines.segments import find_segments
 
