@@ -218,6 +218,7 @@ class Scene:
     planes: tuple[Plane, ...]
     solve: SolveReport
     metres_per_unit: float | None = None
+    scale_source: str = ""  # what told metres_per_unit: one clause, without a full stop; "" where that is not known
     notes: tuple[str, ...] = field(default=())
     certainty: Certainty | None = None  # of camera and rotation; None in scenes that do not tell
 
@@ -233,6 +234,11 @@ class Scene:
         check_unique("Scene.faces", [face.id for plane in self.planes for face in plane.faces])
         if self.metres_per_unit is not None and not 0 < self.metres_per_unit < np.inf:
             raise ValueError(f"Scene.metres_per_unit is {self.metres_per_unit}, expected a positive number")
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the scene should know: the notes, and where the scale came from."""
+        return (*self.notes, *([f"scale: {self.scale_source}"] if self.scale_source else []))
 
     @property
     def faces(self) -> list[tuple[Plane, Face]]:

@@ -69,7 +69,7 @@ def _figures(scene: Scene) -> Figures:
         faces=sum(len(plane.faces) for plane in scene.planes),
         gap=float(gap) if math.isfinite(gap) else None,
         solver=scene.solve.status,
-        notes=scene.notes,
+        notes=scene.remarks,
         camera=None if scene.certainty is None else scene.certainty.quality,
     )
 

@@ -72,4 +72,4 @@ def _summary(scene: "Scene") -> list[str]:
     ]
     if scene.certainty is not None:
         lines.append(summary(scene.camera, scene.certainty))
-    return lines + [f"note: {note}" for note in scene.notes]
+    return lines + [f"note: {note}" for note in scene.remarks]

@@ -1,45 +1,27 @@
-"""A Scene as plain JSON values and back, with everything checked that docs/reference/scene-file.md promises."""
+"""A Scene as plain JSON values, in the order of docs/reference/scene-file.md."""
 
 import math
-from typing import cast
 
 import numpy as np
 
-from linecad.arrays import Float
-from linecad.io.strict_json import JsonError, Node
-from linecad.line_graph import EDGE_KINDS
 from linecad.scene import (
     AXES,
-    CAMERA_SOURCES,
-    CONFIDENCES,
-    QUALITIES,
-    REASONS,
-    Camera,
-    CameraSource,
     Certainty,
-    Face,
     Intersections,
     Lines,
     Plane,
-    Quality,
     Scene,
-    SolveReport,
 )
 
 FORMAT = "linecad-scene"
 VERSION = 1
-LARGEST_NUMBER = 1e12  # px, scene units and metres: beyond it a double keeps less than a tenth of a millimetre
-LARGEST_PHOTO = 10**6  # px along one side
-FLATNESS = 1e-6  # of the scene's size: how far a face may leave its plane before the file contradicts itself
-ROTATION_ERROR = 1e-6  # largest element of R R' - 1
-SQUARENESS = 1e-9  # relative difference of the two focal lengths, and skew over focal length
 LARGEST_ERROR = 180.0  # degrees; whoever errs by that much about a rotation knows nothing of it
 ANGLE_DIGITS = 12  # after the point, of degrees: a number that was turned to radians and back is the same again
 
 
 def document_of(scene: Scene) -> dict[str, object]:
     """The file's content as plain values, its keys in the order of the file."""
-    camera, lines, crossings, solve = scene.camera, scene.lines, scene.intersections, scene.solve
+    camera, solve = scene.camera, scene.solve
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -55,43 +37,10 @@ def document_of(scene: Scene) -> dict[str, object]:
         },
         "certainty": None if scene.certainty is None else certainty_document(scene.certainty),
         "metres_per_unit": None if scene.metres_per_unit is None else float(scene.metres_per_unit),
-        "lines": [
-            {
-                "id": int(lines.id[row]),
-                "axis": AXES[lines.axis[row]],
-                "segment": lines.segment[row].tolist(),
-                "ends": lines.ends[row].tolist(),
-                "boundary": bool(lines.is_boundary[row]),
-                "component": int(lines.component[row]),
-                "confidence": str(lines.confidence[row]),
-            }
-            for row in range(len(lines))
-        ],
-        "intersections": [
-            {
-                "lines": crossings.lines[row].tolist(),
-                "kind": str(crossings.kind[row]),
-                "pixel": crossings.pixel[row].tolist(),
-                "real": bool(crossings.real[row]),
-                **({"reason": str(crossings.reason[row])} if crossings.reason[row] else {}),
-                "in_tree": bool(crossings.in_tree[row]),
-                "weight": float(crossings.weight[row]),
-            }
-            for row in range(len(crossings))
-        ],
-        "planes": [
-            {
-                "id": int(plane.id),
-                "axis": AXES[plane.axis],
-                "offset": float(plane.offset),
-                "lines": [int(line) for line in plane.lines],
-                "faces": [
-                    {"id": int(face.id), "outline": face.outline.tolist(), "holes": [h.tolist() for h in face.holes]}
-                    for face in plane.faces
-                ],
-            }
-            for plane in scene.planes
-        ],
+        "scale_source": scene.scale_source or None,
+        "lines": _line_records(scene.lines),
+        "intersections": _crossing_records(scene.intersections),
+        "planes": [_plane_record(plane) for plane in scene.planes],
         "solve": {
             "solver": solve.solver,
             "formulation": solve.formulation,
@@ -104,6 +53,49 @@ def document_of(scene: Scene) -> dict[str, object]:
             "nodes": int(solve.nodes),
         },
         "notes": list(scene.notes),
+    }
+
+
+def _line_records(lines: Lines) -> list[dict[str, object]]:
+    return [
+        {
+            "id": int(lines.id[row]),
+            "axis": AXES[lines.axis[row]],
+            "segment": lines.segment[row].tolist(),
+            "ends": lines.ends[row].tolist(),
+            "boundary": bool(lines.is_boundary[row]),
+            "component": int(lines.component[row]),
+            "confidence": str(lines.confidence[row]),
+        }
+        for row in range(len(lines))
+    ]
+
+
+def _crossing_records(crossings: Intersections) -> list[dict[str, object]]:
+    return [
+        {
+            "lines": crossings.lines[row].tolist(),
+            "kind": str(crossings.kind[row]),
+            "pixel": crossings.pixel[row].tolist(),
+            "real": bool(crossings.real[row]),
+            **({"reason": str(crossings.reason[row])} if crossings.reason[row] else {}),
+            "in_tree": bool(crossings.in_tree[row]),
+            "weight": float(crossings.weight[row]),
+        }
+        for row in range(len(crossings))
+    ]
+
+
+def _plane_record(plane: Plane) -> dict[str, object]:
+    return {
+        "id": int(plane.id),
+        "axis": AXES[plane.axis],
+        "offset": float(plane.offset),
+        "lines": [int(line) for line in plane.lines],
+        "faces": [
+            {"id": int(face.id), "outline": face.outline.tolist(), "holes": [hole.tolist() for hole in face.holes]}
+            for face in plane.faces
+        ],
     }
 
 
@@ -122,224 +114,3 @@ def certainty_document(certainty: Certainty) -> dict[str, object]:
 
 def _finite_or_null(number: float) -> float | None:
     return float(number) if math.isfinite(number) else None
-
-
-def scene_of(top: Node) -> Scene:
-    """The scene that a document tells; ValueError in one line, mostly a JsonError with the place, where it is wrong."""
-    if top["format"].value != FORMAT:
-        raise top["format"].wrong(f'"{FORMAT}"')
-    if top["version"].integer() != VERSION:
-        raise JsonError(f"version is {top['version'].value}, but only version {VERSION} can be read here")
-    camera, rotation = _camera(top["camera"])
-    lines = _lines(top["lines"].items())
-    known = set(lines.id.tolist())
-    scene = Scene(
-        photo=top["photo"].text(),
-        camera=camera,
-        rotation=rotation,
-        lines=lines,
-        intersections=_intersections(top["intersections"].items(), known),
-        planes=_planes(top["planes"].items(), known),
-        solve=_solve_report(top["solve"]),
-        metres_per_unit=_metres_per_unit(top.get("metres_per_unit")),
-        notes=tuple(note.text() for note in _optional_items(top, "notes")),
-        certainty=_certainty(top.get("certainty")),
-    )
-    _check_flatness(scene)
-    return scene
-
-
-def _camera(node: Node) -> tuple[Camera, Float]:
-    """The camera and the (3, 3) rotation from the world to it."""
-    matrix = node["K"].array(3, 3, largest=LARGEST_NUMBER)
-    fx, fy = matrix[0, 0], matrix[1, 1]
-    if not (fx > 0 and fy > 0 and abs(fx - fy) <= SQUARENESS * fx):
-        raise JsonError(f"camera.K has focal lengths {fx:g} and {fy:g}, expected two equal positive numbers")
-    if abs(matrix[0, 1]) > SQUARENESS * fx or matrix[1, 0] != 0 or matrix[2].tolist() != [0, 0, 1]:
-        raise JsonError("camera.K has a wrong form, expected [[f, 0, cx], [0, f, cy], [0, 0, 1]]")
-    rotation = node["R_cam_from_world"].array(3, 3, largest=LARGEST_NUMBER)
-    off = np.abs(rotation @ rotation.T - np.eye(3)).max()
-    if off > ROTATION_ERROR or np.linalg.det(rotation) < 0:
-        raise JsonError(f"camera.R_cam_from_world is not a rotation (off by {off:.3g})")
-    resampled = node.get("resampled")
-    camera = Camera(
-        width=node["width"].integer(1, LARGEST_PHOTO),
-        height=node["height"].integer(1, LARGEST_PHOTO),
-        matrix=matrix,
-        source=cast(CameraSource, node["source"].one_of(CAMERA_SOURCES)),
-        distortion=tuple(item.number(LARGEST_NUMBER) for item in _optional_items(node, "distortion")),
-        is_resampled=resampled is not None and resampled.boolean(),
-    )
-    return camera, rotation
-
-
-def _certainty(node: Node | None) -> Certainty | None:
-    if node is None or node.value is None:
-        return None
-    turns = node["rotation_degrees"].items()
-    if len(turns) != 3:
-        raise node["rotation_degrees"].wrong("a list of 3")
-    center = _known(node, "principal_point")
-    if center is not None and len(center.items()) != 2:
-        raise center.wrong("a list of 2")
-    focal, radial = _known(node, "focal"), _known(node, "k1")
-    x, y = (0.0, 0.0) if center is None else map(_standard_error, center.items())
-    return Certainty(
-        rotation=np.radians([_standard_error(turn, LARGEST_ERROR) for turn in turns]),
-        focal=None if focal is None else _standard_error(focal),
-        center=None if center is None else (x, y),
-        radial=None if radial is None else _standard_error(radial),
-        quality=cast(Quality, node["quality"].one_of(QUALITIES)),
-        reason=node["reason"].text(),
-    )
-
-
-def _known(node: Node, key: str) -> Node | None:
-    """The member `key` where it is neither missing nor null."""
-    member = node.get(key)
-    return None if member is None or member.value is None else member
-
-
-def _standard_error(node: Node, largest: float = LARGEST_NUMBER) -> float:
-    if node.number(largest) < 0:
-        raise node.wrong("a number of 0 or more")
-    return node.number()
-
-
-def _lines(nodes: list[Node]) -> Lines:
-    ids = [node["id"] for node in nodes]
-    return Lines(
-        id=np.array(_distinct(ids), np.int64),
-        axis=np.array([AXES.index(node["axis"].one_of(tuple(AXES))) for node in nodes], np.int64),
-        segment=np.array([node["segment"].array(2, 2, largest=LARGEST_NUMBER) for node in nodes]),
-        ends=np.array([node["ends"].array(2, 3, largest=LARGEST_NUMBER) for node in nodes]),
-        is_boundary=np.array([node["boundary"].boolean() for node in nodes], bool),
-        component=np.array([node["component"].integer() for node in nodes], np.int64),
-        confidence=np.array([node["confidence"].one_of(CONFIDENCES) for node in nodes], str),
-    )
-
-
-def _intersections(nodes: list[Node], known: set[int]) -> Intersections:
-    pairs = [_line_ids(node["lines"], known) for node in nodes]
-    for node, pair in zip(nodes, pairs, strict=True):
-        if len(pair) != 2:
-            raise node["lines"].wrong("a list of 2")
-        if node["in_tree"].boolean() and not node["real"].boolean():
-            raise JsonError(f"{node.place} is in the tree without being real")
-    return Intersections(
-        lines=np.array(pairs, np.int64),
-        kind=np.array([node["kind"].one_of(EDGE_KINDS) for node in nodes], str),
-        pixel=np.array([node["pixel"].array(2, largest=LARGEST_NUMBER) for node in nodes]),
-        real=np.array([node["real"].boolean() for node in nodes], bool),
-        in_tree=np.array([node["in_tree"].boolean() for node in nodes], bool),
-        weight=np.array([node["weight"].number(LARGEST_NUMBER) for node in nodes], float),
-        reason=np.array([_reason(node.get("reason")) for node in nodes], str),
-    )
-
-
-def _reason(node: Node | None) -> str:
-    """Why a crossing is real or not; files written before it was known do not tell."""
-    return "" if node is None else node.one_of((*REASONS, ""))
-
-
-def _planes(nodes: list[Node], known: set[int]) -> tuple[Plane, ...]:
-    _distinct([node["id"] for node in nodes])
-    _distinct([face["id"] for node in nodes for face in _optional_items(node, "faces")])
-    return tuple(
-        Plane(
-            id=node["id"].integer(),
-            axis=AXES.index(node["axis"].one_of(tuple(AXES))),
-            offset=node["offset"].number(LARGEST_NUMBER),
-            lines=tuple(_line_ids(node["lines"], known)),
-            faces=tuple(_face(face) for face in _optional_items(node, "faces")),
-        )
-        for node in nodes
-    )
-
-
-def _face(node: Node) -> Face:
-    return Face(
-        id=node["id"].integer(),
-        outline=_ring(node["outline"]),
-        holes=tuple(_ring(hole) for hole in _optional_items(node, "holes")),
-    )
-
-
-def _ring(node: Node) -> Float:
-    ring = node.array(None, 3, largest=LARGEST_NUMBER)
-    if len(ring) < 3:
-        raise node.wrong("at least 3 points")
-    return ring
-
-
-def _solve_report(node: Node) -> SolveReport:
-    return SolveReport(
-        solver=node["solver"].text(),
-        formulation=node["formulation"].text(),
-        status=node["status"].text(),
-        objective=node["objective"].number(),
-        bound=_number_or_unknown(node["bound"]),
-        gap=_number_or_unknown(node["gap"]),
-        seconds=node["seconds"].number(),
-        cuts=_count(node.get("cuts")),
-        nodes=_count(node.get("nodes")),
-    )
-
-
-def _count(node: Node | None) -> int:
-    """A count that files written before it was known do not have."""
-    return 0 if node is None else node.integer()
-
-
-def _number_or_unknown(node: Node) -> float:
-    return math.inf if node.value is None else node.number()
-
-
-def _metres_per_unit(node: Node | None) -> float | None:
-    if node is None or node.value is None:
-        return None
-    metres = node.number(LARGEST_NUMBER)
-    if metres <= 0:
-        raise node.wrong("a positive number or null")
-    return metres
-
-
-def _optional_items(node: Node, key: str) -> list[Node]:
-    member = node.get(key)
-    return [] if member is None else member.items()
-
-
-def _distinct(nodes: list[Node]) -> list[int]:
-    """The ids at these nodes, no two the same."""
-    places: dict[int, str] = {}
-    for node in nodes:
-        number = node.integer()
-        if number in places:
-            raise JsonError(f"{node.place} is {number}, as is {places[number]}, expected different ids")
-        places[number] = node.place
-    return list(places)
-
-
-def _line_ids(node: Node, known: set[int]) -> list[int]:
-    """The ids of lines of the scene, no two the same."""
-    ids = _distinct(node.items())
-    for item, number in zip(node.items(), ids, strict=True):
-        if number not in known:
-            raise JsonError(f"{item.place} is {number}, but no line has this id")
-    return ids
-
-
-def _check_flatness(scene: Scene) -> None:
-    """JsonError where a face leaves its plane by more than FLATNESS of the diagonal of the box around the scene."""
-    rings = [(plane, face, ring) for plane, face in scene.faces for ring in (face.outline, *face.holes)]
-    if not rings:
-        return
-    points = np.concatenate([scene.lines.ends.reshape(-1, 3), *(ring for _, _, ring in rings)])
-    size = float(np.linalg.norm(np.ptp(points, axis=0)))
-    for plane, face, ring in rings:
-        off = float(np.abs(ring[:, plane.axis] - plane.offset).max())
-        if off > FLATNESS * size:
-            raise JsonError(
-                f"face {face.id} leaves plane {plane.id} ({AXES[plane.axis]} = {plane.offset:g}) by {off:.3g}, "
-                f"expected at most {FLATNESS * size:.3g}"
-            )

@@ -8,7 +8,8 @@ from typing import cast
 
 from linecad.errors import OutputError, SceneFileError
 from linecad.io.files import read_text, write_text_atomically
-from linecad.io.scene_document import document_of, scene_of
+from linecad.io.scene_document import document_of
+from linecad.io.scene_reading import scene_of
 from linecad.io.strict_json import Node, parse
 from linecad.scene import Scene
 

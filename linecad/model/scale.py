@@ -21,7 +21,6 @@ REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in
 LOWER_SHARE = 0.1  # of the camera's height: what reaches farther below a plane speaks against its being the ground
 STRAY_LINES = 2  # lines that may reach below the ground, because some are always wrong
 SHORTEST = 1e-9  # of the scene's median depth; shorter lengths measure nothing
-NOTE = "scale: "  # how the note begins that says where the scale came from
 
 
 @dataclass(frozen=True)
@@ -51,7 +50,7 @@ Known = LineLength | PointDistance | CameraHeight
 
 
 def set_scale(scene: Scene, known: Known) -> Scene:
-    """The scene with `metres_per_unit` as the known length says, and a note on what was measured for it.
+    """The scene with `metres_per_unit` as the known length says, and what was measured for it as `scale_source`.
 
     Raises ScaleError where the scene does not hold what is to be measured.
     """
@@ -70,8 +69,7 @@ def set_scale(scene: Scene, known: Known) -> Scene:
                 "ground as the lowest horizontal plane"
             )
     factor = known.metres / units
-    notes = [note for note in scene.notes if not note.startswith(NOTE)]
-    return replace(scene, metres_per_unit=factor, notes=(*notes, f"{NOTE}{what}, so a unit is {factor:.6g} m"))
+    return replace(scene, metres_per_unit=factor, scale_source=f"{what}, so a unit is {factor:.6g} m")
 
 
 def find_ground(scene: Scene) -> Plane:

@@ -164,7 +164,7 @@ def look_through(findings, camera, expected, placed, is_gltf):
 
 
 def set_exactly(camera, told):
-    """Set lens and shift by the camera's properties, as docs/into-blender.md tells users to."""
+    """Set lens and shift by the camera's properties, as docs/guide/blender.md tells users to."""
     width, height = told["width"], told["height"]
     camera.data.sensor_fit, camera.data.sensor_width = "HORIZONTAL", 36
     camera.data.lens = 36 * told["fx"] / width

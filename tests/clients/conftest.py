@@ -24,7 +24,7 @@ def line(number, start, end, boundary):
 
 
 def build_scene():
-    """As docs/scene-file.md has it; the camera looks along y."""
+    """As docs/reference/scene-file.md has it; the camera looks along y."""
     edges = [
         (start, end, ring is not WINDOW)
         for ring in (CORNERS, WINDOW, FLOOR)

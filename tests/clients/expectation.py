@@ -1,6 +1,6 @@
 """What a program must see that opens an export, from the scene file alone: expectation.py SCENE.json EXPECTATION.json
 
-Reads the file as docs/scene-file.md promises it and uses no code of linecad, so that a mistake there is not made twice.
+Reads the file as docs/reference/scene-file.md promises it, without code of linecad, so that no mistake is made twice.
 Lengths are metres, 1 unit being 1 m where the scale is not known; pixels count from the top left corner of the photo.
 """
 

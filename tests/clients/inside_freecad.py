@@ -40,7 +40,7 @@ def check(findings):
 
 
 def open_step(path, document, gui):
-    # While it is on, FreeCAD makes one object without names of the whole file, as docs/into-freecad.md says.
+    # While it is on, FreeCAD makes one object without names of the whole file, as docs/guide/freecad.md says.
     settings = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/Import/hSTEP")
     settings.SetBool("ReadShapeCompoundMode", False)
     if gui:

@@ -73,18 +73,21 @@ def test_a_line_by_its_id(scene):
     assert measured.metres_per_unit == pytest.approx(UNIT)
 
 
-def test_nothing_but_the_unit_and_a_note_changes(scene):
+def test_nothing_but_the_unit_and_its_source_changes(scene):
     measured = set_scale(scene, LineLength(13, 7 * UNIT))
     assert measured.lines is scene.lines
     assert measured.planes is scene.planes
-    assert measured.notes == ("a warning", "scale: line 13 is 1.75 m long, so a unit is 0.25 m")
-    assert scene_from_json(scene_to_json(measured)).metres_per_unit == measured.metres_per_unit
+    assert measured.notes == ("a warning",)
+    assert measured.scale_source == "line 13 is 1.75 m long, so a unit is 0.25 m"
+    assert measured.remarks == ("a warning", f"scale: {measured.scale_source}")
+    again = scene_from_json(scene_to_json(measured))
+    assert (again.metres_per_unit, again.scale_source) == (measured.metres_per_unit, measured.scale_source)
 
 
 def test_a_second_length_replaces_the_first(scene):
     twice = set_scale(set_scale(scene, LineLength(13, 999)), LineLength(13, 7 * UNIT))
     assert twice.metres_per_unit == pytest.approx(UNIT)
-    assert len(twice.notes) == 2
+    assert len(twice.remarks) == 2
 
 
 @pytest.mark.parametrize(
@@ -99,14 +102,14 @@ def test_a_second_length_replaces_the_first(scene):
 def test_two_points_on_one_line_or_in_one_plane(scene, first, second, units, where):
     measured = set_scale(scene, PointDistance((pixel(*first), pixel(*second)), units * UNIT))
     assert measured.metres_per_unit == pytest.approx(UNIT, rel=1e-9)
-    assert where in measured.notes[-1]
+    assert where in measured.scale_source
 
 
 def test_points_beside_a_line_count_as_on_it(scene):
     (u, v), second = pixel(-2, 10, 4), pixel(3, 10, 4)
     measured = set_scale(scene, PointDistance(((u, v - 4), second), 5 * UNIT))
     assert measured.metres_per_unit == pytest.approx(UNIT, rel=0.01)
-    assert "line 13" in measured.notes[-1]
+    assert "line 13" in measured.scale_source
 
 
 @given(st.floats(-2.9, 3.9), st.floats(-1.5, 3.9), st.floats(1e-3, 1e3))
@@ -151,7 +154,7 @@ def test_the_height_of_the_camera_above_the_ground(scene):
     assert find_ground(scene).id == 4
     measured = set_scale(scene, CameraHeight(0.4))
     assert measured.metres_per_unit == pytest.approx(UNIT)
-    assert "plane 4 (z = -1.6)" in measured.notes[-1]
+    assert "plane 4 (z = -1.6)" in measured.scale_source
 
 
 def test_without_a_horizontal_plane_below_the_camera_there_is_no_ground(scene):
