@@ -260,7 +260,7 @@ REQUIRED = [
 ]
 OPTIONAL = [
     *("camera.distortion", "camera.resampled"),
-    *("metres_per_unit", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
+    *("metres_per_unit", "scale_source", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
     *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
 ]
