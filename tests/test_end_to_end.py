@@ -90,9 +90,9 @@ def test_no_ring_has_a_corner_twice(sample):
     assert min(apart) > 1e-6
 
 
-def test_a_photo_that_contradicts_itself_is_said_to(sample):
+def test_an_inconsistent_photo_is_noted(sample):
     name, options, scene = sample
-    is_said = any("contradict each other often" in note for note in scene.notes)
+    is_said = any("often contradict each other" in note for note in scene.notes)
     assert is_said == (options == "default" and name != "courtyard")
 
 
