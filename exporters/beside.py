@@ -176,8 +176,10 @@ class _Change:
                     self._library.unlink(missing_ok=True)
 
     def _remove_old_parts(self) -> None:
+        if not self.beside.folder:
+            return
         folder = self._folder
-        if not self.beside.folder or not folder.is_dir():
+        if not folder.is_dir():
             return
         for file in folder.iterdir():
             if self.beside.part.fullmatch(file.name) and file.name not in self.needed.parts:

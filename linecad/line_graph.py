@@ -11,7 +11,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int, Text, check_lengths, check_words, freeze
+from linecad.arrays import Bool, Float, Int, Text, check_lengths, check_not_negative, check_words, freeze
 
 EdgeKind = Literal["L", "T", "X", "collinear"]
 Formulation = Literal["gain", "paper"]
@@ -85,6 +85,7 @@ class LineDepths:
         freeze(self, "sigma", np.float64, (None,))
         freeze(self, "may_be_outlier", np.bool_, (None,))
         check_lengths(self, len(self.line), ["log_depth", "sigma", "may_be_outlier"])
+        check_not_negative(self, ["line"])
         if len(self.sigma) and not self.sigma.min() > 0:
             raise ValueError(f"LineDepths.sigma holds {self.sigma.min()}, expected positive numbers")
 

@@ -92,7 +92,7 @@ class Options:
         return self.joins_used == "stable" or (self.reach is None and not self.is_paper)
 
     def reach_for(self, is_inconsistent: bool) -> Reach:
-        """`reach` and `extension` in use, for a photo whose crossings contradict each other often or not."""
+        """`reach` and `extension` in use, for a photo that is inconsistent or not."""
         reach = self.reach
         if reach is None:
             reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if is_inconsistent else LONG_REACH
@@ -139,9 +139,9 @@ def _number(least: float, most: float) -> Callable[[str], float]:
     return read
 
 
-def _whole(most: int) -> Callable[[str], int]:
+def _whole(most: int, least: int = 0) -> Callable[[str], int]:
     def read(text: str) -> int:
-        if not (text.isascii() and text.isdecimal() and len(text) <= len(str(most)) and int(text) <= most):
+        if not (text.isascii() and text.isdecimal() and len(text) <= len(str(most)) and least <= int(text) <= most):
             raise ValueError
         return int(text)
 
@@ -176,6 +176,8 @@ SWITCHES: tuple[Switch, ...] = (
     Switch("gap", "0", _NUMBER, "relative gap at which the solver may stop", _number(0, _ANY), of_solver=True),
     Switch("seed", "0", f"a whole number from 0 to {LARGEST_SEED}", "seed of the solver", _whole(LARGEST_SEED),
            of_solver=True),
+    Switch("node-limit", "none", "a whole number from 1 to 1000000000", "branch-and-bound nodes after which the solver "
+           "stops, whatever the clock says", _whole(10**9, 1), of_solver=True),
     Switch("weights", "odds, with paper junctions", _listed(WEIGHTS),
            "weights of crossings: log-odds, a table by kind of junction, or all equal", _word(WEIGHTS)),
     Switch("extension", f"{LONG_REACH.extension:g}, with paper {SHORT_REACH.extension:g}",

@@ -10,7 +10,7 @@ from linecad.decide.annotations import annotate, solve_annotated
 from linecad.decide.decision import Decision, decide
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Solution
-from linecad.model.build import View, build_scene
+from linecad.model.build import View, build_scene, find_components
 from linecad.model.lifting import Lifted, lift
 from linecad.options import Options
 from linecad.progress import StageReport, silent
@@ -76,5 +76,8 @@ def reconstruct_lines(
     notes = found.notes + annotations.notes + decision.notes
     view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes)
     lifted = lift(graph, decision.real, solution.log_depth)
-    scene = build_scene(view, graph, solution, decision, lifted, options.largest_component)
+    found_components = find_components(view, graph, decision, lifted, options.largest_component)
+    if options.largest_component:
+        decision = decision.within(found_components.kept, graph)
+    scene = build_scene(view, graph, solution, decision, found_components)
     return Reconstruction(whole, graph, solution, decision, lifted, scene)

@@ -26,7 +26,8 @@ Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
 # Why a crossing is real or not (linecad.decide.decision, docs/reference/scene-file.md). Real: annotated, chosen.
 Reason = Literal[
-    "annotated", "chosen", "not chosen", "impossible", "uninformative", "unstable", "loose", "small group"
+    "annotated", "chosen", "not chosen", "impossible", "uninformative",
+    "unstable", "loose", "small group", "other group",
 ]  # fmt: skip
 
 CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)

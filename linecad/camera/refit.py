@@ -35,18 +35,18 @@ def find_calibration(
     if first.prior is None or drawn is not None:
         return first
     on_stage("fitting the camera again to the lines that meet in space")
-    lines = _lines_that_meet(raw, first)
+    lines = _lines_that_meet(photo, raw, first)
     if lines is None:
         return first
     chosen = raw.subset(_lies_on(raw.ends, lines.ends, NEAR_LINE.px(photo.width)))
     return calibrate_again(photo, raw, first, chosen)
 
 
-def _lines_that_meet(raw: Segments, calibrated: Calibrated) -> Segments | None:
+def _lines_that_meet(photo: Photo, raw: Segments, calibrated: Calibrated) -> Segments | None:
     """The whole lines of a photo in groups whose crossings a robust fit at long reach agrees with; None without any."""
     camera, frame = calibrated.camera, calibrated.frame
     whole = group_segments(label_segments(raw, camera, frame), camera, frame, LONG_REACH.largest_gap)
-    graph = build_line_graph(whole, camera, frame, LONG_REACH, "odds", True)
+    graph = build_line_graph(whole, camera, frame, LONG_REACH, "odds", True, photo.pixels)
     agrees = graph.informative & (graph.misfit(RobustFit(graph).depths()) <= graph.tolerance)
     met = [part for part in components(graph, agrees) if len(part) >= MIN_COMPONENT]
     return graph.segments.subset(np.concatenate(met)) if met else None

@@ -85,7 +85,7 @@ def add_camera_height(parser: "argparse._ActionsContainer") -> None:
 
 
 def add_loudness(parser: argparse.ArgumentParser) -> None:
-    """How much is said on the way."""
+    """How much progress is shown."""
     loudness = parser.add_mutually_exclusive_group()
     loudness.add_argument("--quiet", action="store_true", help="no progress")
     loudness.add_argument("--verbose", action="store_true", help="the time of every stage")

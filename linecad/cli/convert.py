@@ -35,7 +35,7 @@ def add_to(commands: "Commands") -> None:
     add_outputs(command)
     add_camera(command)
     command.add_argument(
-        "--corrections", type=Path, metavar="FILE", help="what a person said about lines and crossings (linecad edit)"
+        "--corrections", type=Path, metavar="FILE", help="annotations of lines and crossings, made with linecad edit"
     )
     add_scale(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")

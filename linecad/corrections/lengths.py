@@ -31,5 +31,9 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
         notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
     metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
-    source = f"known lengths of {len(scales)} lines, so a unit is {metres_per_unit:.6g} m" if metres_per_unit else ""
+    source = (
+        f"{len(scales)} known length{'s' if len(scales) > 1 else ''} of lines, so a unit is {metres_per_unit:.6g} m"
+        if metres_per_unit
+        else ""
+    )
     return replace(scene, metres_per_unit=metres_per_unit, scale_source=source, notes=scene.notes + tuple(notes))

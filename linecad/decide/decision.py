@@ -6,7 +6,7 @@ it joins two rigid bodies that do not keep their place under resampling, or that
 that follows from the real crossings, boundary flags and planar pairs, is made from what is left.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,6 +43,12 @@ class Decision:
     is_firm: Bool
     notes: tuple[str, ...]
 
+    def within(self, kept: Bool, graph: LineGraph) -> "Decision":
+        """The same where only some lines (N,) are kept: no crossing of another line is real, unless annotated."""
+        gone = (self.reason == "chosen") & ~kept[graph.edges].all(axis=1)
+        reason = np.where(gone, "other group", self.reason)
+        return replace(self, real=self.real & ~gone, reason=reason, is_boundary=boundaries(graph, self.real & ~gone))
+
 
 def decide(
     graph: LineGraph, solution: Solution, options: Options, inconsistency: float | None, annotations: Annotations
@@ -58,7 +64,8 @@ def decide(
     joined = _joins(graph, solution, options, inconsistency, annotations)
     refused = (reason == "chosen") & (joined.reason != "")
     reason[refused] = joined.reason[refused]
-    reason[(reason == "chosen") & _in_small_group(graph, reason == "chosen")] = "small group"
+    reason[(reason == "chosen") & ~_in_large_groups(graph, reason == "chosen")] = "small group"
+    reason[(reason == "chosen") & ~_within_groups(graph, reason == "chosen")] = "uninformative"  # of a group in pieces
     real = reason == "chosen"
     real |= annotations.real
     reason[annotations.real | annotations.fake] = "annotated"
@@ -71,7 +78,7 @@ def decide(
         planar_pairs=_planar_pairs(graph, solution, options, real),
         bodies=joined.bodies,
         is_firm=joined.firm & ~touched & ~in_no_block(graph, real & graph.informative),
-        notes=_notes(graph, refused, joined, inconsistency),
+        notes=_notes(refused & _in_large_groups(graph, real), joined, inconsistency),
     )
 
 
@@ -124,11 +131,11 @@ def _within_groups(graph: LineGraph, chosen: Bool) -> Bool:
     return within
 
 
-def _in_small_group(graph: LineGraph, chosen: Bool) -> Bool:
-    """Mask (E,) of the crossings of lines in groups of fewer than MIN_COMPONENT lines."""
+def _in_large_groups(graph: LineGraph, chosen: Bool) -> Bool:
+    """Mask (E,) of the crossings whose two lines are in groups of MIN_COMPONENT lines or more."""
     group = group_numbers(len(graph.segments), graph.edges[chosen & graph.informative])
-    small: Bool = (np.bincount(group) < MIN_COMPONENT)[group]
-    return np.asarray(small[graph.edges].any(axis=1))
+    large: Bool = (np.bincount(group) >= MIN_COMPONENT)[group]
+    return np.asarray(large[graph.edges].all(axis=1))
 
 
 def _planar_pairs(graph: LineGraph, solution: Solution, options: Options, real: Bool) -> Int:
@@ -138,7 +145,8 @@ def _planar_pairs(graph: LineGraph, solution: Solution, options: Options, real: 
     return planar_pairs(find_families(graph, options.solve.without | {"cycles", "boundary"}), real)
 
 
-def _notes(graph: LineGraph, refused: Bool, joins: _Joins, inconsistency: float | None) -> tuple[str, ...]:
+def _notes(refused: Bool, joins: _Joins, inconsistency: float | None) -> tuple[str, ...]:
+    """What a reader should know; `refused` (E,) are the refused crossings of lines that the scene has."""
     notes = []
     if joins.required == STABILITY_IF_INCONSISTENT:
         notes.append(
@@ -146,13 +154,14 @@ def _notes(graph: LineGraph, refused: Bool, joins: _Joins, inconsistency: float 
             f"{MOST_INCONSISTENT}), as where buildings hide each other: lines reach less far, and joins must be more "
             "stable"
         )
-    if (refused & graph.informative).any():
-        why = [f"keep their place in less than {joins.required:.0%} of the fits without some lines"]
-        why = [] if not joins.required else why
-        if (joins.reason == "loose").any():
-            why.append("are tied by fewer than two lines")
+    if refused.any():
+        found, why = set(joins.reason[refused].tolist()), []
+        if "unstable" in found:
+            why.append(f"that keep their place in less than {joins.required:.0%} of the fits without some lines")
+        if "loose" in found:
+            why.append("that fewer than two lines join")
         notes.append(
-            f"{int(refused.sum())} crossings join bodies of lines that {' or '.join(why)}, and are not taken for real: "
+            f"{int(refused.sum())} crossings join bodies of lines {' or '.join(why)}, and are not taken for real: "
             "such a join is often a near edge before a far wall"
         )
     return tuple(notes)

@@ -304,7 +304,7 @@ class Session:
         self._model = replace(model, scene=measured(model.scene, self._lines.corrected))
 
     def _model_of(self, made: Reconstruction) -> Model:
-        now = decisions(made, self._lines)
+        now = decisions(made, self._lines, self.options.largest_component)
         before = {} if self._model is None else self._model.decided
         changed = frozenset(
             crossing for crossing, found in now.items() if before.get(crossing, found).real != found.real
@@ -317,15 +317,19 @@ def crossing_id(one: int, other: int) -> int:
     return min(one, other) * CROSSING_BASE + max(one, other)
 
 
-def decisions(made: Reconstruction, lines: Lines) -> dict[int, Decided]:
-    """What was decided, by the id of each crossing; those of lines that were not solved are in too small a group."""
+def decisions(made: Reconstruction, lines: Lines, largest_alone: bool) -> dict[int, Decided]:
+    """What was decided, by the id of each crossing; lines that were not solved are in too small a group, or another."""
     row = {
         (axis, ends.tobytes()): ids
         for axis, ends, ids in zip(lines.graph.axis.tolist(), lines.graph.segments.ends, lines.ids, strict=True)
     }
     graph, decision = made.graph, made.decision
     ids = [row[axis, ends.tobytes()] for axis, ends in zip(graph.axis.tolist(), graph.segments.ends, strict=True)]
-    found = dict.fromkeys(lines.crossings, Decided(False, "small group"))
+    unsolved = "other group" if largest_alone else "small group"
+    found = {
+        crossing: Decided(False, unsolved) if label in (None, "unsure") else Decided(label == "real", "annotated")
+        for crossing, label in zip(lines.crossings, lines.annotations.label, strict=True)
+    }
     rows = zip(graph.edges.tolist(), decision.real.tolist(), decision.reason.tolist(), strict=True)
     for (i, j), real, reason in rows:
         found[crossing_id(ids[i], ids[j])] = Decided(real, reason)

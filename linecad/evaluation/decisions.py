@@ -2,10 +2,8 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from linecad.arrays import Bool, Float, Int
-from linecad.evaluation.labels import FAKE, REAL, UNDECIDED
+from linecad.evaluation.labels import FAKE, REAL
 from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph
 
@@ -29,9 +27,14 @@ class Decisions:
         return self.tree_real / count if count else None
 
 
-def compare(graph: LineGraph, chosen: Bool, residual: Float, label: Int, total_length: float) -> Decisions:
-    """Count the `chosen` crossings (E,) by their `label` (E,); the tree is Kruskal's in order of `residual` (E,)."""
-    tree = spanning_tree(graph, chosen, residual)
+def compare(
+    graph: LineGraph, chosen: Bool, residual: Float, label: Int, total_length: float, telling: Bool | None = None
+) -> Decisions:
+    """Count the `chosen` crossings (E,) by their `label` (E,); the tree is Kruskal's in order of `residual` (E,).
+
+    With `telling` (E,) only those are in the tree, as in a scene, where crossings that tell no depth are not.
+    """
+    tree = spanning_tree(graph, chosen if telling is None else chosen & telling, residual)
     largest = components(graph, tree)[:1]
     return Decisions(
         tree_real=int((tree & (label == REAL)).sum()),
@@ -59,8 +62,3 @@ def count(graph: LineGraph, label: Int) -> GraphStatistics:
     """The lines and crossings of a graph, the latter also by label (E,)."""
     real, fake = int((label == REAL).sum()), int((label == FAKE).sum())
     return GraphStatistics(len(graph.segments), len(graph.edges), real, fake, len(graph.edges) - real - fake)
-
-
-def no_labels(graph: LineGraph) -> Int:
-    """Labels (E,) where nothing is known about any crossing."""
-    return np.full(len(graph.edges), UNDECIDED, np.int64)

@@ -134,7 +134,7 @@ def _whole(
         seconds=solution.seconds,
         status=solution.status,
         gap=proven_gap(solution),
-        decisions=compare(graph, made.decision.real, made.lifted.residual, label, length)
+        decisions=compare(graph, made.decision.real, made.lifted.residual, label, length, graph.informative)
         if reference.has_labels
         else None,
         rotation_error=_rotation_error(reference, scene),

@@ -1,6 +1,6 @@
-"""Where planes and faces differ from the solver's planar families and boundaries, in words for the notes.
+"""Where planes and faces differ from planar pairs and boundary flags, in words for the notes.
 
-The solver decides both from crossings alone (the paper's pi and B); planes and faces come from the lines in space.
+The decision makes both from crossings alone (the paper's pi and B); planes and faces come from the lines in space.
 """
 
 import numpy as np
@@ -16,19 +16,19 @@ def disagreements(planes: tuple[Plane, ...], lines: Lines, planar_pairs: Int) ->
     """One note for each kind of difference; none where all agree.
 
     `planar_pairs` (P, 3) are two parallel lines, by their place in `lines`, and the other axis of the plane in which
-    the solver sees them.
+    the real crossings put them.
     """
     notes = []
     apart = int((~in_one_plane(lines, planar_pairs)).sum())
     if apart:
         notes.append(
-            f"{apart} of {len(planar_pairs)} pairs of parallel lines that the solver sees in one plane lie in two"
+            f"{apart} of {len(planar_pairs)} pairs of parallel lines that real crossings put in one plane lie in two"
         )
     bounds, shown = bounding(planes, lines)
     differ = int((shown & (bounds != lines.is_boundary)).sum())
     if differ:
         notes.append(
-            f"{differ} of {int(shown.sum())} lines at faces are boundaries to the solver and touch faces of one "
+            f"{differ} of {int(shown.sum())} lines at faces are boundaries by their crossings and touch faces of one "
             "direction only, or the other way round"
         )
     return notes

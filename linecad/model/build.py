@@ -35,40 +35,55 @@ class View:
 
 
 @dataclass(frozen=True, eq=False)
-class _Parts:
-    """The lines of a graph that go into the scene, part by part, with the component of each."""
+class Components:
+    """The lines of a graph of N that go into the scene, and the component of each."""
 
-    parts: list[Int]  # lines of each component
+    parts: list[Int]  # lines of each component, component 0 first
     component: Int  # (N,) -1 for lines of none
-    tied: Bool  # (N,) placed by window grids and not by crossings
-    lifted: Lifted
+    by_grids: Bool  # (N,) placed by window grids and not by crossings
+    lifted: Lifted  # with one scale for what window grids join
+    is_largest_alone: bool  # the others were left out
 
     @property
-    def kept(self) -> Int:
-        """The lines of all components, ascending."""
-        return np.flatnonzero(self.component >= 0)
+    def kept(self) -> Bool:
+        """Mask (N,) of the lines of all components."""
+        return np.asarray(self.component >= 0)
 
 
-def build_scene(
-    view: View, graph: LineGraph, solution: Solution, decision: Decision, lifted: Lifted, largest_component: bool
-) -> Scene:
-    """The scene of the `lifted` lines that a real crossing ties to others, each component with its scale.
+def find_components(
+    view: View, graph: LineGraph, decision: Decision, lifted: Lifted, largest_alone: bool = False
+) -> Components:
+    """The groups of `lifted` lines that real crossings connect, those joined that window grids join.
 
-    With `largest_component` that of the largest one alone. Raises ReconstructionError where no group is large enough.
+    The most important comes first; with `largest_alone` it is the only one. Raises ReconstructionError where no group
+    is large enough.
     """
-    found = _find_parts(view, graph, decision, lifted)
-    placed = found.parts[:1] if largest_component else found.parts
+    by_grids = np.zeros(len(graph.segments), bool)
+    parts = [part for part in components(graph, decision.real & graph.informative) if len(part) >= MIN_COMPONENT]
+    if not parts:
+        raise ReconstructionError(
+            "no group of lines was found whose crossings agree in space; check the camera, or raise "
+            "--option extension=PX"
+        )
+    if decision.bodies is not None:
+        parts, lifted, by_grids = _joined_by_grids(view, graph, lifted, parts, decision.bodies.rigid)
+    parts = parts[:1] if largest_alone else parts
     component = np.full(len(graph.segments), -1)
-    for number, part in enumerate(placed):
+    for number, part in enumerate(parts):
         component[part] = number
-    found = replace(found, parts=placed, component=component)
-    scale = _component_scales(graph, found.lifted, placed)[component]
+    return Components(parts, component, by_grids, lifted, largest_alone)
+
+
+def build_scene(view: View, graph: LineGraph, solution: Solution, decision: Decision, found: Components) -> Scene:
+    """The scene of the components that were found, each with its scale, with planes and faces."""
+    kept = np.flatnonzero(found.kept)
+    scale = _component_scales(graph, found.lifted, found.parts)[found.component]
     lines = _lines(graph, solution, decision, found, scale)
-    offset = (found.lifted.offset * scale[:, None])[found.kept]
-    planes = find_planes(offset, lifted.shared[found.kept], lines.id)
+    offset = (found.lifted.offset * scale[:, None])[kept]
+    planes = find_planes(offset, found.lifted.shared[kept], lines.id)
     planes = find_faces(planes, lines, view.camera, view.frame.rotation)
-    new_id = np.cumsum(component >= 0) - 1
-    pairs = _renumbered(decision.planar_pairs, component, new_id)
+    new_id = np.cumsum(found.kept) - 1
+    pairs = _renumbered(decision.planar_pairs, found.component, new_id)
     return Scene(
         photo=view.photo,
         camera=view.camera,
@@ -80,29 +95,15 @@ def build_scene(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.seconds, solution.cuts, solution.nodes,
         ),
-        notes=(*_notes(view, graph, solution, found, largest_component), *disagreements(planes, lines, pairs)),
+        notes=(*_notes(view, graph, solution, found), *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
     )  # fmt: skip
 
 
-def _find_parts(view: View, graph: LineGraph, decision: Decision, lifted: Lifted) -> _Parts:
-    """The groups of lines that real crossings tie, those joined that window grids tie; the most important first."""
-    tied = np.zeros(len(graph.segments), bool)
-    parts = [part for part in components(graph, decision.real & graph.informative) if len(part) >= MIN_COMPONENT]
-    if not parts:
-        raise ReconstructionError(
-            "no group of lines was found whose crossings agree in space; check the camera, or raise "
-            "--option extension=PX"
-        )
-    if decision.bodies is not None:
-        parts, lifted, tied = _tie_parts(view, graph, lifted, parts, decision.bodies.rigid)
-    return _Parts(parts, np.full(len(graph.segments), -1), tied, lifted)
-
-
-def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: _Parts, scale: Float) -> Lines:
-    kept = found.kept
+def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:
+    kept = np.flatnonzero(found.kept)
     sure = "proven" if solution.status == "optimal" else "supported"
-    word = np.where(decision.is_firm & ~found.tied, sure, "supported")
+    word = np.where(decision.is_firm & ~found.by_grids, sure, "supported")
     confidence: Text = np.asarray(np.where(found.component == 0, word, "weak"), np.str_)
     return Lines(
         id=np.arange(len(kept)),
@@ -115,8 +116,8 @@ def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: _Par
     )
 
 
-def _intersections(graph: LineGraph, decision: Decision, found: _Parts, new_id: Int) -> Intersections:
-    inside = (found.component[graph.edges] >= 0).all(axis=1)
+def _intersections(graph: LineGraph, decision: Decision, found: Components, new_id: Int) -> Intersections:
+    inside = found.kept[graph.edges].all(axis=1)
     tree = spanning_tree(graph, decision.real & inside & graph.informative, found.lifted.residual)
     return Intersections(
         lines=new_id[graph.edges[inside]],
@@ -129,10 +130,10 @@ def _intersections(graph: LineGraph, decision: Decision, found: _Parts, new_id: 
     )
 
 
-def _tie_parts(
+def _joined_by_grids(
     view: View, graph: LineGraph, lifted: Lifted, parts: list[Int], rigid: Bool
 ) -> tuple[list[Int], Lifted, Bool]:
-    """The parts joined where window grids tie them, each with one scale.
+    """The parts, joined where window grids join them, each with one scale.
 
     The one with the most lines of `rigid` bodies (N,) comes first, also where more lines are tied loosely, the others
     in the order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The
@@ -185,22 +186,22 @@ def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Flo
     return np.array([*scales, 1.0])
 
 
-def _notes(view: View, graph: LineGraph, solution: Solution, found: _Parts, largest_component: bool) -> tuple[str, ...]:
+def _notes(view: View, graph: LineGraph, solution: Solution, found: Components) -> tuple[str, ...]:
     """What is known so far, and what a reader of the scene should know of lines and solver."""
     notes = list(view.notes)
-    other = ", or not the largest group," if largest_component else ""
-    dropped = len(graph.segments) - len(found.kept)
-    tied = int(found.tied[found.parts[0]].sum())
+    other = ", or are not of the largest group," if found.is_largest_alone else ""
+    dropped = int((~found.kept).sum())
+    by_grids = int(found.by_grids[found.parts[0]].sum())
     for count, why in ((view.lines - len(graph.segments), "in the photo"), (dropped, "in space")):
         if count:
             notes.append(
                 f"{count} lines touch too few others {why}{other} and are left out: a group has at least "
                 f"{MIN_COMPONENT}"
             )
-    if tied:
+    if by_grids:
         notes.append(
-            f"{tied} lines of component 0 are not connected to the rest of it by crossings: their place follows from "
-            "window grids that continue (supported)"
+            f"{by_grids} lines of component 0 are not connected to the rest of it by crossings: their place follows "
+            "from window grids that continue (supported)"
         )
     return (*notes, *_solver_notes(solution), *_placing_notes(found))
 
@@ -216,7 +217,7 @@ def _solver_notes(solution: Solution) -> list[str]:
     return [f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal"]
 
 
-def _placing_notes(found: _Parts) -> list[str]:
+def _placing_notes(found: Components) -> list[str]:
     notes = []
     if len(found.parts) > 1:
         notes.append(

@@ -59,7 +59,7 @@ def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float, merges: Merges 
     normal = _normal(graph, chosen, guess)
     # Only the change from the guess is solved for: the anchor is so weak that rounding would move the whole.
     right = incidence.T @ (weight * (graph.log_ratio[used] - incidence @ guess))
-    told = _told(graph, guess)
+    told = _told(graph, chosen, guess)
     right = right + np.bincount(told.line, (told.log_depth - guess[told.line]) / _spread(told) ** 2, len(guess))
     if merges is not None:
         normal = normal + merges.rows.T @ merges.rows / MIN_TOLERANCE**2
@@ -80,16 +80,23 @@ def _normal(graph: LineGraph, chosen: Bool, log_depth: Float) -> csr_matrix:
     used = chosen & graph.informative
     incidence = _incidence(graph, used)
     weight = diags_array(1 / graph.tolerance[used] ** 2)
-    told = _told(graph, log_depth)
+    told = _told(graph, chosen, log_depth)
     known = np.bincount(told.line, 1 / _spread(told) ** 2, len(graph.segments))
     return csr_matrix(incidence.T @ weight @ incidence + diags_array(ANCHOR + known))
 
 
-def _told(graph: LineGraph, log_depth: Float) -> LineDepths:
-    """What unary cues tell of the depths, without what is an outlier at depths (N,)."""
+def _told(graph: LineGraph, chosen: Bool, log_depth: Float) -> LineDepths:
+    """What unary cues tell of the depths, without what is an outlier at depths (N,).
+
+    The scale of these depths means nothing in each group of lines that chosen crossings (E,) connect, so an outlier is
+    what is far off the median of its group.
+    """
     told = graph.depths if graph.depths is not None else LineDepths.none()
-    off = np.abs(told.log_depth - log_depth[told.line]) > _spread(told)
-    return told.chosen(~(told.may_be_outlier & off))
+    off = told.log_depth - log_depth[told.line]
+    group = _parts(graph, chosen)[told.line]
+    for number in np.unique(group):
+        off[group == number] -= np.median(off[group == number])
+    return told.chosen(~(told.may_be_outlier & (np.abs(off) > _spread(told))))
 
 
 def _spread(told: LineDepths) -> Float:

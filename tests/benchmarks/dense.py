@@ -30,7 +30,7 @@ from linecad.evaluation.labels import REAL
 from linecad.evaluation.references import Points, Reference, open_case
 from linecad.finding import connect, find_lines
 from linecad.line_graph import Solution
-from linecad.model.build import View, build_scene
+from linecad.model.build import View, build_scene, find_components
 from linecad.model.faces import find_faces
 from linecad.model.lifting import lift
 from linecad.options import Options
@@ -81,7 +81,7 @@ def truly(photo: Photo, reference: Reference, options: Options) -> Scene:
     decision = decide(graph, solution, replace(options, joins="all"), None, annotate(graph, None)[1])
     view = View(photo.name, found.camera, found.frame, found.certainty, count, found.notes)
     lifted = lift(graph, decision.real, solution.log_depth)
-    return build_scene(view, graph, solution, decision, lifted, largest_component=False)
+    return build_scene(view, graph, solution, decision, find_components(view, graph, decision, lifted))
 
 
 def measure(name: str, scene: Scene, points: Points) -> list[tuple[float, float]]:

@@ -83,6 +83,23 @@ def test_a_file_without_pictures_leaves_none_of_the_old_ones(tmp_path):
     assert everything(tmp_path) == ["a.obj"]
 
 
+def test_a_format_with_a_library_alone_needs_no_folder(tmp_path):
+    path, beside = tmp_path / "a.csv", Beside(library=".planes.txt")
+
+    def put(text):
+        def write(file):
+            file.write_text(text)
+            return SideFiles({}, f"planes of {text}")
+
+        write_with_side_files(path, beside, write)
+
+    for text in ("one", "two"):
+        put(text)
+        assert path.read_text() == text
+        assert (tmp_path / "a.csv.planes.txt").read_text() == f"planes of {text}"
+    assert len(list(tmp_path.iterdir())) == 2
+
+
 def test_what_is_not_ours_stays_in_the_folder(tmp_path):
     put(tmp_path / "a.obj", 1)
     (tmp_path / "a.obj.textures" / "mine.jpg").write_text("mine")

@@ -1,5 +1,7 @@
 """The front door: names that load what they need when they are used, for users, type checkers and completion."""
 
+import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -80,6 +82,18 @@ def test_a_script_of_a_user_passes_the_strict_type_checker(tmp_path):
     assert "script.py" not in ended.stdout
     assert "wrong.py:2: error" in ended.stdout
     assert ended.stdout.splitlines()[-1].startswith("Found ")
+
+
+def test_the_script_of_the_readme_runs(tmp_path, monkeypatch, capsys):
+    (script,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
+    for name, sample in (("facade.jpg", "room.jpg"), ("facade.camera.json", "room.json")):
+        shutil.copy(ROOT / "samples" / sample, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    given = "linecad.Options(extension=60.0"
+    assert given in script
+    exec(script.replace(given, f"{given}, solve=linecad.SolveOptions(fast=True)"), {})
+    assert {path.name for path in tmp_path.iterdir()} >= {"facade.json", "facade.step"}
+    assert "do not meet" in capsys.readouterr().out
 
 
 def test_a_photo_becomes_files(scene, tmp_path):

@@ -17,7 +17,7 @@ from linecad.geometry import angle_between_frames, project
 from linecad.graph.build import build_line_graph
 from linecad.io.scene_file import read_scene, write_scene
 from linecad.line_graph import ManhattanFrame, Segments, Solution
-from linecad.model.build import TYPICAL_DEPTH, View, build_scene
+from linecad.model.build import TYPICAL_DEPTH, View, build_scene, find_components
 from linecad.model.lifting import lift
 from linecad.options import SHORT_REACH, Options
 from linecad.pipeline import reconstruct
@@ -316,7 +316,7 @@ def test_groups_that_only_the_horizon_ties_keep_scales_of_their_own():
     assert decision.reason[tie].tolist() == ["uninformative"]
     lifted = lift(graph, decision.real, solution.log_depth)
     view = View("two.png", camera, frame, None, len(rows), ())
-    scene = build_scene(view, graph, solution, decision, lifted, largest_component=False)
+    scene = build_scene(view, graph, solution, decision, find_components(view, graph, decision, lifted))
     assert scene.lines.component.tolist() == [0] * 4 + [1] * 4
     for plane in scene.planes:
         assert (scene.lines.ends[list(plane.lines), :, plane.axis] == plane.offset).all()

@@ -12,8 +12,9 @@ const REASONS = {
   impossible: "its lines cannot meet before the camera",
   uninformative: "too near the horizon to tell a depth",
   unstable: "joins bodies that do not keep their place when lines are left out",
-  loose: "joins bodies that fewer than two lines tie",
+  loose: "joins bodies that fewer than two lines join",
   "small group": "its group has fewer than four lines",
+  "other group": "not of the largest group, which is asked for alone",
 };
 const KINDS = { L: "L crossing", T: "T crossing", X: "X crossing", collinear: "collinear pair" };
 const ORIGINS = { found: "", drawn: "drawn by you", split: "split by you", joined: "joined by you" };

@@ -7,12 +7,15 @@ import pytest
 
 from linecad.corrections.annotations import Annotations
 from linecad.decide.annotations import annotate
+from linecad.decide.bodies import agreeing
 from linecad.decide.decision import decide
+from linecad.decide.stability import find_stable_bodies, resample
 from linecad.line_graph import LineGraph, Segments, Solution
 from linecad.options import Options
 from linecad.scene import REASONS
 from solver.choice import boundaries, planar_pairs
 from solver.families import find_families
+from solver.robust import RobustFit
 
 GRID = 12  # lines of each direction of a wall
 ALL, LOOSE = Options(joins="all"), Options(joins="biconnected")
@@ -55,12 +58,12 @@ def solution_of(graph, connected=None):
     )  # fmt: skip
 
 
-def decided(graph, options=ALL, connected=None, said=None, inconsistency=None):
-    said = annotate(graph, None)[1] if said is None else said
-    return decide(graph, solution_of(graph, connected), options, inconsistency, said)
+def decided(graph, options=ALL, connected=None, annotations=None, inconsistency=None):
+    annotations = annotate(graph, None)[1] if annotations is None else annotations
+    return decide(graph, solution_of(graph, connected), options, inconsistency, annotations)
 
 
-def said_of(graph, real=(), fake=()):
+def annotations_of(graph, real=(), fake=()):
     flags = np.zeros((2, len(graph.edges)), bool)
     flags[0, list(real)], flags[1, list(fake)] = True, True
     return Annotations(*flags, (None,) * len(graph.edges), ())
@@ -85,7 +88,7 @@ def test_what_the_program_chose_is_real_and_what_it_left_out_is_not():
 
 def test_every_crossing_has_one_reason_and_only_two_of_them_are_real():
     graph = walls(ONE_BAR, lone=1)
-    found = decided(graph, LOOSE, np.arange(len(graph.edges)) % 7 != 0, said_of(graph, real=[3], fake=[7]))
+    found = decided(graph, LOOSE, np.arange(len(graph.edges)) % 7 != 0, annotations_of(graph, real=[3], fake=[7]))
     assert set(found.reason) <= set(REASONS)
     assert set(found.reason[found.real]) <= {"chosen", "annotated"}
     assert "chosen" not in set(found.reason[~found.real])
@@ -156,7 +159,7 @@ def test_a_group_of_few_lines_is_too_small():
 def test_annotations_come_before_everything_else():
     graph = walls(ONE_BAR, lone=1)
     join, lone, other = crossing(graph, ONE_BAR[0]), crossing(graph, [4 * GRID, 4 * GRID + 1]), 4
-    found = decided(graph, LOOSE, np.arange(len(graph.edges)) != other, said_of(graph, [join, lone], [other]))
+    found = decided(graph, LOOSE, np.arange(len(graph.edges)) != other, annotations_of(graph, [join, lone], [other]))
     assert found.reason[[join, lone, other]].tolist() == ["annotated"] * 3
     assert found.real[[join, lone, other]].tolist() == [True, True, False]
     assert found.real[[crossing(graph, pair) for pair in ONE_BAR]].all()  # the two walls are one body now
@@ -192,3 +195,67 @@ def test_a_line_on_a_single_crossing_is_not_firm():
     found = decided(graph, connected=~only)
     assert not found.is_firm[0]
     assert found.is_firm[1:].all()
+
+
+def contradicting(graph):
+    """The same with every other crossing between the walls at another relative depth, and the mask of the rest."""
+    first = graph.edges[:, 0]
+    between = np.arange(len(graph.edges)) >= 2 * GRID**2
+    ratio = np.where(between & (first % 2 == 1), 0.2, 0.0)
+    return replace(graph, log_ratio=ratio), between & (ratio == 0)
+
+
+MANY_BARS = [(i, 3 * GRID + j) for i in range(9) for j in range(6)]
+
+
+def test_an_annotated_join_makes_unstable_bodies_one():
+    graph, joins = contradicting(walls(MANY_BARS))
+    free = decided(graph, Options(), graph.log_ratio == 0, inconsistency=0.5)
+    assert set(free.reason[joins]) == {"unstable"}
+    one = int(np.flatnonzero(joins)[0])
+    fixed = decided(graph, Options(), graph.log_ratio == 0, annotations_of(graph, real=[one]), inconsistency=0.5)
+    assert fixed.reason[one] == "annotated"
+    assert fixed.real[joins].all()
+
+
+def test_in_an_inconsistent_photo_stable_bodies_that_one_line_joins_are_loose():
+    graph = walls(ONE_BAR)
+    found = decided(graph, Options(), inconsistency=0.5)
+    joins = np.arange(len(graph.edges)) >= 2 * GRID**2
+    assert set(found.reason[joins]) <= {"loose", "unstable"}
+    assert "loose" in set(found.reason[joins])
+    assert any("that fewer than two lines join" in note for note in found.notes)
+
+
+def test_in_a_consistent_photo_a_rigid_line_that_is_not_firm_is_not_as_sure_as_the_solution():
+    graph, _ = contradicting(walls(MANY_BARS))
+    fit = RobustFit(graph)
+    fits = resample(graph, lambda present: fit.depths(present=present), Options().solve.seed)
+    solution = solution_of(graph, graph.log_ratio == 0)
+    stable = find_stable_bodies(
+        graph, agreeing(graph, solution.connected, solution.log_depth), solution.log_depth, fits, False
+    )
+    found = decided(graph, Options(), graph.log_ratio == 0, inconsistency=0.0)
+    assert (stable.bodies.rigid & ~stable.firm).any()
+    assert not found.is_firm[stable.bodies.rigid & ~stable.firm].any()
+
+
+def test_what_is_left_out_for_the_largest_group_is_of_another_group():
+    graph = walls()
+    found = decided(graph)
+    first = np.arange(len(graph.segments)) < 2 * GRID
+    kept = found.within(first, graph)
+    inside = first[graph.edges].all(axis=1)
+    assert set(kept.reason[inside]) == {"chosen"}
+    assert set(kept.reason[~inside]) == {"other group"}
+    assert (kept.real == inside).all()
+    assert not kept.is_boundary[~first].any()
+
+
+def test_a_refusal_that_parts_a_group_leaves_no_crossing_at_the_horizon_between_its_pieces():
+    graph = walls([*ONE_BAR, (1, 3 * GRID)])
+    last = len(graph.edges) - 1
+    graph = replace(graph, informative=np.arange(len(graph.edges)) != last)
+    found = decided(graph, LOOSE)
+    assert not found.real[last]
+    assert found.reason[last] in ("loose", "uninformative")

@@ -7,12 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linecad.camera.photo import Photo
+from linecad.finding import connect, find_lines
 from linecad.graph import cues
 from linecad.graph.build import build_line_graph
-from linecad.graph.cues import STEP, Known, weigh
+from linecad.graph.cues import STEP, CueSet, Known, weigh
 from linecad.line_graph import LineDepths
 from linecad.model.lifting import fit_log_depths, lift
-from linecad.options import LONG_REACH, WEIGHTS
+from linecad.options import LONG_REACH, WEIGHTS, Options
 from solver.robust import RobustFit
 
 
@@ -40,7 +42,7 @@ def test_a_cue_more_adds_its_log_odds(known, monkeypatch):
         return np.where(told.pixels.mean() < 1, 2.0, 0.0) * np.ones(len(told.graph.edges))
 
     before = weigh(known, "odds")
-    monkeypatch.setitem(cues.CUES, "odds", (*cues.CUES["odds"], dark))
+    monkeypatch.setitem(cues.CUES, "odds", CueSet((*cues.CUES["odds"].cues, dark)))
     after = weigh(known, "odds")
     assert seen == [known]
     well_above = before.weight > STEP
@@ -50,11 +52,31 @@ def test_a_cue_more_adds_its_log_odds(known, monkeypatch):
 def test_a_cue_that_looks_at_the_photo_gets_its_pixels(made, monkeypatch):
     shapes = []
     monkeypatch.setitem(
-        cues.CUES, "ones", (lambda told: shapes.append(told.pixels.shape) or np.ones(len(told.graph.edges)),)
+        cues.CUES,
+        "ones",
+        CueSet((lambda told: shapes.append(told.pixels.shape) or np.ones(len(told.graph.edges)),), are_log_odds=False),
     )
     pixels = np.zeros((made.camera.height, made.camera.width, 3), np.uint8)
     build_line_graph(made.segments, made.camera, made.frame, LONG_REACH, "ones", False, pixels)
     assert shapes == [(made.camera.height, made.camera.width, 3)]
+
+
+def test_a_photo_reaches_the_cues_by_way_of_its_lines(made, monkeypatch):
+    shapes = []
+
+    def look(told):
+        shapes.append(told.pixels.shape)
+        return np.ones(len(told.graph.edges))
+
+    monkeypatch.setitem(cues.CUES, "ones", CueSet((look,), are_log_odds=False))
+    photo = Photo("made.png", np.repeat(made.image()[..., None], 3, axis=2), made.camera)
+    connect(find_lines(photo), Options(weights="ones", joins="biconnected", reach=LONG_REACH))
+    assert shapes == [photo.pixels.shape]
+
+
+def test_log_odds_that_speak_against_an_edge_leave_it_the_least_weight(known, monkeypatch):
+    monkeypatch.setitem(cues.CUES, "ones", CueSet((lambda known: np.full(len(known.graph.edges), -7.3),)))
+    assert set(weigh(known, "ones").weight) == {STEP}
 
 
 @pytest.mark.parametrize("weights", WEIGHTS)
@@ -79,7 +101,15 @@ def test_a_unary_cue_reaches_the_graph_and_its_parts(known, monkeypatch):
     assert part.depths.log_depth.tolist() == [np.log(6.0), 0.5]
 
 
-@pytest.mark.parametrize(("message", "change"), [("sigma", {"sigma": [0.0]}), ("entries", {"log_depth": [1.0, 2.0]})])
+@pytest.mark.parametrize(
+    ("message", "change"),
+    [
+        ("sigma", {"sigma": [0.0]}),
+        ("entries", {"log_depth": [1.0, 2.0]}),
+        ("line", {"line": [-1]}),
+        ("finite", {"log_depth": [np.nan]}),
+    ],
+)
 def test_depths_that_cannot_be(message, change):
     fields = {"line": [0], "log_depth": [1.0], "sigma": [0.1], "may_be_outlier": [True]} | change
     with pytest.raises(ValueError, match=message):
@@ -148,6 +178,21 @@ def test_lifting_keeps_the_depths_that_are_told(apart):
     assert np.abs(fitted - truth).max() < 0.005
     plain = fit_log_depths(graph, real, shifted)
     assert np.abs(plain - truth)[box == 1].min() > 0.015
+
+
+@pytest.mark.parametrize("scale", [-3.0, 2.0])
+def test_lifting_keeps_them_whatever_the_scale_of_the_depths_it_starts_from(apart, scale):
+    graph, truth, box, real = apart
+    told = told_of(graph, truth, box, wrong=[3])
+    start = truth + np.where(box == 1, scale, -scale)  # each group of lines has a scale of its own
+    assert np.abs(fit_log_depths(told, real, start) - truth).max() < 0.005
+
+
+def test_lifting_is_pulled_by_a_depth_that_cannot_be_an_outlier(apart):
+    graph, truth, box, real = apart
+    told = told_of(graph, truth, box, wrong=[3])
+    depths = replace(told.depths, may_be_outlier=np.zeros(10, bool))
+    assert np.abs(fit_log_depths(replace(told, depths=depths), real, truth) - truth).max() > 0.05
 
 
 def test_the_lines_in_space_follow(apart):
