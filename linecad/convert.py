@@ -28,7 +28,7 @@ class Conversion:
     options: Options = field(default_factory=Options)
     known: Known | None = None  # a length that sets the scale
     values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as linecad.outputs reads them
-    corrections: Path | None = None  # what a person said about this one photo
+    corrections: Path | None = None  # a person's, of this one photo
 
     def checked(self) -> Self:
         """This conversion, once its files are known to be readable. Raises CameraError or CorrectionsFileError."""

@@ -25,7 +25,7 @@ WIDTH = 0.01  # log depth; a crossing this far off pulls no longer, whatever its
 SLACK = 0.005  # log depth, within which a crossing agrees with a fit whatever its tolerance
 NARROWING = 3.0  # of the square of the width, from one step to the next
 LAST_STEPS = 4  # at the final width; narrower ones would follow small groups of crossings and measured worse
-ANCHOR = 1e-9  # of the crossings of a line; holds what nothing ties where it is, and the whole
+ANCHOR = 1e-9  # of the crossings of a line; keeps what nothing connects where it is, and the whole
 
 
 class RobustFit:
@@ -54,7 +54,7 @@ class RobustFit:
     def depths(self, weight: Float | None = None, present: Bool | None = None) -> Float:
         """(N,) log depths, by `weight` (E,) if given else the graph's; lines that are not `present` (N,) do not count.
 
-        Groups of lines that no crossing ties have unrelated scales.
+        Groups of lines that no crossing connects have unrelated scales.
         """
         own = self.weight if weight is None else weight[self.used]
         if present is not None:

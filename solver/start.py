@@ -100,7 +100,7 @@ class Starter:
 def _greedy_near_depths(graph: LineGraph, step: Float, log_range: float, evidence: Float) -> Float:
     """(N,) log depth of each near end, from 0 to `log_range`: a union-find with potentials, best evidence first.
 
-    An edge between two groups of lines ties them together unless the group would then be deeper than the range; an edge
+    An edge between two groups of lines joins them unless the group would then be deeper than the range; an edge
     within a group decides nothing any more.
     """
     near = np.zeros(len(graph.segments))

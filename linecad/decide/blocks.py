@@ -2,7 +2,7 @@
 
 A vertical edge of a near wall hides the courses of a farther one, and every one of these crossings agrees with the edge
 lying in the far wall: thirty agree with each other, and all of them are on one line. So what counts is how many
-lines tie two bodies, not how many crossings. A true corner of two walls is one block when two courses or more meet
+lines join two bodies, not how many crossings. A true corner of two walls is one block when two courses or more meet
 across it. A pair of collinear pieces, one in each of two larger blocks, makes them one body: no occlusion makes such a
 pair.
 """

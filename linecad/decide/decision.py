@@ -2,7 +2,7 @@
 
 The program chooses crossings whose depths agree. Agreement is not enough: a near edge that hides the courses of a
 farther wall gives thirty crossings that agree with each other and are all fake. So a chosen crossing is refused where
-it joins two rigid bodies that do not keep their place under resampling, or that fewer than two lines tie. Everything
+it joins two rigid bodies that do not keep their place under resampling, or that fewer than two lines join. Everything
 that follows from the real crossings, boundary flags and planar pairs, is made from what is left.
 """
 
@@ -120,7 +120,7 @@ def _joins(
 
 
 def _within_groups(graph: LineGraph, chosen: Bool) -> Bool:
-    """Mask (E,) of the crossings of two lines that chosen crossings tie which tell about depth.
+    """Mask (E,) of the crossings of two lines that chosen crossings connect which tell about depth.
 
     A chosen crossing between two such groups lies so near the horizon that it says nothing about depth: the groups
     have scales of their own, and a coordinate that they shared would be two numbers.

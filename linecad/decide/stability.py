@@ -3,7 +3,7 @@
 The depths of a photo are fitted again and again, each time without a random part of its lines. Where many lines that
 are independent of each other agree, nothing moves. Where two walls are joined by a few lines, or by crossings that
 contradict others and won by a little, the fit finds another answer as soon as these lines are missing. The *stability*
-of a line is the share of the fits, among those in which it is tied to its body at all, that leave it at its depth
+of a line is the share of the fits, among those in which it is connected to its body at all, that leave it at its depth
 relative to the body.
 
 How much stability is required depends on the photo, since agreement is worth less where much is fake. Two figures tell:
@@ -31,7 +31,7 @@ LEFT_OUT = 0.3  # of the lines, in each fit
 SAME_DEPTH = 0.015  # log depth; a line that moves less against its body keeps its place
 LEAST_BODY = 5  # lines
 SEEDS = 60  # lines about which the core of a body is looked for
-LEAST_SEEN = 3  # fits in which two lines of a core are tied and in place
+LEAST_SEEN = 3  # fits in which two lines of a core are connected and in place
 MANY_BODIES = 40  # bodies that are sought; what is left after so many is crumbs
 FIRM = 0.95  # stability from which a line is as sure as the solution
 
@@ -53,7 +53,7 @@ class Fits:
 
     present: Bool  # (F, N)
     depth: Float  # (F, N) log depth; of no meaning where a line is absent
-    group: Int  # (F, N) lines of one number are tied by crossings that agree in this fit
+    group: Int  # (F, N) lines of one number are connected by crossings that agree in this fit
 
 
 def resample(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) -> Fits:
@@ -72,9 +72,9 @@ def resample(graph: LineGraph, refit: Refit, seed: int = 0, fits: int = FITS) ->
         depth = np.array(list(pool.map(refit, present))).reshape(fits, count)
     group = np.zeros((fits, count), np.int64)
     for number in range(fits):
-        ties = graph.informative & present[number, first] & present[number, second]
-        ties &= graph.misfit(depth[number]) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
-        group[number] = group_numbers(count, graph.edges[ties])
+        agrees = graph.informative & present[number, first] & present[number, second]
+        agrees &= graph.misfit(depth[number]) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
+        group[number] = group_numbers(count, graph.edges[agrees])
     return Fits(present, depth, group)
 
 
@@ -126,7 +126,7 @@ def find_stable_bodies(
 def stability(part: Bool, log_depth: Float, fits: Fits, core: Bool | None = None) -> Float:
     """(N,) share of the fits that leave a line of `part` (N,) where `log_depth` has it, relative to the others.
 
-    Relative to the lines of `core` (N,) if it is given. Fits in which the line is absent, or not tied to most of
+    Relative to the lines of `core` (N,) if it is given. Fits in which the line is absent, or not connected to most of
     these, say nothing; without any the share is 1.
     """
     core = part if core is None else core
@@ -135,11 +135,11 @@ def stability(part: Bool, log_depth: Float, fits: Fits, core: Bool | None = None
         seen = core & present
         if not seen.any():
             continue
-        tied = part & present & (group == np.bincount(group[seen]).argmax())
+        connected = part & present & (group == np.bincount(group[seen]).argmax())
         shift = depth - log_depth
-        same = np.abs(shift - _densest(shift[tied & core])) < SAME_DEPTH
-        kept += tied & same
-        moved += tied & ~same
+        same = np.abs(shift - _densest(shift[connected & core])) < SAME_DEPTH
+        kept += connected & same
+        moved += connected & ~same
     return np.asarray(np.where(kept + moved > 0, kept / np.maximum(kept + moved, 1), 1.0))
 
 
@@ -152,11 +152,11 @@ def _core(part: Bool, log_depth: Float, fits: Fits, required: float) -> Bool:
     seeds = lines[np.linspace(0, len(lines) - 1, min(SEEDS, len(lines))).astype(np.int64)]
     kept, moved = np.zeros((len(seeds), len(lines))), np.zeros((len(seeds), len(lines)))
     for present, depth, group in zip(fits.present, fits.depth, fits.group, strict=True):
-        tied = (group[seeds, None] == group[lines]) & present[seeds, None] & present[lines]
+        connected = (group[seeds, None] == group[lines]) & present[seeds, None] & present[lines]
         shift = depth - log_depth
         same = np.abs(shift[seeds, None] - shift[lines]) < SAME_DEPTH
-        kept += tied & same
-        moved += tied & ~same
+        kept += connected & same
+        moved += connected & ~same
     holds = (kept >= LEAST_SEEN) & (kept >= required * (kept + moved))
     core = np.zeros(len(part), bool)
     core[lines[holds[holds.sum(axis=1).argmax()]]] = True
@@ -186,7 +186,7 @@ def _densest(values: Float) -> float:
 
 
 def _largest_part(count: int, edges: Int, lines: Bool) -> Bool:
-    """Mask (N,) of the largest group that edges tie among the masked lines."""
+    """Mask (N,) of the largest group that edges connect among the masked lines."""
     group = group_numbers(count, edges[lines[edges].all(axis=1)])
     if not lines.any():
         return np.zeros(count, bool)

@@ -27,8 +27,8 @@ def ratio_of_sums(numerators: Sequence[float], denominators: Sequence[float]) ->
     cannot occur then.
     """
     above, below = np.array(numerators, np.float64), np.array(denominators, np.float64)
-    said = below > 0
-    above, below = above[said], below[said]
+    defined = below > 0
+    above, below = above[defined], below[defined]
     if len(below) == 0:
         return None
     drawn = np.random.default_rng(SEED).integers(0, len(below), (DRAWS, len(below)))

@@ -10,7 +10,7 @@ from linecad.line_graph import LineGraph
 
 
 def group_numbers(count: int, edges: Int) -> Int:
-    """Number (N,) of the group that edges (E, 2) tie each of `count` lines to."""
+    """Number (N,) of the group that each of `count` lines is in by edges (E, 2)."""
     links = csr_matrix((np.ones(len(edges)), (edges[:, 0], edges[:, 1])), (count, count))
     return np.asarray(connected_components(links, directed=False)[1], np.int64)
 
@@ -47,7 +47,7 @@ def as_network(count: int, edges: Int) -> "nx.Graph[int]":
 
 
 def biconnected_blocks(edges: Int) -> list[set[int]]:
-    """The sets of three lines or more that edges (E, 2) tie so that no single line parts them."""
+    """The sets of three lines or more that edges (E, 2) connect so that no single line parts them."""
     net: nx.Graph[int] = nx.Graph()
     net.add_edges_from(map(tuple, edges.tolist()))
     return [set(block) for block in nx.biconnected_components(net) if len(block) > 2]

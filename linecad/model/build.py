@@ -135,28 +135,28 @@ def _joined_by_grids(
 ) -> tuple[list[Int], Lifted, Bool]:
     """The parts, joined where window grids join them, each with one scale.
 
-    The one with the most lines of `rigid` bodies (N,) comes first, also where more lines are tied loosely, the others
-    in the order of their number of lines. A tied part is scaled as a whole, so that all crossings in it stay exact. The
-    mask (N,) tells the lines of parts that are not the largest of those they were joined with.
+    The one with the most lines of `rigid` bodies (N,) comes first, also where more lines are joined loosely, the others
+    in the order of their number of lines. A joined part is scaled as a whole, so that all crossings in it stay exact.
+    The mask (N,) tells the lines of parts that are not the largest of those they were joined with.
     """
     joined = join_bodies(
         find_window_grid_cues(graph, view.camera, view.frame.rotation, parts, lifted.offset), len(parts)
     )
     sizes = [(int(rigid[part].sum()), len(part)) for part in parts]
-    scale, tied = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
+    scale, joined_by = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
     groups: list[Int] = []
     for group in np.unique(joined.group).tolist():
         members = np.flatnonzero(joined.group == group).tolist()
         lead = max(members, key=lambda member: sizes[member])
         for member in members:
             scale[parts[member]] = np.exp(joined.log_scale[member] - joined.log_scale[lead])
-            tied[parts[member]] = member != lead
+            joined_by[parts[member]] = member != lead
         groups.append(np.sort(np.concatenate([parts[member] for member in members])))
     groups.sort(key=lambda lines: (-len(lines), int(lines[0])))
     largest = max(groups, key=lambda lines: int(rigid[lines].sum()))
     groups.sort(key=lambda lines: lines is not largest)
     lifted = replace(lifted, ends=lifted.ends * scale[:, None, None], offset=lifted.offset * scale[:, None])
-    return groups, lifted, tied
+    return groups, lifted, joined_by
 
 
 def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
@@ -169,7 +169,7 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
 def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Float:
     """One factor a component, and 1 at the end for lines of none: component 0 gets TYPICAL_DEPTH as median depth.
 
-    Nothing in the photo ties the others to it, so each is put at the depth of the lines of component 0 that are
+    Nothing in the photo joins the others to it, so each is put at the depth of the lines of component 0 that are
     nearest to it in the photo: near enough to be looked at, marked as weak.
     """
     middle = graph.segments.ends.mean(axis=1)

@@ -106,7 +106,7 @@ def _spread(told: LineDepths) -> Float:
 
 
 def _parts(graph: LineGraph, chosen: Bool) -> Int:
-    """Number (N,) of the group of lines that chosen crossings with a say tie to each line."""
+    """Number (N,) of the group of lines that each line is in by chosen crossings that tell about depth."""
     return group_numbers(len(graph.segments), graph.edges[chosen & graph.informative])
 
 

@@ -1,6 +1,6 @@
 """Which planes that crossings left apart are one plane: offsets of one normal that the noise cannot tell apart.
 
-The windows of two floors lie in one facade, but crossings tie the floors by a long way round, and each step has its
+The windows of two floors lie in one facade, but crossings connect the floors by a long way round, and each step has its
 noise. The least squares knows how much comes together: the variance of the difference of two log offsets follows from
 its normal equations. Two planes are merged where the difference is within that noise, unless a line that runs along
 their normal leads from one to the other: then the photo shows the step between them.
