@@ -43,9 +43,9 @@ def fails(folder, capsys):
     return run
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def scene_file(tmp_path_factory):
     """The scene of a sample photo."""
     path = tmp_path_factory.mktemp("scene") / "room.json"
-    assert main(["convert", str(ROOM), "-o", str(path), "--option", "largest-component=on", "--quiet"]) == 0
+    assert main(["convert", str(ROOM), "-o", str(path), "--fast", "--option", "largest-component=on", "--quiet"]) == 0
     return path
