@@ -78,7 +78,8 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
         f"{_count(len(scene.faces), 'face')}"
     )
     canvas.text(_MARGIN, _MARGIN + 38, title, _TITLE, _INK)
-    solve, share = scene.solve, f"{100 * scene.solve.gap:.3g} %"
+    solve = scene.solve
+    share = f"{100 * solve.gap:.3g} %" if np.isfinite(solve.gap) else "unknown"
     facts = [
         ", ".join(f"{int((lines.axis == axis).sum())} along {AXES[axis]}" for axis in range(3)),
         f"{_count(len(scene.intersections), 'crossing')}: {real} real, {len(scene.intersections) - real} fake",
@@ -88,7 +89,10 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
     weak = int((lines.confidence == "weak").sum())
     if weak:
         facts.append(f"{_count(weak, 'line')} weak: dashed, pale")
-    canvas.text(_MARGIN, _MARGIN + 88, "   ·   ".join(map(drawable, facts)), _TEXT, _QUIET)
+    text = "   ·   ".join(map(drawable, facts))
+    # A long line is written smaller and not cut off at the border of the picture.
+    size = min(_TEXT, int(_TEXT * (canvas.width - 2 * _MARGIN) / text_width(text, _TEXT)))
+    canvas.text(_MARGIN, _MARGIN + 88, text, size, _QUIET)
 
 
 def _count(number: int, one: str, many: str = "") -> str:

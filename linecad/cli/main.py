@@ -6,6 +6,7 @@ stderr), 2 wrong usage. argparse, because it costs nothing to load: `--help` ans
 
 import argparse
 import importlib.util
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -22,8 +23,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         check_packages()
         code: int = parsed.run(parsed)
+        sys.stdout.flush()
     except LinecadError as error:
         print(f"linecad: {error}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:
+        # Who reads the output has seen enough, as in `linecad options | head`; Python would complain again at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except KeyboardInterrupt:
         print("linecad: interrupted; a file that was not written yet is as it was before", file=sys.stderr)

@@ -9,7 +9,7 @@ from exporters.formats import export
 from exporters.picture import faces as picture_faces
 from exporters.picture import scene as picture
 from exporters.picture import views as picture_views
-from exporters.picture.canvas import Canvas, drawable
+from exporters.picture.canvas import Canvas, drawable, text_width
 from linecad.scene import Camera, Intersections
 
 GREY = (0.5, 0.5, 0.5)
@@ -134,6 +134,15 @@ def test_the_title_counts(scene):
     real = int(scene.intersections.real.sum())
     assert f"{len(scene.intersections)} crossings: {real} real, {len(scene.intersections) - real} fake" in facts
     assert "26 along x, 6 along y, 28 along z" in facts
+
+
+def test_long_facts_end_before_the_border_and_a_gap_that_nothing_proves_is_unknown(scene):
+    unproven = replace(scene.solve, solver="graduated non-convexity", status="robust fit", bound=np.inf, gap=np.inf)
+    canvas = Canvas(1500, 300, GREY)
+    picture._draw_title(canvas, replace(scene, solve=unproven))
+    facts = canvas.texts[-1]
+    assert "gap unknown" in facts.text
+    assert facts.x + text_width(facts.text, facts.size) < 1500
 
 
 def test_the_font_has_what_is_drawn():

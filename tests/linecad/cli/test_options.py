@@ -1,6 +1,9 @@
 """Options as KEY=VALUE: listed by one command, read by all, refused before the work."""
 
 import re
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
@@ -8,6 +11,7 @@ from exporters.formats import FORMATS
 from linecad.cli.main import main
 from linecad.options import SWITCHES
 
+ROOT = Path(__file__).resolve().parents[3]
 BAD = [
     ("seed=1.5", "option seed is '1.5', expected a whole number from 0 to 2147483647"),
     ("seed=2147483648", "expected a whole number from 0 to 2147483647"),
@@ -56,3 +60,11 @@ def test_all_options_are_listed(capsys):
     for switch in (*SWITCHES, *of_formats):
         assert f"{switch.accepted} (default: {switch.usual})" in text
     assert "tubes .glb: lines as thin tubes" in text
+
+
+def test_a_reader_that_has_seen_enough_ends_the_list_in_silence():
+    command = [sys.executable, "-m", "linecad", "options"]
+    with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        running.stdout.close()
+        assert running.stderr.read() == b""
+    assert running.returncode == 1
