@@ -28,13 +28,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"linecad: {error}", file=sys.stderr)
         return 1
     except BrokenPipeError:
-        # Who reads the output has seen enough, as in `linecad options | head`; Python would complain again at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if not _is_cut_off():
+            raise  # another pipe than the output's: a fault of ours
         return 1
     except KeyboardInterrupt:
         print("linecad: interrupted; a file that was not written yet is as it was before", file=sys.stderr)
         return 1
     return code
+
+
+def _is_cut_off() -> bool:
+    """Whether who reads the output has seen enough, as in `linecad options | head`; then the rest goes nowhere."""
+    try:
+        print(flush=True)  # only another write tells
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # Python would complain again at exit
+        return True
+    return False
 
 
 def check_packages() -> None:

@@ -110,9 +110,10 @@ def _joins(
     fit = RobustFit(graph)
     fits = resample(graph, lambda present: fit.depths(present=present), options.solve.seed)
     stable = find_stable_bodies(graph, agrees, solution.log_depth, fits, is_inconsistent)
-    reason = np.where(stable.bodies.merged(sure).joins(graph), may, "unstable")
+    merged = stable.bodies.merged(sure)
+    reason = np.where(merged.joins(graph), may, "unstable")
     if not is_inconsistent:
-        return _Joins(stable.bodies.merged(sure), stable.firm, reason, STABILITY)
+        return _Joins(merged, stable.firm, reason, STABILITY)
     blocks = find_blocks(graph, agrees & stable.bodies.joins(graph))
     bodies = blocks.merged(sure)
     reason = np.where(bodies.joins(graph), may, np.where(reason == "", "loose", reason))

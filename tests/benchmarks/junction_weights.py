@@ -208,9 +208,7 @@ def count_kinds(photos: Iterable[Surveyed], extension: float) -> Counts:
     """Real, fake and undecided crossings (3,) by kind and corner."""
     counts = {key: np.zeros(3, np.int64) for key in product(KINDS, (False, True))}
     for photo in photos:
-        graph = build_line_graph(
-            photo.segments, photo.camera, photo.frame, replace(SHORT_REACH, extension=extension), "ones"
-        )
+        graph = build_line_graph(photo.segments, photo.camera, photo.frame, _reach(extension), "ones")
         judged = judge(graph, photo)
         for (kind, corner), count in counts.items():
             members = (graph.kind == kind) & (graph.corner == corner) & graph.possible
@@ -318,9 +316,7 @@ class Judged:
 
 def judged(photo: Surveyed, extension: float) -> Judged:
     """The part of a photo that the pipeline solves with --largest-component."""
-    whole = build_line_graph(
-        photo.segments, photo.camera, photo.frame, replace(SHORT_REACH, extension=extension), "ones"
-    )
+    whole = build_line_graph(photo.segments, photo.camera, photo.frame, _reach(extension), "ones")
     graph = whole.subset(components(whole)[0])
     real, fake, _ = judge(graph, photo)
     return Judged(photo.name, graph, real, fake)

@@ -138,3 +138,12 @@ def test_a_file_that_hides_a_package_is_named(folder, name):
     assert len(ended.stderr.splitlines()) == 1
     assert str((folder / f"{name}.py").resolve()) in ended.stderr
     assert [path.name for path in folder.iterdir() if path.name != "__pycache__"] == [f"{name}.py"]
+
+
+def test_a_broken_pipe_that_is_not_the_outputs_is_not_hidden(monkeypatch):
+    def broken(_parsed):
+        raise BrokenPipeError
+
+    monkeypatch.setattr("linecad.cli.options.run", broken)
+    with pytest.raises(BrokenPipeError):
+        main(["options"])
