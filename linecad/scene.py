@@ -105,6 +105,8 @@ class Lines:
     is_boundary: Bool  # (N,) at the meeting of two planes
     component: Int  # (N,) 0 is the largest; each component has its own scale
     confidence: Text  # (N,) proven, supported, weak
+    # (N,) 0 to 1, that the depth relative to component 0 is right within 5 %; (0,) in scenes that do not tell
+    probability: Float | tuple[()] = ()
 
     def __post_init__(self) -> None:
         for name in ("id", "axis", "component"):
@@ -113,12 +115,17 @@ class Lines:
         freeze(self, "ends", np.float64, (None, 2, 3))
         freeze(self, "is_boundary", np.bool_, (None,))
         freeze(self, "confidence", np.str_, (None,))
+        freeze(self, "probability", np.float64, (None,))
         check_lengths(self, len(self.id), ["axis", "segment", "ends", "is_boundary", "component", "confidence"])
+        if len(self.probability):
+            check_lengths(self, len(self.id), ["probability"])
         check_not_negative(self, ["id", "component"])
         check_words(self, "confidence", CONFIDENCES)
         check_unique("Lines", self.id.tolist())
         if len(self.axis) and not (self.axis.min() >= 0 and self.axis.max() <= 2):
             raise ValueError("Lines.axis holds a number outside 0, 1, 2")
+        if len(self.probability) and not (min(self.probability) >= 0 and max(self.probability) <= 1):
+            raise ValueError("Lines.probability holds a number outside 0 to 1")
 
     def __len__(self) -> int:
         return len(self.id)

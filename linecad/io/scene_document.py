@@ -66,6 +66,7 @@ def _line_records(lines: Lines) -> list[dict[str, object]]:
             "boundary": bool(lines.is_boundary[row]),
             "component": int(lines.component[row]),
             "confidence": str(lines.confidence[row]),
+            **({"probability": float(lines.probability[row])} if len(lines.probability) else {}),
         }
         for row in range(len(lines))
     ]

@@ -127,7 +127,22 @@ def _lines(nodes: list[Node]) -> Lines:
         is_boundary=np.array([node["boundary"].boolean() for node in nodes], bool),
         component=np.array([node["component"].integer() for node in nodes], np.int64),
         confidence=np.array([node["confidence"].one_of(CONFIDENCES) for node in nodes], str),
+        probability=_probabilities(nodes),
     )
+
+
+def _probabilities(nodes: list[Node]) -> Float:
+    """Of all lines, or of none where the first tells none."""
+    if not nodes or nodes[0].get("probability") is None:
+        for node in nodes:
+            if node.get("probability") is not None:
+                raise JsonError(f"{node.place} has a probability, {nodes[0].place} has none: all have one or none has")
+        return np.zeros(0)
+    told = [node["probability"] for node in nodes]
+    for node in told:
+        if not 0 <= node.number() <= 1:
+            raise node.wrong("a number from 0 to 1")
+    return np.array([node.number() for node in told])
 
 
 def _intersections(nodes: list[Node], known: set[int]) -> Intersections:

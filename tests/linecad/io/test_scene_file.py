@@ -124,6 +124,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             is_boundary=several(n, st.booleans()),
             component=several(n, ids),
             confidence=several(n, st.sampled_from(CONFIDENCES)),
+            probability=several(n, st.floats(0, 1)) if draw(st.booleans()) else (),
         ),
         intersections=Intersections(
             lines=several(m, st.lists(st.sampled_from(line_ids if m else [0, 1]), min_size=2, max_size=2, unique=True)),
