@@ -62,7 +62,7 @@ def run(parsed: argparse.Namespace) -> int:
         pictures=parsed.report is not None,
     )
     dataset = find_dataset(parsed.dataset)
-    check_kept(outputs, [file for case in dataset.cases for file in (case.photo, case.truth)])
+    check_kept(outputs, [file for case in dataset.cases for file in case.files])
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage(f"measuring {len(dataset.cases[: parsed.limit])} photos of {dataset.name}")
         results = evaluate(

@@ -14,6 +14,7 @@ Kind = Literal["made", "york", "york-json", "points", "lines", "labels"]
 
 YORK_CAMERA = "cameraParameters.mat"
 YORK_LINES = "LinesAndVP.mat"
+TRUTH_SUFFIX = ".truth"  # of the name of a file, before .json: its camera file and photo have the name without it
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".JPG", ".JPEG", ".PNG")
 FILE_LIMIT = 100_000_000  # bytes
 LABELS_FORMAT = "linecad-labels"
@@ -31,6 +32,12 @@ class Case:
     kind: Kind
     photo: Path
     truth: Path  # a file, or the folder of a made photo or of one of York Urban
+    camera: Path | None = None  # a camera file beside the truth, whose pixels are then those of the undistorted photo
+
+    @property
+    def files(self) -> list[Path]:
+        """Everything that is read."""
+        return [path for path in (self.photo, self.truth, self.camera) if path is not None]
 
 
 @dataclass(frozen=True)
@@ -87,8 +94,13 @@ def _by_json(folder: Path) -> Iterable[Case]:
         kind = _kind_of(read_json(path))
         if kind is None:
             continue  # a camera file, a scene
-        photo = _labelled_photo(path) if kind == "labels" else _photo(path.with_suffix(""))
-        yield Case(path.stem, kind, photo, path)
+        name = path.stem.removesuffix(TRUTH_SUFFIX)
+        if kind == "labels":
+            yield Case(path.stem, kind, _labelled_photo(path), path)
+        elif name != path.stem:
+            yield Case(name, kind, _photo(path.with_name(name)), path, path.with_name(f"{name}.json"))
+        else:
+            yield Case(name, kind, _photo(path.with_name(name)), path)
 
 
 def _kind_of(top: Node) -> Kind | None:

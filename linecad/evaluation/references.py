@@ -258,7 +258,12 @@ def _rotation(top: Node) -> Float | None:
 
 
 def _read_with_points(case: Case, pixels: Float) -> tuple[Photo, Float]:
-    """The undistorted photo, its truth file being the camera file, and where pixels (M, 2) of the old one lie in it."""
+    """The undistorted photo, and where pixels (M, 2) of the truth lie in it.
+
+    Without a camera file the truth is one, and its pixels are those of the photo as taken.
+    """
+    if case.camera is not None:
+        return read_photo(case.photo, case.camera), pixels
     photo = read_photo(case.photo, case.truth)
     calibration = read_calibration(case.truth)
     straight = undistort_points(pixels, calibration.matrix, calibration.distortion, calibration.square_matrix)
