@@ -41,3 +41,8 @@ def mean(values: Sequence[float | None]) -> Estimate | None:
     """The mean of the values that there are, with its interval."""
     known = [value for value in values if value is not None]
     return ratio_of_sums(known, [1.0] * len(known))
+
+
+def exact(value: float) -> Estimate:
+    """A figure that does not hang on which photos were taken, such as that of one photo: its interval has no width."""
+    return Estimate(value, value, value, 1)

@@ -5,24 +5,26 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from linecad.arrays import Bool, Float
+from linecad.arrays import Bool, Float, Int
 from linecad.geometry import segment_coordinates, world_rays
 from linecad.scene import Face, Plane, Scene
 
 REACH = 4.0  # px between a surveyed point and the line that is taken to show it
+LEAST_POINTS = 3  # for a median to be a scale: one point, or two, would always be right by their own
+NO_LINE = -1
 
 
 @dataclass(frozen=True)
 class DepthScore:
-    """Depth of lines against surveyed points, after one scale for the whole photo; shares from 0 to 1."""
+    """Depths against surveyed points, after one scale for the whole photo; shares from 0 to 1."""
 
-    points: int  # surveyed points on Manhattan segments
-    with_depth: int  # of them, those within REACH of a reconstructed line
+    points: int  # surveyed ones
+    with_depth: int  # of them, those that got a depth
     recall_2: float  # share of all points with a depth within 2 %
     recall_5: float
     precision_2: float  # the same share of the points that got a depth
     precision_5: float
-    scale: float = 1.0  # found over true depth, the median
+    scale: float | None  # found over true depth; None where nothing tells it, and then nothing counts as right
 
 
 def score_depth(scene: Scene, pixels: Float, depth: Float, lines: Bool | None = None) -> DepthScore:
@@ -37,27 +39,30 @@ def score_depth(scene: Scene, pixels: Float, depth: Float, lines: Bool | None = 
 def score(found: Float, depth: Float, scale: float | None = None) -> DepthScore:
     """Score found depths (M,), NaN for none, against true ones (M,); the scale is the median ratio, or given."""
     has = np.isfinite(found) & (found > 0)
-    if not has.any():
-        return DepthScore(len(found), 0, 0.0, 0.0, 0.0, 0.0, 1.0 if scale is None else scale)
+    total, count = len(found), int(has.sum())
     ratio = found[has] / depth[has]
-    scale = float(np.median(ratio)) if scale is None else scale
+    if scale is None and count >= LEAST_POINTS:
+        scale = float(np.median(ratio))
+    if scale is None or count == 0:
+        return DepthScore(total, count, 0.0, 0.0, 0.0, 0.0, scale)
     error = np.abs(ratio / scale - 1)
     good_2, good_5 = int((error < 0.02).sum()), int((error < 0.05).sum())
-    total, count = len(found), int(has.sum())
     return DepthScore(total, count, good_2 / total, good_5 / total, good_2 / count, good_5 / count, scale)
 
 
-def score_dense(scene: Scene, pixels: Float, depth: Float, scale: float) -> DepthScore:
-    """Score lines and faces together at any pixels (M, 2): a line within REACH, else the nearest face on the ray.
+def dense_depths(scene: Scene, pixels: Float, lines: Bool | None = None) -> Float:
+    """Camera depth (M,) at pixels (M, 2) of a line within REACH, else of the nearest face on the ray, else NaN.
 
-    Only component 0 counts, since the others have no scale; `scale` is that of its lines.
+    With `lines` (N,) only those count, and the faces of planes that hold one of them.
     """
-    own = scene.lines.component == 0
-    found = line_depths(scene, pixels, own)
+    found = line_depths(scene, pixels, np.ones(len(scene.lines), bool) if lines is None else lines)
+    faces = scene.faces
+    if lines is not None:
+        ids = set(scene.lines.id[lines].tolist())
+        faces = [pair for pair in faces if ids & set(pair[0].lines)]
     bare = ~np.isfinite(found)
-    ids = set(scene.lines.id[own].tolist())
-    found[bare] = face_depths(scene, pixels[bare], [pair for pair in scene.faces if ids & set(pair[0].lines)])
-    return score(found, depth, scale)
+    found[bare] = face_depths(scene, pixels[bare], faces)
+    return found
 
 
 def face_depths(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> Float:
@@ -77,19 +82,30 @@ def face_depths(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) ->
 
 def line_depths(scene: Scene, pixels: Float, lines: Bool) -> Float:
     """Camera depth (M,) at pixels (M, 2) of the nearest of `lines` (N,) within REACH, else NaN."""
+    return depths_of(scene, pixels, nearest_lines(scene, pixels, lines))
+
+
+def nearest_lines(scene: Scene, pixels: Float, lines: Bool) -> Int:
+    """Which of `lines` (N,) is nearest to each pixel (M, 2) within REACH: its row (M,), NO_LINE for none."""
     nearest = np.full(len(pixels), REACH)
-    found = np.full(len(pixels), np.nan)
-    rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
+    which = np.full(len(pixels), NO_LINE)
     for line in np.flatnonzero(lines):
         start, end = segment = scene.lines.segment[line]
         place, beside = segment_coordinates(pixels, segment)
         distance = np.abs(beside)
         hit = (place >= 0) & (place <= np.linalg.norm(end - start)) & (distance < nearest)
-        if not hit.any():
-            continue
-        across = np.delete(np.arange(3), scene.lines.axis[line])
-        fixed = scene.lines.ends[line, 0, across]
-        ray = rays[hit][:, across]
-        found[hit] = (ray @ fixed) / (ray**2).sum(axis=1)
+        which[hit] = line
         nearest[hit] = distance[hit]
+    return which
+
+
+def depths_of(scene: Scene, pixels: Float, which: Int) -> Float:
+    """Camera depth (M,) at which the ray of each pixel (M, 2) passes nearest to line `which` (M,); NaN for NO_LINE."""
+    has = which != NO_LINE
+    line = which[has]
+    across = np.array([np.delete(np.arange(3), axis) for axis in range(3)])[scene.lines.axis[line]]
+    fixed = np.take_along_axis(scene.lines.ends[line, 0], across, axis=1)
+    ray = np.take_along_axis(world_rays(pixels[has], scene.camera.matrix, scene.rotation), across, axis=1)
+    found = np.full(len(pixels), np.nan)
+    found[has] = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
     return found

@@ -77,10 +77,13 @@ def cells_of(table: Table, row: Row) -> list[str]:
 
 
 def shown(cell: Estimate | None, unit: str) -> str:
-    """A figure with its interval, percentages with one digit."""
+    """A figure with its interval, if that has a width; percentages with one digit, whole numbers with none."""
     if cell is None:
         return NOTHING
+    exact = cell.low == cell.high
     if unit == "%":
-        return f"{100 * cell.value:.1f} ({100 * cell.low:.1f} to {100 * cell.high:.1f})"
-    digits = 2 if abs(cell.value) < 100 else 0
-    return f"{cell.value:.{digits}f} ({cell.low:.{digits}f} to {cell.high:.{digits}f})"
+        factor, digits = 100, 1
+    else:
+        factor, digits = 1, 0 if abs(cell.value) >= 100 or (exact and cell.value.is_integer()) else 2
+    value, low, high = (f"{factor * each:.{digits}f}" for each in (cell.value, cell.low, cell.high))
+    return value if exact else f"{value} ({low} to {high})"

@@ -102,7 +102,7 @@ def judge_crossings(truth: Truth, graph: LineGraph, lines: TrueLines) -> Int:
 def depths_at_crossings(truth: Truth, graph: LineGraph, lines: TrueLines) -> Float:
     """(2, E) camera depths, m, at which the ray of each crossing passes nearest to its two true lines; NaN without."""
     rays = truth.rays(graph.crossing)
-    return np.stack([_depth_on(rays, lines.point[n], lines.direction[n]) for n in graph.edges.T])
+    return np.stack([depth_on(rays, lines.point[n], lines.direction[n]) for n in graph.edges.T])
 
 
 def _edge_of(truth: Truth, along: Float, ends: Float) -> int:
@@ -171,7 +171,7 @@ def _lift(truth: Truth, ends: Float, quad: int, normal: Float, axis: int) -> tup
     return point, along / np.linalg.norm(along)
 
 
-def _depth_on(rays: Float, point: Float, direction: Float) -> Float:
+def depth_on(rays: Float, point: Float, direction: Float) -> Float:
     """Camera depth (N,) at which rays (N, 3) of depth 1 pass nearest to lines; NaN for a ray along its line."""
     along = (rays * direction).sum(axis=1)
     squared = (rays**2).sum(axis=1)

@@ -12,13 +12,14 @@ from linecad.camera.photo import Photo
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
-from linecad.evaluation.depth import DepthScore, score_dense, score_depth
 from linecad.evaluation.frames import nearest_axes, true_axes
+from linecad.evaluation.gallery import draw_places
 from linecad.evaluation.labels import FAKE, REAL
 from linecad.evaluation.methods import ROWS, Run, Settings, proven_gap, run_method
 from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
+from linecad.evaluation.scopes import SceneScore, score_scene
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.geometry import angle_between_frames
 from linecad.line_graph import Formulation, LineGraph
@@ -52,10 +53,8 @@ class WholeResult:
     gap: float | None  # None: nothing was proven
     decisions: Decisions | None  # the final ones, as in the scene; None where no crossing has a label
     rotation_error: float | None  # degrees
-    edges: DepthScore | None  # component 0 alone
-    edges_with_weak: DepthScore | None  # all components
-    dense: DepthScore | None
-    plane_score: PlaneScore | None
+    depth: SceneScore | None
+    plane_score: PlaneScore | None  # of component 0
     marked: MarkedScore | None
 
 
@@ -81,11 +80,12 @@ class PhotoResult:
     methods: dict[Formulation, dict[str, Run]] = field(default_factory=dict)  # by formulation, by row of table 1
     whole: WholeResult | None = None
     picture: Picture | None = None
+    places: str | None = None  # SVG of the gallery
 
     def document(self) -> dict[str, Any]:
-        """The record as JSON, without the picture."""
+        """The record as JSON, without the pictures."""
         values = asdict(self)
-        del values["picture"]
+        del values["picture"], values["places"]
         return values
 
 
@@ -115,19 +115,19 @@ def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -
                 }
                 for formulation in settings.formulations
             }
-    whole, picture = _whole(photo, found, reference, settings)
-    return PhotoResult(name, None, statistics, methods, whole, picture)
+    whole, picture, places = _whole(photo, found, reference, settings)
+    return PhotoResult(name, None, statistics, methods, whole, picture, places)
 
 
 def _whole(
     photo: Photo, found: FoundLines, reference: Reference, settings: Settings
-) -> tuple[WholeResult, Picture | None]:
+) -> tuple[WholeResult, Picture | None, str | None]:
     made = reconstruct_lines(photo.name, found, settings.reconstruction)
     graph, solution, scene = made.graph, made.solution, made.scene
     label = reference.label(graph, found.camera, found.frame.rotation)
     length = float(made.whole.segments.length.sum())
-    edges = reference.edges
-    largest = _score(reference, scene, scene.lines.component == 0)
+    depth = None if reference.edges is None else score_scene(scene, reference.edges, reference.dense)
+    scale = None if depth is None else depth.component_0.lines.scale
     result = WholeResult(
         lines=len(scene.lines),
         planes=len(scene.planes),
@@ -138,26 +138,14 @@ def _whole(
         if reference.has_labels
         else None,
         rotation_error=_rotation_error(reference, scene),
-        edges=largest,
-        edges_with_weak=None if edges is None else score_depth(scene, edges.pixels, edges.depth),
-        dense=(
-            None
-            if reference.dense is None or largest is None or not largest.with_depth
-            else score_dense(scene, reference.dense.pixels, reference.dense.depth, largest.scale)
-        ),
-        plane_score=(
-            None
-            if reference.truth is None or largest is None or not largest.with_depth
-            else score_planes(scene, reference.truth, largest.scale)
-        ),
+        depth=depth,
+        plane_score=None if reference.truth is None or scale is None else score_planes(scene, reference.truth, scale),
         marked=None if reference.lines is None else _marked(reference, reference.lines, scene),
     )
-    return result, _picture(photo, graph, made.decision.real, label) if settings.pictures else None
-
-
-def _score(reference: Reference, scene: Scene, lines: Bool) -> DepthScore | None:
-    edges = reference.edges
-    return None if edges is None else score_depth(scene, edges.pixels, edges.depth, lines)
+    if not settings.pictures:
+        return result, None, None
+    places = None if scale is None else draw_places(scene, reference, scale)
+    return result, _picture(photo, graph, made.decision.real, label), places
 
 
 def _rotation_error(reference: Reference, scene: Scene) -> float | None:

@@ -4,15 +4,14 @@ from collections.abc import Sequence
 from html import escape
 from pathlib import Path
 
-from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.document import cells_of, summary
-from linecad.evaluation.measure import PhotoResult, Picture
-from linecad.evaluation.tables import Table
+from linecad.evaluation.measure import PhotoResult, Picture, WholeResult
+from linecad.evaluation.plots import draw_bars, draw_calibration
+from linecad.evaluation.tables import CALIBRATION, Table
 from linecad.io import html
 from linecad.io.files import write_text_atomically
 
 WORST = 10  # photos that are shown
-BAR_WIDTH, BAR_HEIGHT, LABEL_WIDTH = 420, 18, 150  # px
 STYLE = """\
 body { margin: 2em auto; max-width: 62em; padding: 0 1em; }
 table { border-collapse: collapse; margin: .8em 0; }
@@ -35,10 +34,13 @@ def page(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) 
     parts = [f"<h1>{escape(dataset)}</h1><p>{escape(summary(results))}</p>"]
     for table in tables:
         parts += [f"<h2>{escape(table.title)}</h2>", f'<p class="quiet">{escape(table.note)}</p>', _table(table)]
-        if table.columns[0].unit == "%":
-            parts.append(_plot(table, 0))
+        if table.title == CALIBRATION:
+            parts.append(draw_calibration(table))
+        elif table.columns[0].unit == "%":
+            parts.append(draw_bars(table, 0))
         else:
-            parts += [_plot(part, 0) for part in [_shares(table)] if part.rows]
+            shares = _shares(table)
+            parts += [draw_bars(shares, column) for column in range(len(table.columns)) if shares.rows]
     chosen = worst(results)
     if chosen:
         parts.append(f"<h2>The worst {len(chosen)} photos</h2>")
@@ -47,19 +49,29 @@ def page(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) 
             "fake (magenta), and real ones that were given up (yellow).</p>"
         )
         parts += [_photo(result) for result in chosen]
+    misplaced = worst_depths(results)
+    if misplaced:
+        parts.append(f"<h2>Found and true places, the worst {len(misplaced)} photos</h2>")
+        parts.append(
+            '<p class="quiet">Lines seen from where the camera was not: left as found, right the same lines at their '
+            "true depth. Green: right within 5 % by the scale of component 0; red: wrong; grey: the true place is not "
+            "known, left alone. The plan from above, and a parallel view, turned by 35 degrees and falling by 20. "
+            "Blue: the camera and the borders of its view.</p>"
+        )
+        parts += [_places(result) for result in misplaced]
     return html.page(f"{dataset}: evaluation", STYLE, parts)
 
 
 def badness(result: PhotoResult) -> float | None:
-    """1 - F1 of the crossings where they have labels, else 1 - depth recall at 5 %, else the rotation error."""
+    """1 - F1 of the crossings where they have labels, else 1 - depth recall of all lines, else the rotation error."""
     whole = result.whole
     if whole is None:
         return None
     d = whole.decisions
     if d is not None and d.chosen_real + d.chosen_fake + d.missed_real:
         return 1 - 2 * d.chosen_real / (2 * d.chosen_real + d.chosen_fake + d.missed_real)
-    if whole.edges is not None:
-        return 1 - whole.edges.recall_5
+    if whole.depth is not None:
+        return 1 - whole.depth.everything.lines.recall_5
     return whole.rotation_error
 
 
@@ -68,6 +80,12 @@ def worst(results: Sequence[PhotoResult]) -> list[PhotoResult]:
     ranked = [(bad, index) for index, result in enumerate(results) if (bad := badness(result)) is not None]
     ranked.sort(key=lambda pair: (-pair[0], pair[1]))
     return [results[index] for _, index in ranked if results[index].picture is not None][:WORST]
+
+
+def worst_depths(results: Sequence[PhotoResult]) -> list[PhotoResult]:
+    """The photos with found and true places whose lines, all that are in the file, have the lowest recall of depth."""
+    shown = [(each.whole.depth, each) for each in results if each.places and each.whole and each.whole.depth]
+    return [result for _, result in sorted(shown, key=lambda pair: pair[0].everything.lines.recall_5)][:WORST]
 
 
 def _table(table: Table) -> str:
@@ -84,37 +102,6 @@ def _shares(table: Table) -> Table:
     return Table(table.title, table.note, table.columns, tuple(row for row in table.rows if row.unit == "%"))
 
 
-def _plot(table: Table, column: int) -> str:
-    """Bars with intervals for one column of shares, as SVG."""
-    width, height = LABEL_WIDTH * 2 + BAR_WIDTH, BAR_HEIGHT * (len(table.rows) + 1)
-    lines = [
-        f'<figure><svg viewBox="0 0 {width} {height}" width="{width}" role="img" font-size="12">',
-        f"<title>{escape(table.title)}: {escape(table.columns[column].name)}</title>",
-    ]
-    left = 2 * LABEL_WIDTH - 50
-    for tick in range(0, 101, 20):
-        x = left + BAR_WIDTH * tick / 100
-        lines.append(f'<line x1="{x}" x2="{x}" y1="0" y2="{height - BAR_HEIGHT}" stroke="#ddd"/>')
-        lines.append(f'<text x="{x}" y="{height - 4}" text-anchor="middle" fill="#555">{tick} %</text>')
-    for index, row in enumerate(table.rows):
-        y = index * BAR_HEIGHT
-        lines.append(f'<text x="{left - 6}" y="{y + 13}" text-anchor="end">{escape(row.name)}</text>')
-        cell = row.cells[column]
-        if cell is not None:
-            lines += _bar(cell, left, y)
-    return "\n".join([*lines, "</svg></figure>"])
-
-
-def _bar(cell: Estimate, left: float, y: float) -> list[str]:
-    length, low, high = (BAR_WIDTH * min(max(share, 0.0), 1.0) for share in (cell.value, cell.low, cell.high))
-    middle = y + BAR_HEIGHT / 2
-    return [
-        f'<rect x="{left}" y="{y + 3}" width="{length:.1f}" height="{BAR_HEIGHT - 6}" fill="#7fa8d9"/>',
-        f'<line x1="{left + low:.1f}" x2="{left + high:.1f}" y1="{middle}" y2="{middle}" stroke="#222" '
-        'stroke-width="2"/>',
-    ]
-
-
 def _photo(result: PhotoResult) -> str:
     assert result.picture is not None  # `worst` chose it
     assert result.whole is not None
@@ -123,14 +110,26 @@ def _photo(result: PhotoResult) -> str:
     if whole.decisions is not None:
         d = whole.decisions
         facts.append(f"{d.chosen_fake} fake crossings taken, {d.missed_real} real ones given up, {d.chosen_real} right")
-    if whole.edges is not None:
-        facts.append(f"depth at 5 %: recall {whole.edges.recall_5:.0%}, precision {whole.edges.precision_5:.0%}")
+    facts += _depths(whole)
     if whole.rotation_error is not None:
         facts.append(f"rotation error {whole.rotation_error:.2f} degrees")
     return (
         f"<figure>{_overlay(result.picture)}<figcaption><b>{escape(result.name)}</b>: {escape('; '.join(facts))}"
         "</figcaption></figure>"
     )
+
+
+def _places(result: PhotoResult) -> str:
+    assert result.whole is not None  # `worst_depths` chose it
+    facts = escape("; ".join(_depths(result.whole)))
+    return f"<figure>{result.places}<figcaption><b>{escape(result.name)}</b>: {facts}</figcaption></figure>"
+
+
+def _depths(whole: WholeResult) -> list[str]:
+    if whole.depth is None:
+        return []
+    scopes = (("everything", whole.depth.everything.lines), ("component 0", whole.depth.component_0.lines))
+    return [f"{name} at 5 %: recall {score.recall_5:.0%}, precision {score.precision_5:.0%}" for name, score in scopes]
 
 
 def _overlay(picture: Picture) -> str:

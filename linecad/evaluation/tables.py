@@ -1,15 +1,19 @@
 """The results of all photos as tables: the paper's two, and the measures of the default settings."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
-from linecad.evaluation.bootstrap import Estimate, mean, ratio_of_sums
+from linecad.evaluation.bootstrap import Estimate, exact, mean, ratio_of_sums
+from linecad.evaluation.calibration import SURE, TENTHS
 from linecad.evaluation.decisions import Decisions
 from linecad.evaluation.depth import DepthScore
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, ROWS, Run, Settings
+from linecad.evaluation.scopes import SceneScore, ScopeScore
 from linecad.line_graph import Formulation
 
+CALIBRATION = "Calibration"  # title
 CHOOSING = ("precision", "recall", "F1")  # columns that only a method that chooses crossings has
 
 
@@ -51,6 +55,11 @@ def all_tables(results: Sequence[PhotoResult], settings: Settings) -> list[Table
         tables.append(table_2(good))
     if any(result.whole for result in good):
         tables.append(measures([result.whole for result in good if result.whole]))
+    scores = {result.name: result.whole.depth for result in good if result.whole and result.whole.depth}
+    if scores:
+        tables.append(depths(list(scores.values())))
+        tables += [calibration(list(scores.values()))] if any(score.calibration for score in scores.values()) else []
+        tables.append(depths_by_photo(scores))
     return tables
 
 
@@ -138,15 +147,6 @@ def measures(wholes: Sequence[WholeResult]) -> Table:
         ("tree: mean accuracy", "%", tree[0]),
         ("tree: normalised accuracy", "%", tree[1]),
         ("tree: share of line length", "%", tree[2]),
-        ("depth recall at 2 %", "%", each(lambda w: w.edges.recall_2 if w.edges else None)),
-        ("depth recall at 5 %", "%", each(lambda w: w.edges.recall_5 if w.edges else None)),
-        ("depth precision at 2 %", "%", each(lambda w: _precision(w.edges, 2))),
-        ("depth precision at 5 %", "%", each(lambda w: _precision(w.edges, 5))),
-        ("depth recall at 5 %, weak lines too", "%", each(_recall_with_weak)),
-        ("dense recall at 2 %", "%", each(lambda w: w.dense.recall_2 if w.dense else None)),
-        ("dense recall at 5 %", "%", each(lambda w: w.dense.recall_5 if w.dense else None)),
-        ("dense precision at 2 %", "%", each(lambda w: _precision(w.dense, 2))),
-        ("dense precision at 5 %", "%", each(lambda w: _precision(w.dense, 5))),
         ("planes: precision", "%", ratio_of_sums([p.right_lines for p in planes], [p.lines for p in planes])),
         ("planes: recall", "%", ratio_of_sums([p.found_pixels for p in planes], [p.pixels for p in planes])),
         ("marked line length covered", "%", ratio_of_sums([m.covered for m in marked], [m.length for m in marked])),
@@ -159,18 +159,75 @@ def measures(wholes: Sequence[WholeResult]) -> Table:
     ]  # fmt: skip
     return Table(
         "Default settings, whole photos",
-        "Formulation gain, collinear edges, all components; depths, faces and planes are those of the largest one.",
+        "Formulation gain, collinear edges, all components; the planes scored are those of component 0.",
         (Column("value", ""),),
         tuple(Row(name, (cell,), unit) for name, unit, cell in rows if cell is not None),
     )
 
 
-def _recall_with_weak(whole: WholeResult) -> float | None:
-    return None if whole.edges_with_weak is None else whole.edges_with_weak.recall_5
+def depths(scores: Sequence[SceneScore]) -> Table:
+    """The measures of depth, the same of everything that is in the file and of component 0."""
+    scopes = [[score.everything for score in scores], [score.component_0 for score in scores]]
+    rows = [(name, tuple(mean([read(score) for score in scope]) for scope in scopes)) for name, read in _DEPTHS.items()]
+    return Table(
+        "Depths",
+        "Means over photos. Everything that is in the file by one scale, the median of all; component 0, and all that "
+        "concerns confidence, by that of component 0.",
+        (Column("everything", ""), Column("component 0", "")),
+        tuple(Row(name, cells, "%") for name, cells in rows if any(cells)),
+    )
 
 
-def _precision(score: DepthScore | None, per_cent: int) -> float | None:
-    """None where no point got a depth: there is nothing that could be wrong."""
-    if score is None or score.with_depth == 0:
+def _of_precision(score: DepthScore | None, per_cent: int) -> float | None:
+    """None where no point got a depth, or none tells the scale: there is nothing that could be wrong."""
+    if score is None or score.with_depth == 0 or score.scale is None:
         return None
     return score.precision_2 if per_cent == 2 else score.precision_5
+
+
+_DEPTHS: dict[str, Callable[[ScopeScore], float | None]] = {
+    "lines: recall at 2 %": lambda scope: scope.lines.recall_2,
+    "lines: recall at 5 %": lambda scope: scope.lines.recall_5,
+    "lines: precision at 2 %": lambda scope: _of_precision(scope.lines, 2),
+    "lines: precision at 5 %": lambda scope: _of_precision(scope.lines, 5),
+    "lines and faces: recall at 2 %": lambda scope: scope.dense.recall_2 if scope.dense else None,
+    "lines and faces: recall at 5 %": lambda scope: scope.dense.recall_5 if scope.dense else None,
+    "lines and faces: precision at 2 %": lambda scope: _of_precision(scope.dense, 2),
+    "lines and faces: precision at 5 %": lambda scope: _of_precision(scope.dense, 5),
+    "area under recall over confidence": lambda scope: scope.confidence.recall_area if scope.confidence else None,
+    "area under precision over recall": lambda scope: scope.confidence.precision_area if scope.confidence else None,
+    f"confidence {SURE}: recall at 5 %": lambda scope: scope.confidence.sure_recall if scope.confidence else None,
+    f"confidence {SURE}: precision at 5 %": lambda scope: scope.confidence.sure_precision if scope.confidence else None,
+}
+
+
+def calibration(scores: Sequence[SceneScore]) -> Table:
+    """Probability as stated and as it is, in tenths, over the points of all photos."""
+    photos = [score.calibration for score in scores if score.calibration]
+    bounds = [0.0, *TENTHS.tolist(), 1.0]
+    rows = []
+    for number, name in enumerate(f"{low:.1f} to {high:.1f}" for low, high in pairwise(bounds)):
+        tenths = [photo[number] for photo in photos]
+        points = [tenth.points for tenth in tenths]
+        stated = ratio_of_sums([tenth.stated for tenth in tenths], points)
+        right = ratio_of_sums([tenth.right for tenth in tenths], points)
+        rows.append(Row(name, (exact(float(sum(points))), stated, right)))
+    return Table(
+        CALIBRATION,
+        "Points on edges by the probability of the line that gives them a depth: how many, the mean of what was "
+        "stated, and the share that is right within 5 % by the scale of component 0.",
+        (Column("points", ""), Column("stated", "%"), Column("right", "%")),
+        tuple(rows),
+    )
+
+
+def depths_by_photo(scores: Mapping[str, SceneScore]) -> Table:
+    """What is measured of the depths at 5 %, photo by photo."""
+    scopes = ("everything", "everything, faces too", "component 0")
+    names = [f"{scope}: {what}" for scope in scopes for what in ("recall", "precision")]
+    rows = []
+    for name, score in scores.items():
+        found = (score.everything.lines, score.everything.dense, score.component_0.lines)
+        cells = [(each.recall_5 if each else None, _of_precision(each, 5)) for each in found]
+        rows.append(Row(name, tuple(None if cell is None else exact(cell) for pair in cells for cell in pair)))
+    return Table("Depths by photo", "At 5 %.", tuple(Column(name, "%") for name in names), tuple(rows))

@@ -14,7 +14,7 @@ from linecad.geometry import project, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.options import SHORT_REACH
-from linecad.scene import Camera
+from linecad.scene import Camera, Intersections, Lines, Scene, SolveReport
 
 BIAS = 1e-3  # of the depth; a quad does not hide its own edges
 
@@ -194,3 +194,25 @@ def labels_folder(made, drawn, tmp_path_factory):
     }  # fmt: skip
     (folder / "boxes.json").write_text(json.dumps(labels))
     return folder
+
+
+@pytest.fixture(scope="session")
+def scene_of():
+    """A function that makes a scene of level lines at given depths; `fields` are those of Lines, such as component."""
+    camera = Camera(1000, 800, np.array([[500.0, 0, 500], [0, 500, 400], [0, 0, 1]]), "file")
+    frontal = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # x right, y away, z up
+
+    def make(depths, **fields):
+        # Each runs across the photo from u = 100 to u = 900, at rows 100, 200, ...
+        count = len(depths)
+        segment = np.array([[[100.0, 100.0 + 100 * i], [900.0, 100.0 + 100 * i]] for i in range(count)])
+        ends = np.array(depths, float)[:, None, None] * world_rays(segment, camera.matrix, frontal)
+        lines = Lines(
+            id=range(count), axis=np.zeros(count), segment=segment, ends=ends, is_boundary=np.zeros(count, bool),
+            component=np.zeros(count), confidence=["proven"] * count,
+        )  # fmt: skip
+        none = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
+        report = SolveReport("none", "paper", "optimal", 0.0, 0.0, 0.0, 0.0)
+        return Scene("a.jpg", camera, frontal, replace(lines, **fields), none, (), report)
+
+    return make

@@ -29,7 +29,8 @@ def test_a_made_dataset_gives_all_tables(made_folder, tmp_path, capsys):
     assert photo["statistics"]["real"] > 20
     assert photo["methods"]["gain"]["none"]["decisions"]["tree_fake"] == 0
     whole = photo["whole"]
-    assert whole["edges"]["precision_5"] > 0.95
+    assert whole["depth"]["component_0"]["lines"]["precision_5"] > 0.95
+    assert whole["depth"]["calibration"] is None  # nobody states a probability here
     assert whole["plane_score"]["right_lines"] == whole["plane_score"]["lines"] > 0
     assert whole["rotation_error"] < 0.2
     printed = capsys.readouterr().out

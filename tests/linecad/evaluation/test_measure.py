@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.datasets import Case, find_dataset
-from linecad.evaluation.depth import face_depths, score_dense, score_depth
+from linecad.evaluation.depth import dense_depths, face_depths, score, score_depth
 from linecad.evaluation.measure import measure, measure_photo
 from linecad.evaluation.methods import BASELINE, GAIN_ROWS, PAPER_ROWS, Settings
 from linecad.evaluation.planes import score_planes
@@ -45,10 +45,13 @@ def test_the_boxes_are_measured_as_right(result):
     assert whole.rotation_error < 0.2
     assert whole.decisions.chosen_real > 50
     assert whole.decisions.chosen_fake <= 2
-    assert whole.edges.precision_2 > 0.98
-    assert whole.edges.recall_5 > 0.3  # one of the two boxes, which nothing ties to the other
-    assert whole.edges_with_weak.with_depth > whole.edges.with_depth
-    assert whole.dense.precision_5 > 0.95
+    largest, everything = whole.depth.component_0, whole.depth.everything
+    assert largest.lines.precision_2 > 0.98
+    assert largest.lines.recall_5 > 0.3  # one of the two boxes, which nothing connects to the other
+    assert everything.lines.with_depth > largest.lines.with_depth
+    assert largest.dense.precision_5 > 0.95
+    assert everything.dense.with_depth > largest.dense.with_depth
+    assert (everything.confidence, largest.confidence, whole.depth.calibration) == (None, None, None)
     assert whole.plane_score.right_lines == whole.plane_score.lines > 10
     assert 0 < whole.plane_score.found_pixels <= whole.plane_score.pixels
     assert whole.marked is None
@@ -83,7 +86,7 @@ def test_nothing_known_is_nothing_measured(drawn):
     result = measure("boxes", drawn, Reference(), replace(SETTINGS, pictures=False))
     assert result.statistics is None
     assert result.methods == {}
-    assert (result.whole.decisions, result.whole.edges, result.whole.rotation_error) == (None, None, None)
+    assert (result.whole.decisions, result.whole.depth, result.whole.rotation_error) == (None, None, None)
     assert result.whole.lines > 20
     assert badness(result) is None
 
@@ -108,6 +111,7 @@ def test_a_missing_photo_is_an_error_in_the_result(tmp_path):
 def test_the_record_is_json_without_pictures(result):
     text = json.dumps(result.document(), allow_nan=False)
     assert "jpeg" not in text
+    assert "svg" not in text
     assert json.loads(text)["whole"]["decisions"]["chosen_real"] == result.whole.decisions.chosen_real
 
 
@@ -134,8 +138,9 @@ def test_faces_tell_the_depth_of_what_they_cover(scene):
 def test_a_wrong_scale_costs_the_dense_recall(scene, made_truth):
     dense = reference_of(made_truth).dense
     scale = true_scale(scene, made_truth)
-    assert score_dense(scene, dense.pixels, dense.depth, scale).recall_5 > 0.3
-    assert score_dense(scene, dense.pixels, dense.depth, scale * 1.2).recall_5 < 0.02
+    found = dense_depths(scene, dense.pixels, scene.lines.component == 0)
+    assert score(found, dense.depth, scale).recall_5 > 0.3
+    assert score(found, dense.depth, scale * 1.2).recall_5 < 0.02
 
 
 def test_planes_at_a_wrong_place_are_wrong(scene, made_truth):
@@ -166,6 +171,8 @@ def test_the_page_shows_the_worst_photos_first_and_needs_nothing_else(result):
     assert "http:" not in text
     assert text.count("data:image/jpeg;base64,") == 10
     assert "Table 1, formulation paper" in text
+    assert text.count("plan, as found") == 10
+    assert f"{result.whole.depth.everything.lines.recall_5:.0%}" in text
 
 
 def test_what_the_picture_marks_is_what_was_decided(result):

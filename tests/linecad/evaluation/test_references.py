@@ -251,6 +251,27 @@ def test_the_label_and_axes_of_a_mark_are_checked(write):
             only(write(document | {"crossings": [good | wrong]}))
 
 
+def test_the_samples_are_a_dataset_by_their_true_pixels():
+    """Their truth was once taken for a photo's own camera file, and the photo looked for under its name."""
+    samples = find_dataset(Path(__file__).parents[3] / "samples")
+    assert [case.name for case in samples.cases] == ["courtyard", "room", "street"]
+    case = samples.cases[0]
+    assert [path.name for path in case.files] == ["courtyard.jpg", "courtyard.truth.json", "courtyard.json"]
+    photo, reference = open_case(case)
+    assert photo.camera.distortion != ()
+    truth = json.loads(case.truth.read_text())
+    # The truth is in the undistorted photo already.
+    assert reference.dense.pixels.tolist() == [row[:2] for row in truth["points"]]
+    assert reference.edges.depth.tolist() == [truth["points"][n][4] for n in truth["on_line"]]
+
+
+def test_a_truth_whose_camera_file_is_missing_is_named(write):
+    folder = write(points_document())
+    (folder / "a.json").rename(folder / "a.truth.json")
+    with pytest.raises(LinecadError, match=r"a\.json"):
+        only(folder)
+
+
 def test_a_folder_without_any_truth(write, tmp_path):
     with pytest.raises(DatasetError, match="no dataset"):
         find_dataset(write({"width": 320, "height": 240, "K": K}))  # a camera file alone

@@ -3,6 +3,7 @@
 import json
 import multiprocessing
 import os
+from pathlib import Path
 
 import pytest
 
@@ -72,6 +73,16 @@ def test_options_reach_the_reconstruction_and_the_record(labels_folder, tmp_path
     assert settings["solve"]["time_limit_s"] is None
     assert document["photos"][0]["whole"]["status"] == "robust fit"
     assert capsys.readouterr().err == ""
+
+
+def test_the_samples_can_be_evaluated(tmp_path, capsys):
+    samples = Path(__file__).parents[3] / "samples"
+    assert main(["evaluate", str(samples), "--fast", "--limit", "1", "--report", str(tmp_path / "a.html")]) == 0
+    out, err = capsys.readouterr()
+    assert "courtyard: measured" in err
+    shown = {line.split(" | ")[0]: line for line in out.splitlines()}
+    assert float(shown["| courtyard"].split("|")[-2]) > 85  # %, precision of component 0
+    assert "plan, as found" in (tmp_path / "a.html").read_text()
 
 
 def test_one_photo_that_fails_does_not_stop_the_others(york_folder, tmp_path, capsys):
