@@ -19,7 +19,7 @@ import linecad.model.build
 from linecad.camera.photo import Photo
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
-from linecad.evaluation.depth import face_depths, line_depths, score, score_depth
+from linecad.evaluation.depth import dense_depths, score, score_depth
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, find_lines
 from linecad.model.body_scales import join_bodies
@@ -73,12 +73,7 @@ def everywhere(scene: Scene, reference: Reference) -> tuple[float, float]:
     """Recall and precision of lines and faces of component 0 over all points of known depth."""
     assert reference.dense is not None
     own = scene.lines.component == 0
-    depth = line_depths(scene, reference.dense.pixels, own)
-    bare = ~np.isfinite(depth)
-    ids = set(scene.lines.id[own].tolist())
-    shown = [pair for pair in scene.faces if ids & set(pair[0].lines)]
-    depth[bare] = face_depths(scene, reference.dense.pixels[bare], shown)
-    found = score(depth, reference.dense.depth)
+    found = score(dense_depths(scene, reference.dense.pixels, own), reference.dense.depth)
     return found.recall_5, found.precision_5 if found.with_depth else np.nan
 
 

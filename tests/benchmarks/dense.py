@@ -25,7 +25,7 @@ from linecad.decide.annotations import annotate
 from linecad.decide.decision import decide
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import find_dataset
-from linecad.evaluation.depth import face_depths, line_depths, score
+from linecad.evaluation.depth import dense_depths, score
 from linecad.evaluation.labels import REAL
 from linecad.evaluation.references import Points, Reference, open_case
 from linecad.finding import connect, find_lines
@@ -106,12 +106,8 @@ def cell(recall: float, precision: float) -> str:
 
 
 def shares(scene: Scene, points: Points, main_only: bool) -> tuple[float, float]:
-    own = scene.lines.component == 0 if main_only else np.ones(len(scene.lines), bool)
-    ids = set(scene.lines.id[own].tolist())
-    depth = line_depths(scene, points.pixels, own)
-    bare = ~np.isfinite(depth)
-    depth[bare] = face_depths(scene, points.pixels[bare], [pair for pair in scene.faces if ids & set(pair[0].lines)])
-    found = score(depth, points.depth)
+    own = scene.lines.component == 0 if main_only else None
+    found = score(dense_depths(scene, points.pixels, own), points.depth)
     return found.recall_5, found.precision_5
 
 

@@ -1,8 +1,9 @@
 """What is right and wrong on photos of known depth, to look at: python tests/benchmarks/gallery.py DATASET... --out DIR
 
-One picture a photo, without the photo's own pixels, so that it may be shown where the photo may not: on the left the
-lines and faces that were found (weak ones pale), on the right the points of known depth: right within 5 %, wrong, or
-without a depth in component 0. Prints a line a photo.
+Pictures without the photo's own pixels, so that they may be shown where the photo may not. DATASET-NAME.png: on the
+left the lines and faces that were found (weak ones pale), on the right the points of known depth: right within 5 %,
+wrong, or without a depth in component 0. DATASET-NAME.svg: the lines from above and from the side, beside their true
+places, as `linecad evaluate --report` shows them. Prints a line a photo.
 """
 
 import argparse
@@ -13,11 +14,13 @@ import numpy as np
 from exporters.colours import line_colour
 from exporters.picture.canvas import Canvas
 from exporters.picture.faces import draw_dashed, draw_faces
-from linecad.arrays import Bool, Float
-from linecad.errors import LinecadError
+from linecad.arrays import Float
+from linecad.errors import DatasetError, LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
-from linecad.evaluation.depth import face_depths, line_depths, score
+from linecad.evaluation.depth import dense_depths, line_depths
+from linecad.evaluation.gallery import draw_places
 from linecad.evaluation.references import Points, open_case
+from linecad.evaluation.scopes import score_scene
 from linecad.options import Options
 from linecad.pipeline import reconstruct
 from linecad.scene import Scene
@@ -27,7 +30,8 @@ WIDTH = 780  # px of each of the two panels
 LINE_WIDTH = 2  # px
 PAPER, INK = (1.0, 1.0, 1.0), (0.15, 0.15, 0.17)
 RIGHT, WRONG, MISSING = (0.05, 0.55, 0.25), (0.85, 0.1, 0.1), (0.78, 0.78, 0.8)
-RADIUS = {"edges": 2.0, "dense": 1.2}  # px of a point
+EDGE_RADIUS, DENSE_RADIUS = 2.0, 1.2  # px of a point
+SVG = "http://www.w3.org/2000/svg"  # a file needs the name, a page does not
 MOST_POINTS = 6000
 TITLE_HEIGHT, TITLE_SIZE = 34, 18  # px
 
@@ -52,36 +56,33 @@ def main() -> None:
 
 
 def show(case: Case, options: Options, path: Path) -> None:
-    """Draw the picture of one photo."""
+    """Draw the pictures of one photo; DatasetError where no depth is known."""
     photo, reference = open_case(case)
+    if reference.edges is None:
+        raise DatasetError("no point of known depth")
     scene = reconstruct(photo, options)
     own = scene.lines.component == 0
+    found = score_scene(scene, reference.edges, reference.dense).component_0
+    # Without a scale no depth of component 0 can be compared: all points are then without a depth.
+    scale = np.nan if found.lines.scale is None else found.lines.scale
     height = round(WIDTH * scene.camera.height / scene.camera.width)
     canvas = Canvas(2 * WIDTH, height + TITLE_HEIGHT, PAPER)
     draw_model(canvas.window(0, TITLE_HEIGHT, WIDTH, height), scene)
-    said = [case.name, f"{len(scene.lines)} lines, {own.sum()} in component 0"]
     panel = canvas.window(WIDTH, TITLE_HEIGHT, WIDTH, height)
-    for kind, points in (("dense", reference.dense), ("edges", reference.edges)):
-        if points is not None:
-            depth = depths(scene, points, own, faces=kind == "dense")
-            found = score(depth, points.depth)
-            said.append(f"{kind}: recall {found.recall_5:.2f}, precision {found.precision_5:.3f}")
-            draw_points(panel, scene, points, depth / found.scale, RADIUS[kind])
+    said = [case.name, f"{len(scene.lines)} lines, {own.sum()} in component 0"]
+    if reference.dense is not None and found.dense is not None:
+        said.append(f"dense: recall {found.dense.recall_5:.2f}, precision {found.dense.precision_5:.3f}")
+        depth = dense_depths(scene, reference.dense.pixels, own) / scale
+        draw_points(panel, scene, reference.dense, depth, DENSE_RADIUS)
+    said.append(f"edges: recall {found.lines.recall_5:.2f}, precision {found.lines.precision_5:.3f}")
+    draw_points(panel, scene, reference.edges, line_depths(scene, reference.edges.pixels, own) / scale, EDGE_RADIUS)
     panel.frame(MISSING)
     canvas.text(10, 24, "   ".join(said), TITLE_SIZE, INK)
     canvas.image().quantize(64).save(path, optimize=True)
+    places = None if found.lines.scale is None else draw_places(scene, reference, found.lines.scale)
+    if places is not None:
+        path.with_suffix(".svg").write_text(places.replace("<svg", f'<svg xmlns="{SVG}"', 1), encoding="utf-8")
     print("   ".join(said), flush=True)
-
-
-def depths(scene: Scene, points: Points, own: Bool, *, faces: bool) -> Float:
-    """Depth (M,) that component 0 gives to each point, NaN for none."""
-    depth = line_depths(scene, points.pixels, own)
-    if faces:
-        bare = ~np.isfinite(depth)
-        ids = set(scene.lines.id[own].tolist())
-        shown = [pair for pair in scene.faces if ids & set(pair[0].lines)]
-        depth[bare] = face_depths(scene, points.pixels[bare], shown)
-    return depth
 
 
 def draw_model(panel: Canvas, scene: Scene) -> None:
