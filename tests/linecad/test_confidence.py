@@ -14,7 +14,7 @@ RING = np.array([[0, 4, 0], [1, 4, 0], [0, 4, 1]])
 
 
 def plane(number, *lines):
-    return Plane(number, 1, 4.0 + number, lines, (Face(number, RING + [0, number, 0]),))
+    return Plane(number, 1, 4.0 + number, lines, (Face(number, RING + np.array([0, number, 0])),))
 
 
 @pytest.fixture
@@ -83,7 +83,7 @@ def test_where_all_are_sure_enough_the_scene_comes_back_as_it_is(scene, least):
 
 def test_a_scene_that_does_not_tell_is_refused(scene):
     silent = replace(scene, lines=replace(scene.lines, probability=()))
-    with pytest.raises(ConfidenceError, match="does not tell how likely .*; leave out --confidence, or convert"):
+    with pytest.raises(ConfidenceError, match=r"does not tell how likely .*; leave out --confidence, or convert"):
         keep_probable(silent, 0.0)
 
 
