@@ -2,21 +2,24 @@
 
 Lines are LINE entities on one layer a group. A face is there twice: as 3DFACE triangles with their inner edges
 hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because many programs ignore 3DFACE. What a
-line or face is stands in the extended data of each entity, under the application name LINECAD. DXF has no place for a
-camera with a principal point; its numbers are custom properties of the document.
+line or face is stands in the extended data of each entity, under the application name LINECAD, for a line with the
+probability that its depth is right, where the scene tells it. DXF has no place for a camera with a principal point;
+its numbers are custom properties of the document.
 """
 
 import contextlib
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import product
 from pathlib import Path
 
 from ezdxf import new, options, units  # type: ignore[attr-defined]  # public, but re-exported without saying so
 from ezdxf.document import Drawing
 from ezdxf.entities.dxfgfx import DXFGraphic
 
+from exporters.bands import BANDS
 from exporters.camera import principal_point
-from exporters.model import FlatFace, LineGroup, Model, build_model
+from exporters.model import FlatFace, LineGroup, Model, build_model, group_name
 from exporters.triangulation import triangulate
 from linecad.scene import AXES, Scene
 
@@ -28,16 +31,16 @@ _COLOUR = {(0, True): 1, (0, False): 11, (1, True): 3, (1, False): 91, (2, True)
 _FACE_COLOUR, _OUTLINE_COLOUR = 254, 8
 _LINEWEIGHT = {True: 35, False: 13}  # hundredths of a millimetre on paper, by boundary
 
-_STRING, _INT16, _INT32 = 1000, 1070, 1071  # group codes of extended data
+_STRING, _REAL, _INT16, _INT32 = 1000, 1040, 1070, 1071  # group codes of extended data
 _LARGEST_INT32 = 2**31 - 1
 _HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the edge between equal corners 2 and 3
 _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 
-def write(scene: Scene, path: Path, version: str = "R2010") -> None:
-    """Write the scene as DXF of that AutoCAD release to `path`; OSError where that fails."""
+def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = True) -> None:
+    """Write the scene as DXF of that AutoCAD release to `path`, its layers by band or not; OSError where that fails."""
     with _fixed_metadata():
-        document = _build_document(scene, version)
+        document = _build_document(build_model(scene, probability), scene, version)
         text = io.StringIO()
         document.write(text)
     path.write_bytes(document.encode(text.getvalue()))
@@ -54,12 +57,11 @@ def _fixed_metadata() -> Iterator[None]:
         options.write_fixed_meta_data_for_testing = before
 
 
-def _build_document(scene: Scene, version: str) -> Drawing:
-    model = build_model(scene)
+def _build_document(model: Model, scene: Scene, version: str) -> Drawing:
     document = new(version, units=units.M)
     document.header["$MEASUREMENT"] = 1  # metric
     document.appids.add(_APPLICATION)
-    _add_layers(document)
+    _add_layers(document, BANDS if any(group.band for group in model.groups) else ("",))
     for group in model.groups:
         _add_lines(document, group)
     for face in model.faces:
@@ -72,24 +74,21 @@ def _build_document(scene: Scene, version: str) -> Drawing:
     return document
 
 
-def _add_layers(document: Drawing) -> None:
-    for (axis, is_boundary), colour in _COLOUR.items():
-        name = _line_layer(axis, is_boundary)
+def _add_layers(document: Drawing, bands: Sequence[str]) -> None:
+    for ((axis, is_boundary), colour), band in product(_COLOUR.items(), bands):
+        name = group_name(axis, is_boundary, band).upper()
         document.layers.add(name, color=colour, lineweight=_LINEWEIGHT[is_boundary])
     document.layers.add(_FACES, color=_FACE_COLOUR)
     document.layers.add(_OUTLINES, color=_OUTLINE_COLOUR)
 
 
-def _line_layer(axis: int, is_boundary: bool) -> str:
-    return f"LINES_{AXES[axis].upper()}_{'BOUNDARY' if is_boundary else 'NONBOUNDARY'}"
-
-
 def _add_lines(document: Drawing, group: LineGroup) -> None:
     space = document.modelspace()
-    layer = _line_layer(group.axis, group.is_boundary)
-    for number, (start, end) in zip(group.ids.tolist(), group.ends.tolist(), strict=True):
-        line = space.add_line(start, end, dxfattribs={"layer": layer})
-        _describe(line, "line", number, (_INT16, int(group.is_boundary)), (_STRING, AXES[group.axis]))
+    kind = ((_INT16, int(group.is_boundary)), (_STRING, AXES[group.axis]))
+    told = [[(_REAL, value)] for value in group.probability.tolist()] or [[]] * len(group.ids)
+    for number, (start, end), more in zip(group.ids.tolist(), group.ends.tolist(), told, strict=True):
+        line = space.add_line(start, end, dxfattribs={"layer": group.name.upper()})
+        _describe(line, "line", number, *kind, *more)
 
 
 def _add_face(document: Drawing, face: FlatFace) -> None:
@@ -118,7 +117,7 @@ def _ring_edges(face: FlatFace) -> set[frozenset[int]]:
     return edges
 
 
-def _describe(entity: DXFGraphic, kind: str, number: int, *more: tuple[int, str | int]) -> None:
+def _describe(entity: DXFGraphic, kind: str, number: int, *more: tuple[int, str | int | float]) -> None:
     """Attach what the entity shows: its kind, the scene's id (as text where 32 bits do not hold it), and more."""
     identity = (_INT32, number) if number <= _LARGEST_INT32 else (_STRING, str(number))
     entity.set_xdata(_APPLICATION, [(_STRING, kind), identity, *more])

@@ -41,6 +41,9 @@ class Format(NamedTuple):
     beside: Beside = NOTHING  # the files that may lie beside an export; where there are any, `write` also takes `names`
 
 
+_BANDS = Option(
+    "probability", True, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
+)
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
 _TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
@@ -53,24 +56,39 @@ _PAGES = Beside(folder=".textures", part=PAGE_NAME)
 _PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl")
 
 FORMATS: dict[str, Format] = {
-    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION,)),
+    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION, _BANDS)),
     ".step": Format(
-        "exporters.step.write", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN,)
+        "exporters.step.write", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN, _BANDS)
     ),
     ".glb": Format(
-        "exporters.gltf.write", "lines, faces, camera for viewers and Blender", "metres", options=(_TUBES, *TEXTURES)
+        "exporters.gltf.write",
+        "lines, faces, camera for viewers and Blender",
+        "metres",
+        options=(_TUBES, _BANDS, *TEXTURES),
     ),
     ".usda": Format(
-        "exporters.usd.write", "a USD stage as text: lines, faces, camera", "metres", options=TEXTURES, beside=_PAGES
+        "exporters.usd.write",
+        "a USD stage as text: lines, faces, camera",
+        "metres",
+        options=(_BANDS, *TEXTURES),
+        beside=_PAGES,
     ),
     ".usdc": Format(
-        "exporters.usd.write", "a USD stage, compact: lines, faces, camera", "metres", options=TEXTURES, beside=_PAGES
+        "exporters.usd.write",
+        "a USD stage, compact: lines, faces, camera",
+        "metres",
+        options=(_BANDS, *TEXTURES),
+        beside=_PAGES,
     ),
     ".usdz": Format(
-        "exporters.usd.write", "a USD stage as a package: lines, faces, camera", "metres", options=TEXTURES
+        "exporters.usd.write", "a USD stage as a package: lines, faces, camera", "metres", options=(_BANDS, *TEXTURES)
     ),
     ".obj": Format(
-        "exporters.obj", "faces as triangles, and lines", "metres", options=TEXTURES, beside=_PAGES_AND_MATERIALS
+        "exporters.obj",
+        "faces as triangles, and lines",
+        "metres",
+        options=(_BANDS, *TEXTURES),
+        beside=_PAGES_AND_MATERIALS,
     ),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres"),
     ".stl": Format("exporters.mesh", "faces as triangles", "metres"),

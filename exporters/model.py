@@ -6,11 +6,13 @@ float32 of glTF and USD.
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 from pathlib import Path
 
 import numpy as np
 
-from linecad.arrays import Float, Int
+from exporters.bands import BANDS, bands_of
+from linecad.arrays import Float, Int, Text
 from linecad.scene import AXES, Face, Plane, Scene
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
@@ -21,17 +23,19 @@ FREE_UNIT = "the scale of the photo is not known: 1 unit of the scene is written
 
 @dataclass(frozen=True, eq=False)
 class LineGroup:
-    """The lines of one axis that are all boundaries, or all not, in ascending id."""
+    """The lines of one axis that are all boundaries, or all not, and may be all in one band, in ascending id."""
 
     axis: int  # 0, 1, 2
     is_boundary: bool
     ids: Int  # (N,)
     ends: Float  # (N, 2, 3) m
+    band: str  # one of BANDS; "" for lines of all bands, or where the scene does not tell
+    probability: Float  # (N,) that the depth is right; (0,) where the scene does not tell
 
     @property
     def name(self) -> str:
-        """The group's name in every format, such as `lines_x_boundary`."""
-        return f"lines_{AXES[self.axis]}_{'boundary' if self.is_boundary else 'nonboundary'}"
+        """The group's name in every format, such as `lines_x_boundary` or `lines_x_boundary_sure`."""
+        return group_name(self.axis, self.is_boundary, self.band)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +65,7 @@ class FlatFace:
 class Model:
     """The geometry of a scene as the formats write it."""
 
-    groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ...; none is empty
+    groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ..., each in the order of BANDS; none is empty
     faces: tuple[FlatFace, ...]  # in ascending id
     photo: str  # name of the photo without its folder: one line of valid Unicode
     unit_note: str  # one ASCII phrase that says what a unit is
@@ -73,11 +77,20 @@ class Model:
         return np.concatenate([np.zeros((0, 3)), *ends, *(face.vertices for face in self.faces)])
 
 
-def build_model(scene: Scene) -> Model:
-    """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out."""
+def group_name(axis: int, is_boundary: bool, band: str) -> str:
+    """The name of the group of these lines; `band` may be empty."""
+    kind = "boundary" if is_boundary else "nonboundary"
+    return "_".join(["lines", AXES[axis], kind, *([band] if band else [])])
+
+
+def build_model(scene: Scene, by_band: bool = False) -> Model:
+    """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out.
+
+    `by_band` gives the lines of each band a group of their own, where the scene tells probabilities.
+    """
     scale = metres_per_unit(scene)
     return Model(
-        groups=_line_groups(scene, scale),
+        groups=_line_groups(scene, scale, bands_of(scene.lines) if by_band else None),
         faces=tuple(_flat_face(plane, face, scale) for plane, face in scene.faces),
         photo=photo_name(scene),
         unit_note=FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT,
@@ -94,17 +107,21 @@ def photo_name(scene: Scene) -> str:
     return " ".join(Path(scene.photo).name.encode(errors="replace").decode().split())
 
 
-def _line_groups(scene: Scene, scale: float) -> tuple[LineGroup, ...]:
+def _line_groups(scene: Scene, scale: float, bands: Text | None) -> tuple[LineGroup, ...]:
     lines = scene.lines
     order = np.argsort(lines.id)
     ends = lines.ends * scale
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST_LINE
+    probability = np.asarray(lines.probability)
     groups = []
-    for axis in range(3):
-        for is_boundary in (True, False):
-            chosen = order[(long_enough & (lines.axis == axis) & (lines.is_boundary == is_boundary))[order]]
-            if len(chosen):
-                groups.append(LineGroup(axis, is_boundary, lines.id[chosen], ends[chosen]))
+    for axis, is_boundary, band in product(range(3), (True, False), ("",) if bands is None else BANDS):
+        wanted = long_enough & (lines.axis == axis) & (lines.is_boundary == is_boundary)
+        if bands is not None:
+            wanted &= bands == band
+        chosen = order[wanted[order]]
+        if len(chosen):
+            told = probability[chosen] if len(probability) else probability
+            groups.append(LineGroup(axis, is_boundary, lines.id[chosen], ends[chosen], band, told))
     return tuple(groups)
 
 

@@ -17,9 +17,14 @@ from linecad.arrays import Float
 from linecad.scene import Scene
 
 
-def write(scene: Scene, path: Path, names: Names, textures: Textures | None = None) -> SideFiles:
-    """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it."""
-    model = build_model(scene)
+def write(
+    scene: Scene, path: Path, names: Names, probability: bool = True, textures: Textures | None = None
+) -> SideFiles:
+    """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it.
+
+    `probability` parts the lines by band.
+    """
+    model = build_model(scene, probability)
     rows = [f"# linecad: reconstruction of {model.photo}, z up; {model.unit_note}"]
     if textures is not None and model.faces:
         rows.append(f"mtllib {names.library}")

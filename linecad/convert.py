@@ -10,6 +10,7 @@ from exporters.options import Value
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import read_calibration
 from linecad.camera.photo import Photo
+from linecad.confidence import keep_probable
 from linecad.corrections.file import check_belongs, read_corrections
 from linecad.model.scale import Known, set_scale
 from linecad.options import Options
@@ -29,6 +30,7 @@ class Conversion:
     known: Known | None = None  # a length that sets the scale
     values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as linecad.outputs reads them
     corrections: Path | None = None  # a person's, of this one photo
+    confidence: float | None = None  # 0 to 1; lines whose depth is right with a smaller probability are left out
 
     def checked(self) -> Self:
         """This conversion, once its files are known to be readable. Raises CameraError or CorrectionsFileError."""
@@ -45,15 +47,17 @@ class Conversion:
     def reconstruct(self, photo: Photo, on_progress: OnProgress = None, on_stage: StageReport = silent) -> Scene:
         """The scene of the photo.
 
-        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, or ScaleError
-        for a length that the scene does not hold.
+        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, ScaleError for
+        a length that the scene does not hold, or ConfidenceError where no line is as sure as was asked for.
         """
         corrections = None
         if self.corrections is not None:
             corrections = read_corrections(self.corrections)
             check_belongs(corrections, str(self.corrections), photo.width, photo.height)
         scene = linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections)
-        return scene if self.known is None else set_scale(scene, self.known)
+        if self.known is not None:
+            scene = set_scale(scene, self.known)  # first, because the known line itself may be left out
+        return scene if self.confidence is None else keep_probable(scene, self.confidence)
 
     def write(
         self,

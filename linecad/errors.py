@@ -9,6 +9,7 @@ LinecadError
 │   └── CorrectionsFileError a corrections file that is malformed or belongs to another photo
 ├── OptionError        an option that does not exist, or a value that it does not take
 ├── ScaleError         a known length that the scene does not hold
+├── ConfidenceError    a confidence that no line of the scene reaches, or of which it tells nothing
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 ├── ReconstructionError the photo was read, but holds too little for a model
 ├── CorrectionError    an edit that names no line, or that cannot be done
@@ -54,6 +55,10 @@ class OptionError(LinecadError):
 
 class ScaleError(LinecadError):
     """A known length was given that cannot be measured in the scene."""
+
+
+class ConfidenceError(LinecadError):
+    """No line of the scene is as sure as was asked for, or the scene does not tell how sure its lines are."""
 
 
 class OutputError(LinecadError):

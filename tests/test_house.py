@@ -23,7 +23,7 @@ LAYERS = (
     ("linecad", "linecad.errors", "linecad.arrays", "linecad.progress", "linecad.threads"),
     ("linecad.line_graph",),
     ("linecad.scene",),
-    ("linecad.geometry", "linecad.io"),
+    ("linecad.geometry", "linecad.io", "linecad.confidence"),
     ("linecad.options", "linecad.corrections"),
     ("linecad.lines",),
     ("linecad.graph",),

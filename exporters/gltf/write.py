@@ -8,7 +8,8 @@ A glTF camera looks through the middle of its picture. So ours spans the smalles
 holds the photo, and its extras `linecad_...` tell that frame and the camera matrix; pixels count from the corner.
 
 Line ids stand in the extras of each group of lines, and as vertex attribute _LINEID where all ids of the group are
-small enough for a float32, the only kind of number that holds them there.
+small enough for a float32, the only kind of number that holds them there. The probabilities that the depths are right
+stand in the extras too, where the scene tells them.
 
 Renderers leave out what has no surface. So the lines can be written as thin tubes instead.
 """
@@ -43,9 +44,14 @@ _PLACEHOLDER = PBRMaterial()  # trimesh wants one; `set_materials` puts ours in 
 _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
-def write(scene: Scene, path: Path, tubes: bool = False, textures: Textures | None = None) -> None:
-    """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails."""
-    model = build_model(scene)
+def write(
+    scene: Scene, path: Path, tubes: bool = False, probability: bool = True, textures: Textures | None = None
+) -> None:
+    """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails.
+
+    `probability` parts the lines by band.
+    """
+    model = build_model(scene, probability)
 
     def add_to_buffer(buffer: Any, _: _Tree) -> None:
         if textures is not None:
@@ -104,7 +110,8 @@ def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
 
 
 def _told(group: LineGroup) -> _Tree:
-    return {"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()}
+    told = {"probabilities": group.probability.tolist()} if len(group.probability) else {}
+    return {"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist(), **told}
 
 
 def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_line: int) -> None:

@@ -1,18 +1,20 @@
 """PNG: the photo with its lines and faces coloured by axis and its crossings, beside three views of them in space."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from exporters.bands import BANDS, LEAST, LIKELY, SURE, bands_of
 from exporters.colours import line_colour
 from exporters.model import photo_name
 from exporters.picture.canvas import Canvas, drawable, text_width
-from exporters.picture.faces import OPACITY, draw_dashed, draw_faces
+from exporters.picture.faces import OPACITY, draw_faces, draw_line, words_of
 from exporters.picture.views import VIEWS, draw_view
 from linecad.arrays import Float
-from linecad.scene import AXES, CONFIDENCES, Scene
+from linecad.scene import AXES, Lines, Scene
 
 _WIDTH = 2400  # px
 _MARGIN, _GAP = 44, 24  # px
@@ -31,6 +33,7 @@ _CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wide
 _FEW_LINES = 600  # from there on they are drawn thin
 _MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.0  # px, of crossings
 _OUTLINED = 1.22  # radius of a disc with its dark outline over that of the disc
+_MEANING = {SURE: f"sure ({LEAST[SURE]:g})", LIKELY: f"likely ({LEAST[LIKELY]:g})"}  # in the legend
 _FEW_MARKS = 400  # crossings; from there on they are drawn smaller, so that they do not cover the photo
 
 
@@ -49,7 +52,7 @@ def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
     _draw_photo(canvas.window(*shape), scene, photo)
     for box, (name, right, up) in zip(views, VIEWS, strict=True):
         draw_view(canvas.window(*box), scene, name, right, up)
-    _draw_legend(canvas)
+    _draw_legend(canvas, words_of(scene.lines)[1])
     canvas.image().save(path, format="PNG")
 
 
@@ -86,13 +89,21 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
         f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}, {solve.seconds:.1f} s",
         f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
     ]
-    weak = int((lines.confidence == "weak").sum())
-    if weak:
-        facts.append(f"{_count(weak, 'line')} weak: dashed, pale")
+    facts += _sureness(lines)
     text = "   ·   ".join(map(drawable, facts))
     # A long line is written smaller and not cut off at the border of the picture.
     size = min(_TEXT, int(_TEXT * (canvas.width - 2 * _MARGIN) / text_width(text, _TEXT)))
     canvas.text(_MARGIN, _MARGIN + 88, text, size, _QUIET)
+
+
+def _sureness(lines: Lines) -> list[str]:
+    """How many lines are how sure, and how that is drawn."""
+    bands = bands_of(lines)
+    if bands is None:
+        weak = int((lines.confidence == "weak").sum())
+        return [f"{_count(weak, 'line')} weak: dashed, pale"] if weak else []
+    counts = [f"{int((bands == band).sum())} {band}" for band in BANDS]
+    return [f"depths right within 5 %: {', '.join(counts)}"]
 
 
 def _count(number: int, one: str, many: str = "") -> str:
@@ -120,6 +131,7 @@ def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) ->
 def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
     """Boundaries over the others, with a light casing that keeps them apart from the photo."""
     lines = scene.lines
+    words, _ = words_of(lines)
     few = len(lines) <= _FEW_LINES
     widths, casing = (_LINE_WIDTH, _CASING_WIDTH) if few else (_THIN_LINE_WIDTH, _THIN_CASING_WIDTH)
     for wanted in (False, True):
@@ -128,9 +140,8 @@ def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
         for number in chosen:
             panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + casing)
         for number in chosen:
-            draw = draw_dashed if lines.confidence[number] == "weak" else Canvas.line
             colour = line_colour(int(lines.axis[number]), True)
-            draw(panel, ends[number, 0].tolist(), ends[number, 1].tolist(), colour, width)
+            draw_line(panel, ends[number].tolist(), words[number], colour, width)
 
 
 def _draw_crossings(panel: Canvas, scene: Scene, centres: Float) -> None:
@@ -154,7 +165,7 @@ def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
     panel.cross(centre, radius + 1.5, _FAKE, 3)
 
 
-def _draw_legend(canvas: Canvas) -> None:
+def _draw_legend(canvas: Canvas, words: Sequence[str]) -> None:
     x, y = float(_MARGIN), canvas.height - 48
     for axis in range(3):
         for is_boundary in (True, False):
@@ -165,9 +176,11 @@ def _draw_legend(canvas: Canvas) -> None:
     x = _label(canvas, x + 26, y, "real crossing")
     _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)
     x = _label(canvas, x + 26, y, "fake crossing")
-    for word in CONFIDENCES:
+    for word in words:
         canvas.tint([[_swatch(x, y)]], _INK, 2 * OPACITY[word])
-        x = _label(canvas, x + 46, y, word)
+        if word in LEAST:
+            draw_line(canvas, ([x, y], [x + 60, y]), word, _INK, 3)
+        x = _label(canvas, x + (70 if word in LEAST else 46), y, _MEANING.get(word, word))
 
 
 def _swatch(x: float, y: float) -> Float:

@@ -1,7 +1,7 @@
 """The lines in space as seen from above, from the front and from the side, each view with one scale on both axes.
 
 Lines of the largest component have the full colour of their axis; those of smaller ones, whose scale is their own, are
-paler.
+paler. Where the scene tells probabilities, guesses are paler and all others have the full colour.
 """
 
 import math
@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from exporters.bands import GUESS, bands_of
 from exporters.colours import line_colour
 from exporters.model import metres_per_unit
 from exporters.picture.canvas import Canvas
@@ -148,9 +149,11 @@ def _draw_camera(panel: Canvas, projection: _Projection, scene: Scene, right: in
 
 
 def _draw_lines(panel: Canvas, pixels: Float, lines: Lines) -> None:
-    """The largest component over the others, and boundaries over other lines."""
-    for number in np.lexsort((lines.is_boundary, lines.component == 0)).tolist():
-        colour = line_colour(int(lines.axis[number]), bool(lines.component[number] == 0))
+    """What has the full colour over what is paler, and boundaries over other lines."""
+    bands = bands_of(lines)
+    full = lines.component == 0 if bands is None else bands != GUESS
+    for number in np.lexsort((lines.is_boundary, full)).tolist():
+        colour = line_colour(int(lines.axis[number]), bool(full[number]))
         start, end = pixels[number].tolist()
         width = _BOUNDARY_WIDTH if lines.is_boundary[number] else _OTHER_WIDTH
         if math.dist(start, end) < width:

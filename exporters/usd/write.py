@@ -36,18 +36,26 @@ _ZIP_LOCAL_HEADER = 30  # bytes before name and extra field
 _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time of a zip entry; the real one would make each file another
 
 
-def write(scene: Scene, path: Path, names: Names | None = None, textures: Textures | None = None) -> SideFiles:
+def write(
+    scene: Scene,
+    path: Path,
+    probability: bool = True,
+    names: Names | None = None,
+    textures: Textures | None = None,
+) -> SideFiles:
     """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails.
 
+    `probability` parts the lines by band.
     The pages of the textures lie beside a stage, in the folder of `names`; without names, as a package, it holds them.
     """
     pages = {} if textures is None else textures.files
+    model = build_model(scene, probability)
     if names is not None:
-        _save(_build_stage(scene, textures, names.folder), path)
+        _save(_build_stage(model, scene, textures, names.folder), path)
         return SideFiles(pages)
     with tempfile.TemporaryDirectory(prefix=UNFINISHED, dir=path.parent) as temporary:
         layer = Path(temporary) / "scene.usdc"
-        _save(_build_stage(scene, textures, _PACKAGED), layer)
+        _save(_build_stage(model, scene, textures, _PACKAGED), layer)
         files = {layer.name: layer.read_bytes()}
     files |= {f"{_PACKAGED}/{name}": data for name, data in pages.items()}
     path.write_bytes(_package(files))
@@ -76,8 +84,7 @@ def _package(files: dict[str, bytes]) -> bytes:
     return packed.getvalue()
 
 
-def _build_stage(scene: Scene, textures: Textures | None, folder: str) -> Usd.Stage:
-    model = build_model(scene)
+def _build_stage(model: Model, scene: Scene, textures: Textures | None, folder: str) -> Usd.Stage:
     # In memory first: a stage that is made as a file leaves half of it where the disk is full.
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
@@ -134,6 +141,9 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
     ids.Set(array.FromNumpy(group.ids.astype(number)))
     boundary = variables.CreatePrimvar("linecad:boundary", Sdf.ValueTypeNames.BoolArray, UsdGeom.Tokens.uniform)
     boundary.Set(Vt.BoolArray(len(group.ids), group.is_boundary))
+    if len(group.probability):
+        told = variables.CreatePrimvar("linecad:probability", Sdf.ValueTypeNames.DoubleArray, UsdGeom.Tokens.uniform)
+        told.Set(Vt.DoubleArray.FromNumpy(group.probability))
     _set(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
 
     material = _MATERIALS.AppendChild(group.name)

@@ -84,6 +84,14 @@ def add_camera_height(parser: "argparse._ActionsContainer") -> None:
     )  # fmt: skip
 
 
+def add_confidence(parser: argparse.ArgumentParser) -> None:
+    """How sure a line must be to be written."""
+    parser.add_argument(
+        "--confidence", type=_probability, metavar="P",
+        help="leave out lines whose depth is right with a probability below P, 0 to 1",
+    )  # fmt: skip
+
+
 def add_loudness(parser: argparse.ArgumentParser) -> None:
     """How much progress is shown."""
     loudness = parser.add_mutually_exclusive_group()
@@ -138,6 +146,16 @@ def _not_negative(text: str) -> float:
         raise argparse.ArgumentTypeError(f"{text!r} is not a number") from None
     if not 0 <= value < float("inf"):
         raise argparse.ArgumentTypeError(f"{text} is not a number of zero or more")
+    return value
+
+
+def _probability(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = float("nan")
+    if not 0 <= value <= 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number from 0 to 1")
     return value
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from linecad.cli.arguments import (
     add_camera,
     add_camera_height,
+    add_confidence,
     add_loudness,
     add_reconstruction,
     count,
@@ -41,6 +42,7 @@ def add_to(commands: "Commands") -> None:
     _add_means(command)
     add_camera(command)
     add_camera_height(command)
+    add_confidence(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)
@@ -70,7 +72,7 @@ def run(parsed: argparse.Namespace) -> int:
 
     means = Means(parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit)
     options, values = options_of(parsed, [Path(f"photo{suffix}") for suffix in parsed.format])
-    conversion = Conversion(parsed.camera, parsed.focal, options, parsed.known, values)
+    conversion = Conversion(parsed.camera, parsed.focal, options, parsed.known, values, confidence=parsed.confidence)
     plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"

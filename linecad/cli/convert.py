@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from linecad.cli.arguments import (
     add_camera,
+    add_confidence,
     add_loudness,
     add_outputs,
     add_reconstruction,
@@ -38,6 +39,7 @@ def add_to(commands: "Commands") -> None:
         "--corrections", type=Path, metavar="FILE", help="annotations of lines and crossings, made with linecad edit"
     )
     add_scale(command)
+    add_confidence(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)
@@ -50,7 +52,9 @@ def run(parsed: argparse.Namespace) -> int:
     check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections])
     from linecad.convert import Conversion
 
-    conversion = Conversion(parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections).checked()
+    conversion = Conversion(
+        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence
+    ).checked()
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the photo")
         photo = conversion.read(parsed.photo)

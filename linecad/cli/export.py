@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linecad.cli.arguments import add_loudness, add_option, add_outputs, add_scale
+from linecad.cli.arguments import add_confidence, add_loudness, add_option, add_outputs, add_scale
 from linecad.cli.checks import check_outputs, check_some
 from linecad.cli.progress import ProgressDisplay
 from linecad.errors import OutputError
@@ -31,6 +31,7 @@ def add_to(commands: "Commands") -> None:
         "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
     )
     add_scale(command)
+    add_confidence(command)
     add_option(command, "an option of a format")
     command.add_argument("--formats", action="store_true", help="list the formats and end")
     add_loudness(command)
@@ -43,6 +44,7 @@ def run(parsed: argparse.Namespace) -> int:
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
     check_some(parsed.output)
+    from linecad.confidence import keep_probable
     from linecad.io.scene_file import read_scene
     from linecad.model.scale import set_scale
     from linecad.outputs import PhotoOfScene, format_values, pixels_for, write_outputs
@@ -53,7 +55,9 @@ def run(parsed: argparse.Namespace) -> int:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
         if parsed.known is not None:
-            scene = set_scale(scene, parsed.known)
+            scene = set_scale(scene, parsed.known)  # first, because the known line itself may be left out
+        if parsed.confidence is not None:
+            scene = keep_probable(scene, parsed.confidence)
         photo = PhotoOfScene(parsed.photo, parsed.camera, parsed.scene)
         pixels = pixels_for(scene, parsed.output, values, photo, show.note)
         write_outputs(scene, pixels, parsed.output, values, show.stage)

@@ -5,16 +5,20 @@ from functools import lru_cache
 
 import numpy as np
 
+from exporters.bands import GUESS, bands_of
 from exporters.formats import FORMATS, SCENE_FILE
 from exporters.model import FlatFace, build_model
 from exporters.triangulation import triangulate
+from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError
 from linecad.scene import AXES, Face, Scene
 
-NOT_IN_SPACE: dict[str, object] = {"ends": None, "boundary": False, "component": -1, "confidence": None}
+NOT_IN_SPACE: dict[str, object] = {
+    "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
+}  # fmt: skip
 
 
 def document_of(now: Now, levels: int, is_saved: bool) -> dict[str, object]:
@@ -103,15 +107,25 @@ def _lines(now: Now) -> list[dict[str, object]]:
 def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
     """What a scene says about each line, by axis and segment."""
     lines = scene.lines
+    guess = _is_guess(scene)
     return {
         look: {
             "ends": lines.ends[row].tolist(),
             "boundary": bool(lines.is_boundary[row]),
             "component": int(lines.component[row]),
             "confidence": str(lines.confidence[row]),
+            "probability": float(lines.probability[row]) if len(lines.probability) else None,
+            "guess": bool(guess[row]),
         }
         for look, row in _rows(scene).items()
     }
+
+
+def _is_guess(scene: Scene) -> Bool:
+    """(N,) whether the depth of each line is more likely wrong than right; where the scene does not tell, is weak."""
+    bands = bands_of(scene.lines)
+    guess: Bool = scene.lines.confidence == "weak" if bands is None else bands == GUESS
+    return guess
 
 
 def _crossings(now: Now) -> list[dict[str, object]]:
@@ -151,7 +165,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         )
     }
     number_of = {int(scene.lines.id[row]): by_look[look] for look, row in _rows(scene).items() if look in by_look}
-    weak = set(scene.lines.id[scene.lines.confidence == "weak"].tolist())
+    guesses = set(scene.lines.id[_is_guess(scene)].tolist())
     triangles = _triangles(scene)
     return [
         {
@@ -160,7 +174,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             "offset": plane.offset,
             "lines": [number_of[line] for line in plane.lines if line in number_of],
             "faces": [
-                {**triangles[face.id], "weak": bool(plane.lines) and weak.issuperset(plane.lines)}
+                {**triangles[face.id], "guess": bool(plane.lines) and guesses.issuperset(plane.lines)}
                 for face in plane.faces
                 if face.id in triangles
             ],

@@ -67,10 +67,10 @@ def check_layers(findings, document, expected):
             strongest = AXES[max(range(3), key=colour[name].__getitem__)]
             axis = {"x": "red", "y": "green", "z": "blue"}[group["axis"]]
             findings.need(strongest == group["axis"], f"layer {layer} has the colour {colour[name]}, expected a {axis}")
-    for axis in AXES:
-        strong, pale = (colour.get(f"lines_{axis}_{kind}") for kind in ("boundary", "nonboundary"))
-        if strong and pale:
-            findings.need(min(pale) > min(strong), f"axis {axis}: {pale} is not paler than {strong}, the boundaries'")
+    for name, strong in colour.items():
+        pale = colour.get(name.replace("_boundary", "_nonboundary"))
+        if "_boundary" in name and pale:
+            findings.need(min(pale) > min(strong), f"{name}: {pale}, of other lines, is not paler than {strong}")
 
 
 def check_line_entities(findings, space, expected):

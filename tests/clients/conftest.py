@@ -57,6 +57,19 @@ def build_scene():
     }  # fmt: skip
 
 
+def with_probabilities(scene):
+    """The scene with lines of all bands, and one at the lower end of each."""
+    for number, told in enumerate(scene["lines"]):
+        told["probability"] = (0.9, 0.5, 0.499, 1.0, 0.0)[number % 5]
+    return scene
+
+
+@pytest.fixture
+def told():
+    """A scene file's content that tells how likely the depths of its lines are right."""
+    return json.loads(json.dumps(with_probabilities(build_scene())))
+
+
 @pytest.fixture
 def document():
     return json.loads(json.dumps(build_scene()))  # which a test may change
@@ -76,11 +89,15 @@ def scene_file(tmp_path_factory):
 
 @pytest.fixture
 def export_to(scene_file, tmp_path):
-    """Write the scene in the format of a suffix; returns the file."""
+    """Write the scene, or that of other content, in the format of a suffix; returns the file."""
 
-    def write(suffix):
+    def write(suffix, content=None):
+        source = scene_file
+        if content is not None:
+            source = tmp_path / "other.json"
+            source.write_text(json.dumps(content))
         path = tmp_path / f"wall{suffix}"
-        export(read_scene(scene_file), path)
+        export(read_scene(source), path)
         return path
 
     return write

@@ -18,6 +18,8 @@ AXIS_COLOUR = {"x": (0.87, 0.16, 0.16), "y": (0.10, 0.62, 0.22), "z": (0.15, 0.3
 WHITE_WHERE_NO_BOUNDARY = 0.5  # share
 FACE_COLOUR = (0.80, 0.79, 0.74)
 
+BANDS = {"sure": 0.9, "likely": 0.5, "guess": 0.0}  # the smallest probability of each
+
 
 def build_expectation(scene):
     """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file of version 1."""
@@ -29,7 +31,7 @@ def build_expectation(scene):
     for line in sorted(scene["lines"], key=lambda line: line["id"]):
         ends = [_scaled(end, metres) for end in line["ends"]]
         if math.dist(*ends) > SHORTEST_LINE:
-            group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
+            group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}{_band(line)}"
             pixels = [_project(end, camera) for end in ends]
             lines.append({"id": line["id"], "group": group, "ends": ends, "pixels": pixels})
     faces = [_face(plane, face, metres) for plane in scene["planes"] for face in plane.get("faces", [])]
@@ -44,6 +46,13 @@ def build_expectation(scene):
         "face_colour": {"srgb": FACE_COLOUR, "linear": [_linear(value) for value in FACE_COLOUR]},
         "box": [[choose(values) for values in zip(*points, strict=True)] for choose in (min, max)],
     }
+
+
+def _band(line):
+    """How sure the line's depth is, as the end of its group's name; empty where the scene does not tell."""
+    if "probability" not in line:
+        return ""
+    return next(f"_{band}" for band, least in BANDS.items() if line["probability"] >= least)
 
 
 def _camera(camera):

@@ -1,7 +1,10 @@
+import json
+
 import ezdxf
 import pytest
 
 from check_dxf import check
+from expectation import build_expectation
 from faults import missing_face, missing_hole, missing_line, moved_line
 from verdict import judge
 
@@ -26,6 +29,15 @@ def changed(export_to):
 
 def test_a_dxf_of_ours_is_right(export_to, expected):
     assert verdict(export_to(".dxf"), expected).startswith("CHECK OK ezdxf")
+
+
+def test_a_dxf_with_layers_by_probability_is_right(export_to, told):
+    path = export_to(".dxf", told)
+    assert verdict(path, json.loads(json.dumps(build_expectation(told)))).startswith("CHECK OK ezdxf")
+
+
+def test_lines_on_the_layer_of_another_probability_are_noticed(export_to, told, expected):
+    assert verdict(export_to(".dxf", told), expected).startswith("CHECK FAILED")
 
 
 @pytest.mark.parametrize("fault", [moved_line, missing_line, missing_face, missing_hole])

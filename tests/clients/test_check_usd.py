@@ -1,7 +1,10 @@
+import json
+
 import pytest
 from pxr import Gf, Usd, UsdGeom, UsdShade, Vt
 
 from check_usd import check
+from expectation import build_expectation
 from faults import missing_face, missing_hole, missing_line, moved_line, wrong_camera, wrong_colour
 from verdict import judge
 
@@ -15,6 +18,11 @@ def verdict(path, expected):
 @pytest.mark.parametrize("suffix", [".usda", ".usdc", ".usdz"])
 def test_a_stage_of_ours_is_right(export_to, expected, suffix):
     assert verdict(export_to(suffix), expected).startswith("CHECK OK usd")
+
+
+def test_a_stage_with_prims_by_probability_is_right(export_to, told):
+    expected = json.loads(json.dumps(build_expectation(told)))
+    assert verdict(export_to(".usda", told), expected).startswith("CHECK OK usd")
 
 
 @pytest.mark.parametrize("fault", [moved_line, missing_line, missing_face, missing_hole, wrong_camera, wrong_colour])

@@ -188,6 +188,13 @@ def line_pixels(scene):
 
 
 @pytest.fixture(scope="session")
+def told(scene):
+    """The scene with the probabilities of its lines: each axis has boundaries of all bands."""
+    probability = np.resize([0.99, 0.7, 0.2], len(scene.lines))
+    return replace(scene, lines=replace(scene.lines, probability=probability))
+
+
+@pytest.fixture(scope="session")
 def no_faces(scene):
     return replace(scene, planes=())
 

@@ -146,3 +146,28 @@ def test_a_later_release_holds_the_same_and_passes_the_auditor(document, scene, 
     assert later.header["$INSUNITS"] == 6
     kinds = [[entity.dxftype() for entity in each.modelspace()] for each in (document, later)]
     assert kinds[0] == kinds[1]
+
+
+def test_layers_by_probability_and_the_number_itself_in_each_line(told, tmp_path):
+    export(told, tmp_path / "a.dxf")
+    document = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
+    assert not document.audit().errors
+    probability = dict(zip(told.lines.id.tolist(), told.lines.probability.tolist(), strict=True))
+    ends = {0.99: "_SURE", 0.7: "_LIKELY", 0.2: "_GUESS"}
+    lines = document.modelspace().query("LINE")
+    assert len(lines) == len(told.lines)
+    for line in lines:
+        told_here = probability[values(line, 1071)[0]]
+        assert line.dxf.layer.endswith(ends[told_here])
+        assert line.dxf.layer in document.layers
+        assert values(line, 1040) == [told_here]
+    names = [layer.dxf.name for layer in document.layers if layer.dxf.name.startswith("LINES_")]
+    assert len(names) == 18
+
+
+def test_without_layers_by_probability_they_are_those_of_a_scene_that_does_not_tell(told, document, tmp_path):
+    export(told, tmp_path / "a.dxf", options={"probability": False})
+    plain = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
+    assert [layer.dxf.name for layer in plain.layers] == [layer.dxf.name for layer in document.layers]
+    assert [line.dxf.layer for line in plain.modelspace()] == [line.dxf.layer for line in document.modelspace()]
+    assert all(values(line, 1040) for line in plain.modelspace().query("LINE"))

@@ -117,6 +117,27 @@ def test_neither_the_name_nor_the_time_changes_the_bytes(scene, reference, tmp_p
     assert path.read_bytes() == reference[suffix]
 
 
+BY_BAND = [suffix for suffix, row in FORMATS.items() if "probability" in [option.key for option in row.options]]
+
+
+@pytest.mark.parametrize("suffix", BY_BAND)
+def test_groups_by_probability_are_there_only_where_the_scene_tells_it(scene, told, reference, tmp_path, suffix):
+    export(scene, tmp_path / f"a{suffix}", options={"probability": False})
+    assert (tmp_path / f"a{suffix}").read_bytes() == reference[suffix]
+    written = []
+    for is_on in (True, False):
+        export(told, tmp_path / f"a{suffix}", options={"probability": is_on})
+        written.append((tmp_path / f"a{suffix}").read_bytes().lower())
+    if suffix not in (".usdc", ".usdz"):  # these are compressed
+        assert all(f"lines_x_boundary_{band}".encode() in written[0] for band in ("sure", "likely", "guess"))
+        assert b"boundary_sure" not in written[1]
+    assert written[0] != written[1]
+
+
+def test_every_format_with_names_for_lines_has_them_by_probability():
+    assert set(BY_BAND) == set(FORMATS) - FACES_ONLY - NO_FACES
+
+
 @with_lines
 def test_a_single_line_without_any_face(one_line, tmp_path, suffix):
     save(one_line, tmp_path / f"a{suffix}")

@@ -5,6 +5,8 @@ import pytest
 
 from exporters.model import FREE_UNIT, KNOWN_UNIT, SHORTEST_LINE, build_model, signed_area
 
+BANDS = {"sure": 0.99, "likely": 0.7, "guess": 0.2}  # the probabilities that the scene has
+
 
 def test_every_line_stands_in_the_group_of_its_axis_and_kind(scene, model):
     found = {number: group for group in model.groups for number in group.ids.tolist()}
@@ -80,3 +82,22 @@ def test_the_area_of_a_ring_far_from_the_origin_is_exact():
 )
 def test_the_name_of_the_photo_is_one_line_of_text(scene, photo, name):
     assert build_model(replace(scene, photo=photo)).photo == name
+
+
+def test_by_band_lines_stand_in_the_group_of_their_probability(told):
+    model = build_model(told, by_band=True)
+    probability = dict(zip(told.lines.id.tolist(), told.lines.probability.tolist(), strict=True))
+    assert sum(len(group.ids) for group in model.groups) == len(told.lines)
+    for group in model.groups:
+        assert group.name.endswith(f"boundary_{group.band}")
+        assert {probability[number] for number in group.ids.tolist()} == {BANDS[group.band]}
+        assert group.probability.tolist() == [BANDS[group.band]] * len(group.ids)
+    names = [group.name for group in model.groups]
+    assert names[:3] == ["lines_x_boundary_sure", "lines_x_boundary_likely", "lines_x_boundary_guess"]
+    assert len(set(names)) == len(names) > 12
+
+
+def test_bands_are_left_alone_where_nobody_asks_or_the_scene_does_not_tell(told, scene, model):
+    names = [group.name for group in model.groups]
+    assert [group.name for group in build_model(told).groups] == names
+    assert [group.name for group in build_model(scene, by_band=True).groups] == names

@@ -9,7 +9,7 @@ const BOUNDARY = 2.8; // CSS px, width of lines where two planes meet
 const OTHER = 1.6;
 const CASING_WIDTH = 1.6; // CSS px that the casing is wider than its line
 const CASING_OPACITY = 0.75;
-const WEAK_DASHES = [6, 3]; // CSS px
+const GUESS_DASHES = [6, 3]; // CSS px
 const UNSOLVED_DASHES = [2, 4]; // lines that are not in the model yet
 const FACE_OPACITY = 0.16;
 const NEAREST_DEPTH = 1e-3; // of a scene's units; nothing nearer to the camera is drawn
@@ -102,7 +102,7 @@ function styleOf(line) {
 
 function dashes(line) {
   if (!line.ends) return UNSOLVED_DASHES;
-  return line.confidence === "weak" ? WEAK_DASHES : [];
+  return line.guess ? GUESS_DASHES : [];
 }
 
 function strokeLines(context, viewport, lines, colour, width) {

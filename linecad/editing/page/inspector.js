@@ -108,6 +108,7 @@ export class Inspector {
     const facts = [
       line.boundary ? "boundary" : null,
       line.confidence,
+      line.probability === null ? null : `depth ${Math.round(100 * line.probability)} % sure`,
       line.component > 0 ? `component ${line.component}` : null,
       ORIGINS[line.origin],
       this.#length(line),

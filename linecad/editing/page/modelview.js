@@ -11,7 +11,7 @@ const PAPER = [0.965, 0.965, 0.97];
 const FACE_COLOURS = { x: [0.88, 0.83, 0.82], y: [0.83, 0.86, 0.82], z: [0.82, 0.84, 0.89] };
 const FACE_OPACITY = { textured: 1, plain: 0.92 };
 const WIDTH = { boundary: 2.6, other: 1.3, lit: 4.5 }; // CSS px
-const WEAK_OPACITY = 0.45;
+const GUESS_OPACITY = 0.45;
 const NEARER = 0.0006; // share of the depth, so that lines are not eaten by the faces they bound
 const TEXTURE_SIDE = 4096; // px; a larger photo takes more memory than it shows
 const CAMERA_SHARE = 0.06; // of the size of the model, how large the camera is drawn
@@ -142,7 +142,7 @@ export class ModelView {
       .map((line) => ({
         start: line.ends[0],
         end: line.ends[1],
-        colour: [...channels(AXIS[line.axis]), line.confidence === "weak" ? WEAK_OPACITY : 1],
+        colour: [...channels(AXIS[line.axis]), line.guess ? GUESS_OPACITY : 1],
         width: (line.boundary ? WIDTH.boundary : WIDTH.other) * devicePixelRatio,
       }));
   }

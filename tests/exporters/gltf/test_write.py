@@ -217,3 +217,15 @@ def test_tubes_are_seen_one_to_four_pixels_wide(scene, model, tmp_path):
         width = 2 * np.linalg.norm(rings - middle[:, None], axis=2).mean(axis=1)
         pixels = width * scene.camera.focal / (middle @ scene.rotation[2])
         assert 1 < np.median(pixels) < 4, group.name
+
+
+def test_where_the_scene_tells_probabilities_nodes_are_named_by_them_and_extras_hold_them(told, tmp_path):
+    export(told, tmp_path / "a.glb")
+    glb = Glb(tmp_path / "a.glb")
+    groups = build_model(told, by_band=True).groups
+    assert sorted(glb.children("lines")) == sorted(group.name for group in groups)
+    for group in groups:
+        extras = glb.tree["meshes"][glb.node(group.name)["mesh"]]["extras"]
+        assert extras["probabilities"] == group.probability.tolist()
+        assert extras["line_ids"] == group.ids.tolist()
+        assert glb.material(group.name)["name"] == group.name

@@ -10,7 +10,7 @@ from exporters.picture import faces as picture_faces
 from exporters.picture import scene as picture
 from exporters.picture import views as picture_views
 from exporters.picture.canvas import Canvas, drawable, text_width
-from linecad.scene import Camera, Intersections
+from linecad.scene import CONFIDENCES, Camera, Intersections
 
 GREY = (0.5, 0.5, 0.5)
 LEFT, TOP, PHOTO_WIDTH = 44, 166, 1560  # px: where the photo stands in a picture of a 4 : 3 photo
@@ -234,16 +234,58 @@ def test_the_confidence_of_a_plane_is_that_of_most_of_its_lines(scene):
     plane = scene.planes[0]
     first, *others = plane.lines
     words = dict.fromkeys(others, "supported") | {first: "proven"}
-    assert picture_faces.confidence_of(plane, words) == "supported"
+    assert picture_faces.word_of(plane, words, CONFIDENCES) == "supported"
     two = replace(plane, lines=(first, others[0]))
-    assert picture_faces.confidence_of(two, words) == "supported"
+    assert picture_faces.word_of(two, words, CONFIDENCES) == "supported"
+
+
+def with_probability(scene, probability):
+    return replace(scene, lines=replace(scene.lines, probability=np.full(len(scene.lines), probability)))
+
+
+def test_probabilities_are_counted_in_the_title_and_explained_in_the_legend(told):
+    canvas = Canvas(2400, 300, GREY)
+    picture._draw_title(canvas, told)
+    assert "depths right within 5 %: 20 sure, 20 likely, 20 guess" in texts(canvas)[1]
+    legend = Canvas(2400, 300, GREY)
+    picture._draw_legend(legend, picture_faces.words_of(told.lines)[1])
+    assert texts(legend)[-3:] == ["sure (0.9)", "likely (0.5)", "guess"]
+    last = legend.texts[-1]
+    assert last.x + text_width(last.text, last.size) < 2400
+
+
+def test_lines_have_the_more_gaps_the_less_likely_their_depth_is(scene):
+    blue = np.array(line_colour(2, True)) * 255
+    coloured = []
+    for probability in (0.95, 0.6, 0.1):
+        panel = Canvas(1600, 1200, GREY)
+        picture._draw_segments(panel, with_probability(scene, probability), scene.lines.segment)
+        coloured.append((np.abs(panel.pixels - blue).max(axis=2) < 2).sum())
+    assert 0.95 * coloured[0] > coloured[1] > 1.15 * coloured[2] > 0
+
+
+def test_faces_are_the_stronger_the_likelier_their_lines_are(scene):
+    tints = []
+    for probability in (0.95, 0.6, 0.1):
+        panel = Canvas(scene.camera.width // 4, scene.camera.height // 4, GREY)
+        picture_faces.draw_faces(panel, with_probability(scene, probability), np.array([0.25, 0.25]))
+        tints.append(np.ptp(panel.pixels.astype(int), axis=2).mean())
+    assert tints[0] > 1.2 * tints[1] > 1.4 * tints[2] > 0
+
+
+def test_guesses_are_paler_in_the_views_whatever_their_component(scene):
+    red = np.array(line_colour(0, True)) * 255
+    parts = replace(scene, planes=(), lines=replace(scene.lines, component=np.ones(len(scene.lines))))
+    for probability, is_full in ((0.6, True), (0.4, False)):
+        pixels = view(with_probability(parts, probability), "front", 0, 2).pixels[60:400, 60:]
+        assert (np.abs(pixels - red).max(axis=2) < 2).any() == is_full
 
 
 @pytest.mark.parametrize(("start", "end"), [((-1e7, 50.0), (1e7, 50.0)), ((50.0, 20.0), (50.0, 80.0))])
 def test_dashes_stay_in_the_panel_and_cover_about_half(start, end):
     panel = Canvas(100, 100, GREY)
     before = panel.pixels.copy()
-    picture_faces.draw_dashed(panel, list(start), list(end), (0.0, 0.0, 0.0), 1)
+    picture_faces.draw_dashed(panel, list(start), list(end), (12.0, 9.0), (0.0, 0.0, 0.0), 1)
     length = min(np.hypot(*np.subtract(end, start)), 100)
     changed = (panel.pixels != before).any(axis=2)
     covered = max(changed.any(axis=0).sum(), changed.any(axis=1).sum())
@@ -253,7 +295,7 @@ def test_dashes_stay_in_the_panel_and_cover_about_half(start, end):
 def test_a_line_outside_the_panel_has_no_dashes():
     panel = Canvas(100, 100, GREY)
     before = panel.pixels.copy()
-    picture_faces.draw_dashed(panel, [-50.0, 200.0], [50.0, 200.0], (0.0, 0.0, 0.0), 1)
+    picture_faces.draw_dashed(panel, [-50.0, 200.0], [50.0, 200.0], (12.0, 9.0), (0.0, 0.0, 0.0), 1)
     assert (panel.pixels == before).all()
 
 

@@ -196,3 +196,16 @@ def test_ids_that_32_bits_do_not_hold(large_ids, tmp_path):
         assert list(variables.GetPrimvar("linecad:id").Get()) == group.ids.tolist()
     faces = {prim.GetAttribute("linecad:faceId").Get() for prim in stage.GetPrimAtPath(f"{ROOT}/Faces").GetChildren()}
     assert faces == {face.id for face in model.faces}
+
+
+def test_where_the_scene_tells_probabilities_prims_are_named_by_them_and_hold_them(told, tmp_path):
+    export(told, tmp_path / "a.usda")
+    stage = Usd.Stage.Open(str(tmp_path / "a.usda"))
+    groups = build_model(told, by_band=True).groups
+    prims = stage.GetPrimAtPath(f"{ROOT}/Lines").GetChildren()
+    assert sorted(prim.GetName() for prim in prims) == sorted(group.name for group in groups)
+    for group in groups:
+        prim = stage.GetPrimAtPath(f"{ROOT}/Lines/{group.name}")
+        probability = UsdGeom.PrimvarsAPI(prim).GetPrimvar("linecad:probability")
+        assert list(probability.Get()) == group.probability.tolist()
+        assert probability.GetInterpolation() == "uniform"

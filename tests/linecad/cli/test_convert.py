@@ -10,6 +10,7 @@ import subprocess
 import sys
 import threading
 import zlib
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -17,6 +18,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+import linecad.pipeline
 from linecad.cli.main import main
 from linecad.corrections.edits import Corrections
 from linecad.corrections.file import write_corrections
@@ -214,3 +216,32 @@ def test_the_summary_tells_the_status_as_the_programs(folder, capsys):
 def test_corrections_of_another_photo_are_refused(fails, folder):
     write_corrections(Corrections("room.jpg", 400, 300), folder / "said.json")
     assert "said.json" in fails("convert", ROOM, "-o", "a.json", "--corrections", "said.json")
+
+
+def test_a_confidence_filters_every_file_and_the_summary(folder, monkeypatch, capsys):
+    reconstruct = linecad.pipeline.reconstruct
+    made = []
+
+    def told(*given):
+        scene = reconstruct(*given)
+        probability = np.linspace(0, 1, len(scene.lines))
+        made.append(replace(scene, lines=replace(scene.lines, probability=probability)))
+        return made[0]
+
+    monkeypatch.setattr(linecad.pipeline, "reconstruct", told)
+    arguments = ["-o", "a.json", "-o", "a.dxf", "--fast", "--confidence", "0.8", "--quiet"]
+    assert main(["convert", str(ROOM), *arguments]) == 0
+    scene = read_scene(folder / "a.json")
+    kept = made[0].lines.id[made[0].lines.probability >= 0.8].tolist()
+    assert scene.lines.id.tolist() == kept
+    assert (folder / "a.dxf").read_text().count("\nAcDbLine\n") == len(kept)
+    out = capsys.readouterr().out
+    assert out.startswith(f"{len(kept)} lines, ")
+    assert out.endswith("the probability that their depth is right is below 0.8\n")
+
+
+def test_a_bad_confidence_is_refused_before_the_photo_is_looked_for(fails):
+    assert "'2' is not a number from 0 to 1" in fails(
+        "convert", "none.jpg", "-o", "a.json", "--confidence", "2", code=2
+    )
+    assert "'x' is not a number from 0 to 1" in fails("batch", "none.jpg", "-o", "out", "--confidence", "x", code=2)

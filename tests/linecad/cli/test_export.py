@@ -238,3 +238,49 @@ def test_a_scene_file_sends_nobody_to_another_folder(scene_file, folder):
     assert main(["export", "inside/scene.json", "-o", "without.png", "--quiet"]) == 0
     assert main(["export", "inside/scene.json", "--photo", "secret.jpg", "-o", "with.png", "--quiet"]) == 0
     assert (folder / "without.png").read_bytes() != (folder / "with.png").read_bytes()
+
+
+@pytest.fixture
+def told(scene_file, folder):
+    """The scene with probabilities: 0.95 for the first half of its lines, 0.4 for the others."""
+    scene = json.loads(scene_file.read_text(encoding="utf-8"))
+    for number, line in enumerate(scene["lines"]):
+        line["probability"] = 0.95 if 2 * number < len(scene["lines"]) else 0.4
+    (folder / "told.json").write_text(json.dumps(scene), encoding="utf-8")
+    return scene
+
+
+def test_lines_that_are_not_sure_enough_are_in_no_file(folder, told):
+    outputs = ["-o", "a.json", "-o", "a.obj", "--option", "textures=off"]
+    assert main(["export", "told.json", *outputs, "--confidence", "0.9", "--quiet"]) == 0
+    kept = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert kept["lines"] == [line for line in told["lines"] if line["probability"] > 0.9]
+    gone = len(told["lines"]) - len(kept["lines"])
+    assert kept["notes"][-1].startswith(f"{gone} of {len(told['lines'])} lines")
+    assert (folder / "a.obj").read_text().count("\nl ") == len(kept["lines"])
+
+
+def test_a_line_that_is_left_out_still_sets_the_scale(folder, told):
+    arguments = ["--scale", f"{told['lines'][-1]['id']}=2", "--confidence", "0.9", "--quiet"]
+    assert main(["export", "told.json", "-o", "a.json", *arguments]) == 0
+    assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["metres_per_unit"] is not None
+
+
+@pytest.mark.usefixtures("told")
+@pytest.mark.parametrize("text", ["1.5", "-0.1", "nan", "inf", "much", "90%"])
+def test_a_confidence_that_is_no_probability_is_wrong_usage(fails, text):
+    said = fails("export", "told.json", "-o", "a.json", f"--confidence={text}", code=2)
+    assert f"'{text}' is not a number from 0 to 1" in said
+
+
+@pytest.mark.usefixtures("told")
+def test_a_confidence_that_no_line_has(fails):
+    assert "the highest is 0.95; choose a smaller" in fails("export", "told.json", "-o", "a.json", "--confidence", "1")
+
+
+def test_a_scene_that_does_not_tell_has_no_confidence(fails, scene_file, folder):
+    scene = json.loads(scene_file.read_text(encoding="utf-8"))
+    for line in scene["lines"]:
+        line.pop("probability", None)
+    (folder / "silent.json").write_text(json.dumps(scene), encoding="utf-8")
+    assert "leave out --confidence" in fails("export", "silent.json", "-o", "a.json", "--confidence", "0.5")

@@ -2,6 +2,7 @@
 
 import json
 import re
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 from exporters.formats import FORMATS
 from linecad.cli.main import main
 from linecad.corrections.file import corrections_from_json, corrections_to_json
+from linecad.editing.document import document_of
 from linecad.editing.tiles import TILE
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.references import open_case
@@ -46,6 +48,29 @@ class TestState:
         assert [plane["offset"] for plane in state["planes"]] == [plane.offset for plane in scene.planes]
         assert state["solve"]["state"] == "idle"
         assert (state["solve"]["status"], state["solve"]["gap"]) == ("optimal", 0.0)
+
+    def test_it_tells_how_likely_the_depth_of_each_line_is_right(self, page):
+        page.solve()
+        now = page.session.now()
+        lines = now.model.scene.lines
+        for probability, weak, shown in (
+            (0.25, False, {(0.25, True)}),
+            (0.5, True, {(0.5, False)}),
+            (None, True, {(None, True)}),
+            (None, False, {(None, False)}),
+        ):
+            changed = replace(
+                lines,
+                probability=() if probability is None else np.full(len(lines), probability),
+                confidence=np.full(len(lines), "weak" if weak else "supported"),
+            )
+            model = replace(now.model, scene=replace(now.model.scene, lines=changed))
+            document = document_of(replace(now, model=model), 1, True)
+            placed = [line for line in document["lines"] if line["ends"] is not None]
+            assert len(placed) == len(lines)
+            assert {(line["probability"], line["guess"]) for line in placed} == shown
+            faces = [face for plane in document["planes"] for face in plane["faces"]]
+            assert {face["guess"] for face in faces} == {guess for _, guess in shown}
 
     def test_the_triangles_of_a_face_cover_it(self, page):
         faces = [(plane["axis"], face) for plane in page.solve()["planes"] for face in plane["faces"]]

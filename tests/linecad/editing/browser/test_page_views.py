@@ -261,3 +261,17 @@ def test_a_second_tab_only_looks_until_it_takes_over(screen, new_screen):
     screen.page.get_by_text("open in another tab").wait_for()  # within the five seconds after which it asks again
     screen.button("Edit here").click()
     screen.wait("linecad.store.owner")
+
+
+def test_a_selected_line_tells_how_sure_its_depth_is(screen):
+    told = screen.run(
+        """(probability) => {
+          const { store } = linecad;
+          const line = store.state.lines.find(({ ends }) => ends);
+          line.probability = probability;
+          store.set({ selection: { kind: "line", id: line.id } });
+          return document.querySelector("#inspector").innerText;
+        }""",
+        0.834,
+    )
+    assert "depth 83 % sure" in told

@@ -1,0 +1,97 @@
+"""Lines that are not sure enough are left out, with all that hangs on them, and a note counts them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linecad.confidence import keep_probable
+from linecad.errors import ConfidenceError
+from linecad.io.scene_file import read_scene, write_scene
+from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+
+RING = np.array([[0, 4, 0], [1, 4, 0], [0, 4, 1]])
+
+
+def plane(number, *lines):
+    return Plane(number, 1, 4.0 + number, lines, (Face(number, RING + np.array([0, number, 0])),))
+
+
+@pytest.fixture
+def scene():
+    return Scene(
+        photo="room.jpg",
+        camera=Camera(640, 480, [[500, 0, 320], [0, 500, 240], [0, 0, 1]], "file"),
+        rotation=[[1, 0, 0], [0, 0, -1], [0, 1, 0]],
+        lines=Lines(
+            id=[9, 4, 7, 2],
+            axis=[0, 2, 0, 2],
+            segment=np.arange(16.0).reshape(4, 2, 2),
+            ends=np.arange(24.0).reshape(4, 2, 3),
+            is_boundary=[True, False, True, False],
+            component=[0, 0, 1, 2],
+            confidence=["proven", "supported", "weak", "weak"],
+            probability=[0.97, 0.9, 0.6, 0.2],
+        ),
+        intersections=Intersections(
+            lines=[[9, 4], [4, 7], [2, 7]],
+            kind=["L", "T", "X"],
+            pixel=[[1, 2], [3, 4], [5, 6]],
+            real=[True, False, True],
+            in_tree=[True, False, False],
+            weight=[1, 2, 3],
+            reason=["chosen", "loose", "annotated"],
+        ),
+        planes=(plane(0, 9, 4), plane(1, 4, 7, 2), plane(2, 7, 2), plane(3, 2)),
+        solve=SolveReport("SCIP", "gain", "optimal", 1, 1, 0, 0.1),
+        notes=("one",),
+    )
+
+
+def test_lines_below_go_and_the_others_stay_as_they_are(scene):
+    kept = keep_probable(scene, 0.6).lines
+    for name in ("id", "axis", "segment", "ends", "is_boundary", "component", "confidence", "probability"):
+        np.testing.assert_array_equal(getattr(kept, name), getattr(scene.lines, name)[:3])
+
+
+def test_a_crossing_stays_where_both_of_its_lines_do(scene):
+    kept = keep_probable(scene, 0.6).intersections
+    for name in ("lines", "kind", "pixel", "real", "in_tree", "weight", "reason"):
+        np.testing.assert_array_equal(getattr(kept, name), getattr(scene.intersections, name)[:2])
+    assert keep_probable(scene, 0.95).intersections.lines.shape == (0, 2)
+
+
+def test_a_plane_stays_with_all_its_faces_where_one_of_its_lines_does(scene):
+    kept = keep_probable(scene, 0.9)
+    assert [(each.id, each.lines) for each in kept.planes] == [(0, (9, 4)), (1, (4,))]
+    assert [face.id for _, face in kept.faces] == [0, 1]
+
+
+def test_a_note_counts_what_was_left_out(scene):
+    assert keep_probable(scene, 0.9).notes == (
+        "one",
+        "2 of 4 lines and 2 of 4 planes are left out: the probability that their depth is right is below 0.9",
+    )
+    without_planes = keep_probable(replace(scene, planes=()), 0.25).notes[-1]
+    assert without_planes.startswith("1 of 4 lines are left out: ")
+
+
+@pytest.mark.parametrize("least", [0.0, 0.2])
+def test_where_all_are_sure_enough_the_scene_comes_back_as_it_is(scene, least):
+    assert keep_probable(scene, least) is scene
+
+
+def test_a_scene_that_does_not_tell_is_refused(scene):
+    silent = replace(scene, lines=replace(scene.lines, probability=()))
+    with pytest.raises(ConfidenceError, match=r"does not tell how likely .*; leave out --confidence, or convert"):
+        keep_probable(silent, 0.0)
+
+
+def test_where_nothing_would_be_left_the_highest_is_named(scene):
+    with pytest.raises(ConfidenceError, match=r"probability of 0.98 or more, the highest is 0.97; choose a smaller"):
+        keep_probable(scene, 0.98)
+
+
+def test_what_is_left_is_a_scene_file(scene, tmp_path):
+    write_scene(keep_probable(scene, 0.9), tmp_path / "a.json")
+    assert read_scene(tmp_path / "a.json").lines.probability.tolist() == [0.97, 0.9]
