@@ -37,7 +37,7 @@ _HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the 
 _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 
-def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = True) -> None:
+def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = False) -> None:
     """Write the scene as DXF of that AutoCAD release to `path`, its layers by band or not; OSError where that fails."""
     with _fixed_metadata():
         document = _build_document(build_model(scene, probability), scene, version)

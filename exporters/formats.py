@@ -42,7 +42,7 @@ class Format(NamedTuple):
 
 
 _BANDS = Option(
-    "probability", True, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
+    "probability", False, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
 )
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")

@@ -18,7 +18,7 @@ from linecad.scene import Scene
 
 
 def write(
-    scene: Scene, path: Path, names: Names, probability: bool = True, textures: Textures | None = None
+    scene: Scene, path: Path, names: Names, probability: bool = False, textures: Textures | None = None
 ) -> SideFiles:
     """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it.
 

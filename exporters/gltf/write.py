@@ -45,7 +45,7 @@ _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
 def write(
-    scene: Scene, path: Path, tubes: bool = False, probability: bool = True, textures: Textures | None = None
+    scene: Scene, path: Path, tubes: bool = False, probability: bool = False, textures: Textures | None = None
 ) -> None:
     """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails.
 

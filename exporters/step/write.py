@@ -57,7 +57,7 @@ _CURVE, _SURFACE = XCAFDoc_ColorType.XCAFDoc_ColorCurv, XCAFDoc_ColorType.XCAFDo
 _OPTIONS = {"write.step.schema": "AP214IS", "write.step.unit": "MM", "write.step.product.name": "linecad"}
 
 
-def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = True) -> None:
+def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = False) -> None:
     """Write the scene as STEP to `path`, its faces sewn where that is asked for; OSError where that fails.
 
     `probability` parts the lines by band.

@@ -39,7 +39,7 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time of a zip entry; the real one
 def write(
     scene: Scene,
     path: Path,
-    probability: bool = True,
+    probability: bool = False,
     names: Names | None = None,
     textures: Textures | None = None,
 ) -> SideFiles:

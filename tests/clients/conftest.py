@@ -91,13 +91,13 @@ def scene_file(tmp_path_factory):
 def export_to(scene_file, tmp_path):
     """Write the scene, or that of other content, in the format of a suffix; returns the file."""
 
-    def write(suffix, content=None):
+    def write(suffix, content=None, by_band=False):
         source = scene_file
         if content is not None:
             source = tmp_path / "other.json"
             source.write_text(json.dumps(content))
         path = tmp_path / f"wall{suffix}"
-        export(read_scene(source), path)
+        export(read_scene(source), path, options={"probability": True} if by_band else None)
         return path
 
     return write

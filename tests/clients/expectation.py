@@ -21,8 +21,11 @@ FACE_COLOUR = (0.80, 0.79, 0.74)
 BANDS = {"sure": 0.9, "likely": 0.5, "guess": 0.0}  # the smallest probability of each
 
 
-def build_expectation(scene):
-    """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file of version 1."""
+def build_expectation(scene, by_band=False):
+    """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file of version 1.
+
+    `by_band` is for exports with the option probability=on, which part lines by how sure their depth is.
+    """
     if (scene.get("format"), scene.get("version")) != ("linecad-scene", 1):
         raise ValueError(f"format {scene.get('format')}, version {scene.get('version')}: not a scene file of version 1")
     metres = scene.get("metres_per_unit") or 1.0
@@ -31,7 +34,8 @@ def build_expectation(scene):
     for line in sorted(scene["lines"], key=lambda line: line["id"]):
         ends = [_scaled(end, metres) for end in line["ends"]]
         if math.dist(*ends) > SHORTEST_LINE:
-            group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}{_band(line)}"
+            group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
+            group += _band(line) if by_band else ""
             pixels = [_project(end, camera) for end in ends]
             lines.append({"id": line["id"], "group": group, "ends": ends, "pixels": pixels})
     faces = [_face(plane, face, metres) for plane in scene["planes"] for face in plane.get("faces", [])]

@@ -31,13 +31,14 @@ def test_a_dxf_of_ours_is_right(export_to, expected):
     assert verdict(export_to(".dxf"), expected).startswith("CHECK OK ezdxf")
 
 
-def test_a_dxf_with_layers_by_probability_is_right(export_to, told):
-    path = export_to(".dxf", told)
-    assert verdict(path, json.loads(json.dumps(build_expectation(told)))).startswith("CHECK OK ezdxf")
+@pytest.mark.parametrize("by_band", [False, True])
+def test_a_dxf_of_a_scene_with_probabilities_is_right(export_to, told, by_band):
+    path = export_to(".dxf", told, by_band)
+    assert verdict(path, json.loads(json.dumps(build_expectation(told, by_band)))).startswith("CHECK OK ezdxf")
 
 
-def test_lines_on_the_layer_of_another_probability_are_noticed(export_to, told, expected):
-    assert verdict(export_to(".dxf", told), expected).startswith("CHECK FAILED")
+def test_layers_by_probability_that_nobody_asked_for_are_noticed(export_to, told, expected):
+    assert verdict(export_to(".dxf", told, by_band=True), expected).startswith("CHECK FAILED")
 
 
 @pytest.mark.parametrize("fault", [moved_line, missing_line, missing_face, missing_hole])

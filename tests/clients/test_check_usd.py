@@ -20,9 +20,10 @@ def test_a_stage_of_ours_is_right(export_to, expected, suffix):
     assert verdict(export_to(suffix), expected).startswith("CHECK OK usd")
 
 
-def test_a_stage_with_prims_by_probability_is_right(export_to, told):
-    expected = json.loads(json.dumps(build_expectation(told)))
-    assert verdict(export_to(".usda", told), expected).startswith("CHECK OK usd")
+@pytest.mark.parametrize("by_band", [False, True])
+def test_a_stage_of_a_scene_with_probabilities_is_right(export_to, told, by_band):
+    expected = json.loads(json.dumps(build_expectation(told, by_band)))
+    assert verdict(export_to(".usda", told, by_band), expected).startswith("CHECK OK usd")
 
 
 @pytest.mark.parametrize("fault", [moved_line, missing_line, missing_face, missing_hole, wrong_camera, wrong_colour])

@@ -24,10 +24,11 @@ def test_lines_of_a_group_are_red_green_and_blue_or_paler(expected):
     assert expected["groups"]["lines_x_boundary"]["linear"][0] == pytest.approx(0.7294, abs=1e-4)
 
 
-def test_where_the_scene_tells_probabilities_groups_end_in_how_sure_they_are(told):
-    expected = build_expectation(told)
+def test_groups_by_band_end_in_how_sure_they_are_where_the_scene_tells(told, document):
+    expected = build_expectation(told, by_band=True)
     bands = {line["id"]: line["group"].rsplit("_")[-1] for line in expected["lines"]}
     assert [bands[line["id"]] for line in told["lines"][:5]] == ["sure", "likely", "guess", "sure", "guess"]
+    assert build_expectation(told) == build_expectation(document, by_band=True) == build_expectation(document)
 
 
 @pytest.mark.parametrize(

@@ -149,7 +149,7 @@ def test_a_later_release_holds_the_same_and_passes_the_auditor(document, scene, 
 
 
 def test_layers_by_probability_and_the_number_itself_in_each_line(told, tmp_path):
-    export(told, tmp_path / "a.dxf")
+    export(told, tmp_path / "a.dxf", options={"probability": True})
     document = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
     assert not document.audit().errors
     probability = dict(zip(told.lines.id.tolist(), told.lines.probability.tolist(), strict=True))
@@ -165,9 +165,11 @@ def test_layers_by_probability_and_the_number_itself_in_each_line(told, tmp_path
     assert len(names) == 18
 
 
-def test_without_layers_by_probability_they_are_those_of_a_scene_that_does_not_tell(told, document, tmp_path):
-    export(told, tmp_path / "a.dxf", options={"probability": False})
+def test_layers_are_those_of_a_scene_that_does_not_tell_and_each_line_has_the_number(told, document, tmp_path):
+    export(told, tmp_path / "a.dxf")
     plain = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
     assert [layer.dxf.name for layer in plain.layers] == [layer.dxf.name for layer in document.layers]
     assert [line.dxf.layer for line in plain.modelspace()] == [line.dxf.layer for line in document.modelspace()]
-    assert all(values(line, 1040) for line in plain.modelspace().query("LINE"))
+    probability = dict(zip(told.lines.id.tolist(), told.lines.probability.tolist(), strict=True))
+    for line in plain.modelspace().query("LINE"):
+        assert values(line, 1040) == [probability[values(line, 1071)[0]]]

@@ -120,18 +120,27 @@ def test_neither_the_name_nor_the_time_changes_the_bytes(scene, reference, tmp_p
 BY_BAND = [suffix for suffix, row in FORMATS.items() if "probability" in [option.key for option in row.options]]
 
 
+def written(scene, path):
+    export(scene, path)
+    return path.read_bytes().lower()
+
+
 @pytest.mark.parametrize("suffix", BY_BAND)
 def test_groups_by_probability_are_there_only_where_the_scene_tells_it(scene, told, reference, tmp_path, suffix):
-    export(scene, tmp_path / f"a{suffix}", options={"probability": False})
+    export(scene, tmp_path / f"a{suffix}", options={"probability": True})
     assert (tmp_path / f"a{suffix}").read_bytes() == reference[suffix]
-    written = []
-    for is_on in (True, False):
-        export(told, tmp_path / f"a{suffix}", options={"probability": is_on})
-        written.append((tmp_path / f"a{suffix}").read_bytes().lower())
+    export(told, tmp_path / f"a{suffix}", options={"probability": True})
+    by_band = (tmp_path / f"a{suffix}").read_bytes().lower()
+    assert by_band != written(told, tmp_path / f"b{suffix}")
     if suffix not in (".usdc", ".usdz"):  # these are compressed
-        assert all(f"lines_x_boundary_{band}".encode() in written[0] for band in ("sure", "likely", "guess"))
-        assert b"boundary_sure" not in written[1]
-    assert written[0] != written[1]
+        assert all(f"lines_x_boundary_{band}".encode() in by_band for band in ("sure", "likely", "guess"))
+
+
+@pytest.mark.parametrize("suffix", BY_BAND)
+def test_without_the_option_groups_have_their_plain_names(told, tmp_path, suffix):
+    export(told, tmp_path / f"a{suffix}", options={"probability": False})
+    assert written(told, tmp_path / f"b{suffix}") == (tmp_path / f"a{suffix}").read_bytes().lower()
+    assert b"boundary_sure" not in (tmp_path / f"a{suffix}").read_bytes().lower()
 
 
 def test_every_format_with_names_for_lines_has_them_by_probability():

@@ -219,10 +219,11 @@ def test_tubes_are_seen_one_to_four_pixels_wide(scene, model, tmp_path):
         assert 1 < np.median(pixels) < 4, group.name
 
 
-def test_where_the_scene_tells_probabilities_nodes_are_named_by_them_and_extras_hold_them(told, tmp_path):
-    export(told, tmp_path / "a.glb")
+@pytest.mark.parametrize("by_band", [False, True])
+def test_where_the_scene_tells_probabilities_extras_hold_them_and_nodes_may_be_named_by_them(told, tmp_path, by_band):
+    export(told, tmp_path / "a.glb", options={"probability": by_band})
     glb = Glb(tmp_path / "a.glb")
-    groups = build_model(told, by_band=True).groups
+    groups = build_model(told, by_band).groups
     assert sorted(glb.children("lines")) == sorted(group.name for group in groups)
     for group in groups:
         extras = glb.tree["meshes"][glb.node(group.name)["mesh"]]["extras"]

@@ -198,10 +198,11 @@ def test_ids_that_32_bits_do_not_hold(large_ids, tmp_path):
     assert faces == {face.id for face in model.faces}
 
 
-def test_where_the_scene_tells_probabilities_prims_are_named_by_them_and_hold_them(told, tmp_path):
-    export(told, tmp_path / "a.usda")
+@pytest.mark.parametrize("by_band", [False, True])
+def test_where_the_scene_tells_probabilities_prims_hold_them_and_may_be_named_by_them(told, tmp_path, by_band):
+    export(told, tmp_path / "a.usda", options={"probability": by_band})
     stage = Usd.Stage.Open(str(tmp_path / "a.usda"))
-    groups = build_model(told, by_band=True).groups
+    groups = build_model(told, by_band).groups
     prims = stage.GetPrimAtPath(f"{ROOT}/Lines").GetChildren()
     assert sorted(prim.GetName() for prim in prims) == sorted(group.name for group in groups)
     for group in groups:
