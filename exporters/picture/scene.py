@@ -86,7 +86,7 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
     facts = [
         ", ".join(f"{int((lines.axis == axis).sum())} along {AXES[axis]}" for axis in range(3)),
         f"{_count(len(scene.intersections), 'crossing')}: {real} real, {len(scene.intersections) - real} fake",
-        f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}, {solve.seconds:.1f} s",
+        f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}",
         f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
     ]
     facts += _sureness(lines)

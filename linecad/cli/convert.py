@@ -72,7 +72,7 @@ def _summary(scene: "Scene") -> list[str]:
     gap = f"{solve.gap:.2%}" if math.isfinite(solve.gap) else "unknown"
     lines = [
         f"{len(scene.lines)} lines, {int(crossings.real.sum())} of {len(crossings)} crossings real, "
-        f"{len(scene.planes)} planes; program: {solve.status} in {solve.seconds:.1f} s, gap {gap}"
+        f"{len(scene.planes)} planes; program: {solve.status}, gap {gap}"
     ]
     if scene.certainty is not None:
         lines.append(summary(scene.camera, scene.certainty))

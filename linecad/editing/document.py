@@ -69,7 +69,7 @@ def solve_of(now: Now) -> dict[str, object]:
             "objective": told.objective,
             "bound": _finite(told.bound),
             "gap": _finite(told.gap),
-            "seconds": told.seconds,
+            "seconds": now.model.seconds,
             "status": told.status,
         }
     return {

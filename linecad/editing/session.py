@@ -71,6 +71,7 @@ class Model:
     version: int  # of the state that it was solved for
     decided: dict[int, Decided]  # by the id of the crossing
     changed: frozenset[int]  # crossings whose decision differs from that of the model before
+    seconds: float  # of the solver
 
 
 @dataclass(frozen=True)
@@ -309,7 +310,7 @@ class Session:
         changed = frozenset(
             crossing for crossing, found in now.items() if before.get(crossing, found).real != found.real
         )
-        return Model(made.scene, self._version, now, changed)
+        return Model(made.scene, self._version, now, changed, made.solution.seconds)
 
 
 def crossing_id(one: int, other: int) -> int:

@@ -48,7 +48,6 @@ def document_of(scene: Scene) -> dict[str, object]:
             "objective": float(solve.objective),
             "bound": _finite_or_null(solve.bound),
             "gap": _finite_or_null(solve.gap),
-            "seconds": float(solve.seconds),
             "cuts": int(solve.cuts),
             "nodes": int(solve.nodes),
         },

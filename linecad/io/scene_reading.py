@@ -206,7 +206,6 @@ def _solve_report(node: Node) -> SolveReport:
         objective=node["objective"].number(),
         bound=_number_or_unknown(node["bound"]),
         gap=_number_or_unknown(node["gap"]),
-        seconds=node["seconds"].number(),
         cuts=_count(node.get("cuts")),
         nodes=_count(node.get("nodes")),
     )

@@ -60,7 +60,7 @@ def made_scene(lines: int, faces: int) -> Scene:
         ),
         intersections=Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[]),
         planes=tuple(Plane(number, 1, y, (), tuple(held)) for number, (y, held) in enumerate(planes.items())),
-        solve=SolveReport("none", "gain", "optimal", 0, 0, 0, 0),
+        solve=SolveReport("none", "gain", "optimal", 0, 0, 0),
         metres_per_unit=1.0,
     )
 

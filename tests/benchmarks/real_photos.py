@@ -16,17 +16,19 @@ from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
 from linecad.evaluation.depth import score_depth
 from linecad.evaluation.frames import nearest_axes
+from linecad.finding import find_lines
 from linecad.geometry import angle_between_frames
 from linecad.lines.segments import find_segments
 from linecad.options import Options
-from linecad.pipeline import reconstruct
+from linecad.pipeline import reconstruct_lines
 from solver.options import SolveOptions
 
 
 def measure_depth(truth_file: Path, options: Options) -> tuple[float, ...]:
     truth = json.loads(truth_file.read_text())
     photo = read_photo(truth_file.with_suffix(".jpg"), truth_file)
-    scene = reconstruct(photo, options)
+    made = reconstruct_lines(photo.name, find_lines(photo, faint=options.faint), options)
+    scene = made.scene
     points = surveyed_points(truth)
     pixels = undistort_points(points[:, :2], np.array(truth["K"]), (), scene.camera.matrix)
     score = score_depth(scene, pixels, points[:, 4])
@@ -34,7 +36,7 @@ def measure_depth(truth_file: Path, options: Options) -> tuple[float, ...]:
     real = scene.intersections.real
     figures = (
         len(scene.lines), len(real), real.mean(), len(scene.planes), score.recall_2, score.recall_5, score.precision_2,
-        score.precision_5, np.degrees(error), scene.solve.seconds, scene.solve.gap,
+        score.precision_5, np.degrees(error), made.solution.seconds, scene.solve.gap,
     )  # fmt: skip
     print(
         f"{truth_file.stem:10} {figures[0]:5d} lines {figures[1]:5d} crossings {figures[2]:5.1%} real "

@@ -1,7 +1,8 @@
 """What differs between scene files of the same photos: `python tests/benchmarks/same_scenes.py BEFORE AFTER`.
 
 Two folders of scene files by the same names, written before and after a change of the code. Counts, key by key, the
-records that differ; the seconds of the solver do not count. With --tolerance, numbers may differ by so much, relative.
+records that differ; the seconds of the solver, which older files have, do not count. With --tolerance, numbers may
+differ by so much, relative.
 """
 
 import argparse

@@ -52,7 +52,7 @@ def build_scene():
             {"id": 2, "axis": "z", "offset": GROUND, "lines": [], "faces": [{"id": 7, "outline": FLOOR, "holes": []}]},
         ],
         "solve": {"solver": "none", "formulation": "gain", "status": "optimal", "objective": 0.0, "bound": 0.0,
-                  "gap": 0.0, "seconds": 0.0},
+                  "gap": 0.0},
         "notes": [],
     }  # fmt: skip
 

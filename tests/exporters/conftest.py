@@ -149,7 +149,7 @@ def scene():
         lines=lines,
         intersections=build_crossings(ends, segments, ids),
         planes=tuple(replace(p, lines=tuple(ids[on].tolist())) for p, on in zip(planes, on_plane, strict=True)),
-        solve=SolveReport("SCIP 10.0", "paper", "optimal", 120.5, 120.5, 0.0, 1.25),
+        solve=SolveReport("SCIP 10.0", "paper", "optimal", 120.5, 120.5, 0.0),
         metres_per_unit=1.0,
     )
 

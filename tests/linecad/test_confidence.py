@@ -43,7 +43,7 @@ def scene():
             reason=["chosen", "loose", "annotated"],
         ),
         planes=(plane(0, 9, 4), plane(1, 4, 7, 2), plane(2, 7, 2), plane(3, 2)),
-        solve=SolveReport("SCIP", "gain", "optimal", 1, 1, 0, 0.1),
+        solve=SolveReport("SCIP", "gain", "optimal", 1, 1, 0),
         notes=("one",),
     )
 

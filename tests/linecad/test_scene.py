@@ -64,7 +64,7 @@ scene = Scene(
     lines=lines,
     intersections=intersections,
     planes=(plane,),
-    solve=SolveReport("SCIP", "paper", "optimal", 1, 1, 0, 0.1),
+    solve=SolveReport("SCIP", "paper", "optimal", 1, 1, 0),
 )
 RECORDS = [camera, segments, frame, graph, solution, lines, intersections, face, plane, scene]
 

@@ -75,12 +75,6 @@ def cluster(tmp_path_factory):
         cluster.close()
 
 
-def without_seconds(path):
-    document = json.loads(path.read_bytes())
-    document["solve"].pop("seconds")
-    return document
-
-
 def test_photos_travel_as_bytes_and_results_are_those_of_convert(cluster, survey, output, tmp_path):
     photos = survey(3)
     camera = tmp_path / "camera.json"
@@ -94,8 +88,8 @@ def test_photos_travel_as_bytes_and_results_are_those_of_convert(cluster, survey
         single = [tmp_path / f"{photo.stem}{suffix}" for suffix in (".json", ".obj")]
         options = [option for path in single for option in ("-o", str(path))]
         assert main(["convert", str(photo), *options, "--camera", str(camera), "--quiet"]) == 0
-        assert without_seconds(output / f"{photo.stem}.json") == without_seconds(single[0])
-        assert (output / f"{photo.stem}.obj").read_bytes() == single[1].read_bytes()
+        for path in single:
+            assert (output / path.name).read_bytes() == path.read_bytes(), path.suffix
         pictures = list(tmp_path.glob(f"{photo.stem}.obj.*/*"))
         assert pictures
         for picture in pictures:
@@ -119,7 +113,7 @@ def test_with_shared_files_a_worker_that_is_killed_costs_no_photo(cluster, surve
     assert (result.progress.done, result.progress.failed) == (6, 0)
     rows = [json.loads(line) for line in (output / NAME).read_text().splitlines()]
     assert sorted(Path(row["photo"]).stem for row in rows) == [f"p{number:02d}" for number in range(6)]
-    assert all(without_seconds(output / f"p{number:02d}.json")["lines"] for number in range(6))
+    assert all(json.loads((output / f"p{number:02d}.json").read_bytes())["lines"] for number in range(6))
 
 
 def test_a_photo_that_fails_there_is_a_row_here(cluster, plan_of, tmp_path):

@@ -64,7 +64,7 @@ def test_what_is_written_is_read_back_to_rounding(tmp_path, size):
     none = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
     camera = Camera(width, height, matrix, "file")
     rotation = [[1, 0, 0], [0, 0, -1], [0, 1, 0]]
-    report = SolveReport("x", "gain", "optimal", 0, 0, 0, 0)
+    report = SolveReport("x", "gain", "optimal", 0, 0, 0)
     scene = Scene("a.jpg", camera, rotation, lines, none, (), report)
     export(scene, tmp_path / "a.fspy", np.zeros((height, width, 3), np.uint8))
     found = read_calibration(tmp_path / "a.fspy")

@@ -2,7 +2,6 @@
 
 import json
 import os
-import re
 import shutil
 import signal
 import struct
@@ -184,7 +183,7 @@ def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
     assert scene["solve"]["status"] == "interrupted"
     assert any("was interrupted" in note for note in scene["notes"])
     assert len(scene["lines"]) > 100
-    assert "program: interrupted in " in out
+    assert "program: interrupted, gap " in out
     assert sorted(path.name for path in folder.iterdir()) == ["a.json", "a.obj", "a.obj.mtl", "a.obj.textures"]
 
 
@@ -208,7 +207,7 @@ def test_the_summary_tells_the_status_as_the_programs(folder, capsys):
     counts = (
         f"{len(scene.lines)} lines, {real} of {len(scene.intersections)} crossings real, {len(scene.planes)} planes"
     )
-    assert re.fullmatch(re.escape(counts) + r"; program: robust fit in \d+\.\d s, gap unknown", out[0])
+    assert out[0] == f"{counts}; program: robust fit, gap unknown"
     assert out[1].startswith("camera ")
     assert out[2:] == [f"note: {note}" for note in scene.notes]
 

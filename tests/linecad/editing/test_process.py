@@ -210,7 +210,7 @@ class TestRefusals:
 
     def test_a_scene_without_its_photo(self, fails, folder):
         camera = json.loads((folder / "room.json").read_text())
-        turn, numbers = [[1, 0, 0], [0, 0, -1], [0, 1, 0]], ["objective", "bound", "gap", "seconds"]
+        turn, numbers = [[1, 0, 0], [0, 0, -1], [0, 1, 0]], ["objective", "bound", "gap"]
         scene = {
             "format": "linecad-scene", "version": 1, "photo": "far.jpg", "lines": [], "intersections": [], "planes": [],
             "camera": {**camera, "source": "file", "R_cam_from_world": turn},

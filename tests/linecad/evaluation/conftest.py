@@ -212,7 +212,7 @@ def scene_of():
             component=np.zeros(count), confidence=["proven"] * count,
         )  # fmt: skip
         none = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
-        report = SolveReport("none", "paper", "optimal", 0.0, 0.0, 0.0, 0.0)
+        report = SolveReport("none", "paper", "optimal", 0.0, 0.0, 0.0)
         return Scene("a.jpg", camera, frontal, replace(lines, **fields), none, (), report)
 
     return make

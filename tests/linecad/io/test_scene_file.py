@@ -140,7 +140,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             draw(words),
             draw(words),
             draw(st.sampled_from(STATUSES)),
-            *several(4, st.floats(allow_nan=False, allow_infinity=False)),
+            *several(3, st.floats(allow_nan=False, allow_infinity=False)),
         ),
         metres_per_unit=draw(st.none() | st.floats(1e-6, 1e6)),
         notes=tuple(draw(st.lists(words, max_size=3))),
@@ -256,7 +256,7 @@ REQUIRED = [
     *(f"intersections[0].{key}" for key in ("lines", "kind", "pixel", "real", "in_tree", "weight")),
     *(f"planes[0].{key}" for key in ("id", "axis", "offset", "lines")),
     *(f"planes[0].faces[0].{key}" for key in ("id", "outline")),
-    *(f"solve.{key}" for key in ("solver", "formulation", "status", "objective", "bound", "gap", "seconds")),
+    *(f"solve.{key}" for key in ("solver", "formulation", "status", "objective", "bound", "gap")),
     *(f"certainty.{key}" for key in ("quality", "reason", "rotation_degrees")),
 ]
 OPTIONAL = [
@@ -475,6 +475,12 @@ def test_whole_numbers_may_have_a_decimal_point() -> None:
 
 def test_numbers_may_be_whole() -> None:
     assert scene_from_json(changed("planes[0].offset", 4)).planes[0].offset == 4.0
+
+
+@pytest.mark.parametrize("seconds", [0.25, None, "long"])
+def test_the_time_of_the_solver_in_files_of_earlier_versions_is_ignored(seconds: Any) -> None:
+    assert exactly(scene_from_json(changed("solve.seconds", seconds))) == exactly(scene_from_json(EXAMPLE))
+    assert scene_to_json(scene_from_json(changed("solve.seconds", seconds))) == scene_to_json(scene_from_json(EXAMPLE))
 
 
 def test_unknown_status_is_read_as_it_stands() -> None:

@@ -50,7 +50,7 @@ def made_scene():
         Plane(5, 2, 1.0, (15,)),
     )
     none = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
-    report = SolveReport("x", "gain", "optimal", 0, 0, 0, 0)
+    report = SolveReport("x", "gain", "optimal", 0, 0, 0)
     return Scene("a.jpg", Camera(1280, 960, K, "file"), R, lines, none, planes, report, notes=("a warning",))
 
 
