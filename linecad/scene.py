@@ -11,7 +11,7 @@ Words: a *segment* is in the image, a *line* is in space, an *edge* joins two no
 where two segments meet in the image, an *axis* is 0, 1 or 2 (x, y, z), a *depth* is the camera z of a point.
 """
 
-from dataclasses import InitVar, dataclass, field
+from dataclasses import dataclass, field
 from typing import Literal, get_args
 
 import numpy as np
@@ -209,7 +209,6 @@ class SolveReport:
     objective: float
     bound: float
     gap: float
-    seconds: InitVar[float] = 0.0  # s, what a clock told: taken and not kept, so that two runs give one record
     cuts: int = 0  # rows added while solving
     nodes: int = 0  # branch-and-bound nodes
 

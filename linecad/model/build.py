@@ -93,7 +93,7 @@ def build_scene(view: View, graph: LineGraph, solution: Solution, decision: Deci
         planes=planes,
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
-            solution.seconds, solution.cuts, solution.nodes,
+            solution.cuts, solution.nodes,
         ),
         notes=(*_notes(view, graph, solution, found), *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
