@@ -14,7 +14,8 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int, Text, check_lengths, check_not_negative, check_words, freeze
 
 EdgeKind = Literal["L", "T", "X", "collinear"]
-Formulation = Literal["gain", "paper"]
+Formulation = Literal["gain", "paper"]  # the programs over all crossings
+Program = Literal["bodies", "gain", "paper"]
 Status = Literal[
     "optimal", "time limit", "gap limit", "interrupted", "node limit", "memory limit", "heuristic", "robust fit"
 ]  # fmt: skip
@@ -196,7 +197,7 @@ class Solution:
 
     status: Status
     solver: str  # name and version
-    formulation: Formulation
+    formulation: Program
     objective: float
     bound: float  # proven upper bound of the objective, infinite where nothing was proven
     gap: float  # (bound - objective) / max(|objective|, 1e-9)

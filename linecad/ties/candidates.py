@@ -1,0 +1,145 @@
+"""Candidates: ratios of the scales of two bodies that some evidence asks for, each with all that speaks for it.
+
+A ratio is a candidate once. Where crossings ask for it, it is of kind *bundle*; else, where planes would become one, of
+kind *plane*; else, where levels match, of kind *level*. Planes and levels that match at the ratio of a bundle are then
+features of the bundle.
+"""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from linecad.ties.bundles import Bundle, find_bundles
+from linecad.ties.colours import find_colours, likeness
+from linecad.ties.levels import LEAST_MATCHES, MOST, LevelPair, Match, find_levels
+from linecad.ties.planes import SharedPlane, find_shared_planes, is_induced
+from linecad.ties.setting import Setting
+
+Kind = Literal["bundle", "plane", "level"]
+KINDS: tuple[Kind, ...] = get_args(Kind)
+
+SAME_RATIO = 0.015  # log ratio within which two pieces of evidence ask for the same
+NEAR, FAR = 100.0, 800.0  # px at the reference width, over which nearness of bodies fades
+NEAR_PLANES, FAR_PLANES = 150.0, 600.0
+GAP_UNIT = 37.5  # px
+MOST_EXCESS, FARTHEST = 8.0, 1.0  # of features that would else run away
+
+Features = dict[str, float]
+
+
+@dataclass(frozen=True, eq=False)
+class Candidate:
+    """One ratio for two bodies."""
+
+    kind: Kind
+    bodies: tuple[int, int]  # the smaller number first
+    log_ratio: float  # log scale of the first body less that of the second
+    normal: int  # of the shared plane; -1 for other kinds
+    features: Features
+
+
+class _Pair:
+    """What candidates of one pair of bodies share."""
+
+    def __init__(self, setting: Setting, bodies: tuple[int, int], levels: LevelPair, like: float) -> None:
+        sizes = np.sort(setting.bodies.size[list(bodies)])
+        distance = setting.distance(*bodies)
+        self.setting, self.bodies, self.levels = setting, bodies, levels
+        self.features: Features = {
+            "near": float(np.exp(-distance / NEAR)),
+            "not far": float(np.exp(-distance / FAR)),
+            "lines of the smaller": float(np.log(sizes[0])),
+            "lines of the larger": float(np.log(sizes[1])),
+            "levels": float(np.log1p(levels.fewest)),
+            "colour": like,
+        }
+
+    def candidate(self, kind: Kind, log_ratio: float, own: Features, normal: int = -1) -> Candidate:
+        match = self.levels.at(log_ratio)
+        common = {
+            "level excess": min(match.excess, MOST_EXCESS),
+            "level lead": self.levels.lead(match),
+            "same eaves": float(self.levels.same_eaves(log_ratio)),
+            "apart": min(abs(log_ratio), FARTHEST),
+        }
+        return Candidate(kind, self.bodies, log_ratio, normal, {**self.features, **common, **own})
+
+    def of_bundle(self, bundle: Bundle, planes: list[SharedPlane]) -> Candidate:
+        supported, connected = self.setting.support(*self.bodies, bundle.log_ratio)
+        at_once = [plane for plane in planes if abs(plane.log_ratio - bundle.log_ratio) < SAME_RATIO]
+        implied = [min(plane.shares) for plane in at_once if plane.normal in bundle.coordinates]
+        more = [min(plane.shares) for plane in at_once if plane.normal not in bundle.coordinates]
+        own = {
+            "log-odds": float(np.log(bundle.log_odds)),
+            "of all": bundle.log_odds / bundle.of_all,
+            "all log-odds": float(np.log(bundle.of_all)),
+            "matched": float(np.log(bundle.matched)),
+            "fewest lines": float(np.log(bundle.fewest)),
+            "corners": float(np.log1p(bundle.corners)),
+            "pieces": float(np.log1p(bundle.pieces)),
+            "gap": float(np.sqrt(bundle.gap / GAP_UNIT)),
+            "from both": float(bundle.from_both),
+            "supported": supported,
+            "connected": connected,
+            "plane of it": max(implied, default=0.0),
+            "plane beside": max(more, default=0.0),
+        }
+        return self.candidate("bundle", bundle.log_ratio, own)
+
+    def of_plane(self, plane: SharedPlane, supported: float, connected: float) -> Candidate:
+        own = {
+            "planes near": float(np.exp(-plane.distance / NEAR_PLANES)),
+            "planes not far": float(np.exp(-plane.distance / FAR_PLANES)),
+            "smaller share": min(plane.shares),
+            "larger share": max(plane.shares),
+            "fewest lines": float(np.log(min(plane.lines))),
+            "most lines": float(np.log(max(plane.lines))),
+            "rank": float(plane.rank),
+            "horizontal": float(plane.normal == 2),
+            "supported": supported,
+            "connected": connected,
+        }
+        return self.candidate("plane", plane.log_ratio, own, plane.normal)
+
+    def of_level(self, peak: Match) -> Candidate:
+        own = {"matches": float(np.log(peak.matches)), "by chance": float(np.log(peak.by_chance + 0.5))}
+        return self.candidate("level", peak.log_ratio, own)
+
+
+def find_candidates(setting: Setting) -> list[Candidate]:
+    """All candidates between any two bodies, pair by pair."""
+    bundles: dict[tuple[int, int], list[Bundle]] = {}
+    planes: dict[tuple[int, int], list[SharedPlane]] = {}
+    for bundle in find_bundles(setting):
+        bundles.setdefault(bundle.bodies, []).append(bundle)
+    for plane in find_shared_planes(setting):
+        planes.setdefault(plane.bodies, []).append(plane)
+    levels, colours = find_levels(setting), find_colours(setting)
+    found: list[Candidate] = []
+    for first in range(setting.bodies.count):
+        for second in range(first + 1, setting.bodies.count):
+            bodies = (first, second)
+            pair = LevelPair(levels[first], levels[second])
+            if bodies in bundles or bodies in planes or pair.peaks:
+                known = _Pair(setting, bodies, pair, likeness(colours, first, second))
+                found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []))
+    return found
+
+
+def _of_pair(pair: _Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> list[Candidate]:
+    found = [pair.of_bundle(bundle, planes) for bundle in bundles]
+    taken = [bundle.log_ratio for bundle in bundles]
+    for plane in planes:
+        supported, connected = pair.setting.support(*pair.bodies, plane.log_ratio)
+        if _is_new(plane.log_ratio, taken) and not is_induced(plane, connected):
+            found.append(pair.of_plane(plane, supported, connected))
+    taken += [plane.log_ratio for plane in planes]
+    for peak in pair.levels.peaks[:MOST]:
+        if peak.matches >= LEAST_MATCHES and _is_new(peak.log_ratio, taken):
+            found.append(pair.of_level(peak))
+    return found
+
+
+def _is_new(log_ratio: float, taken: list[float]) -> bool:
+    return all(abs(log_ratio - other) >= SAME_RATIO for other in taken)

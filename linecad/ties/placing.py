@@ -1,0 +1,127 @@
+"""The stage that puts every body where it most likely is: fit, rigid bodies, evidence, scene program."""
+
+from dataclasses import dataclass, replace
+import time
+
+import numpy as np
+
+from linecad.arrays import Bool, Float
+from linecad.decide.stability import resample
+from linecad.line_graph import LineGraph, Solution
+from linecad.progress import StageReport, silent
+from linecad.ties.bodies import RigidBodies, find_rigid_bodies
+from linecad.ties.candidates import find_candidates
+from linecad.ties.probability import probabilities
+from linecad.ties.setting import Setting
+from linecad.ties.weights import weigh_candidates
+from solver.annotations import check_annotations, read_annotations
+from solver.bodies.search import place
+from solver.bodies.ties import Placement, Ties
+from solver.choice import boundaries
+from solver.depths import end_ratios, near_log_ratio
+from solver.families import find_families
+from solver.options import FAMILIES, OnProgress, SolveOptions
+from solver.potentials import fit_near_depths
+from solver.robust import RobustFit, agreeing_with
+
+FITS = 21  # without some lines; each line is left out of seven
+CERTAIN = 1e6  # weight of what a person called real
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """Lines in their places."""
+
+    solution: Solution  # the crossings that agree there
+    setting: Setting
+    ties: Ties
+    placement: Placement
+    reference: int  # the body that the others are placed relative to
+    probability: Float  # (N,) that a line's depth relative to component 0 is right within 5 %
+
+
+def place_lines(
+    graph: LineGraph,
+    width: int,
+    pixels: "np.ndarray | None",
+    options: SolveOptions,
+    on_progress: OnProgress = None,
+    on_stage: StageReport = silent,
+) -> Placed:
+    """The lines of a graph from a photo `width` px wide, with every body at its most likely scale.
+
+    Keeps to the crossings that `options` call real or fake. Raises SolverError or ContradictionError.
+    """
+    began = time.monotonic()
+    ratios = end_ratios(graph)
+    real, fake = read_annotations(graph, options)
+    check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
+    on_stage("fitting depths, with and without some of the lines")
+    setting = _setting(graph, width, pixels, options, real, fake)
+    on_stage(f"finding what ties {setting.bodies.count} bodies")
+    ties = _with_sure(weigh_candidates(find_candidates(setting), setting.bodies.size), setting, real)
+    reference = int(setting.bodies.size.argmax()) if setting.bodies.count else 0
+    on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
+    placement = place(ties, max(1, setting.bodies.count), reference, options, on_progress)
+    body = setting.bodies.body
+    log_depth = setting.log_depth + np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
+    log_depth = _kept_to(graph, log_depth, real, ratios)
+    connected = (agreeing_with(graph, log_depth) & ~fake) | real
+    solution = Solution(
+        status=placement.status,
+        solver=placement.solver,
+        formulation="bodies",
+        objective=placement.objective,
+        bound=placement.bound,
+        gap=placement.gap,
+        seconds=time.monotonic() - began,
+        nodes=placement.nodes,
+        connected=connected,
+        is_boundary=boundaries(graph, connected),
+        planar_pairs=np.zeros((0, 3), np.int64),
+        log_depth=log_depth,
+    )
+    probability = probabilities(setting, placement, reference)
+    return Placed(solution, setting, ties, placement, reference, probability)
+
+
+def _setting(
+    graph: LineGraph, width: int, pixels: "np.ndarray | None", options: SolveOptions, real: Bool, fake: Bool
+) -> Setting:
+    believed = replace(
+        graph, weight=np.where(real, CERTAIN, graph.weight), informative=graph.informative & ~fake
+    )  # fmt: skip
+    fit = RobustFit(believed)
+    log_depth = fit.depths()
+    fits = resample(believed, lambda present: fit.depths(present=present), options.seed, FITS)
+    bodies = find_rigid_bodies(believed, log_depth, fits)
+    return Setting(believed, log_depth, bodies, fits, width, pixels)
+
+
+def _with_sure(ties: Ties, setting: Setting, real: Bool) -> Ties:
+    """The ties, and one for each crossing of two bodies that a person called real, which outweighs all others."""
+    graph, body = setting.graph, setting.bodies.body
+    first, second = graph.edges.T
+    sure = np.flatnonzero(real & graph.informative & (body[first] >= 0) & (body[second] >= 0))
+    sure = sure[body[first[sure]] != body[second[sure]]]
+    i, j = graph.edges[sure].T
+    asked = graph.log_ratio[sure] - setting.log_depth[i] + setting.log_depth[j]
+    return Ties(
+        np.concatenate([ties.bodies, np.column_stack([body[i], body[j]])]),
+        np.r_[ties.log_ratio, asked],
+        np.r_[ties.tolerance, graph.tolerance[sure]],
+        np.r_[ties.weight, np.full(len(sure), CERTAIN)],
+        np.r_[ties.group, np.full(len(sure), -1)],
+    )
+
+
+def _kept_to(graph: LineGraph, log_depth: Float, real: Bool, ratios: Float) -> Float:
+    """Log depths (N,) moved as far as the crossings ask that a person called real."""
+    if not real.any():
+        return log_depth
+    to_middle = np.log(ratios.min(axis=1))
+    near = log_depth + to_middle
+    lowest = near.min()
+    fitted = fit_near_depths(graph, near_log_ratio(graph, ratios), real, np.inf, near - lowest).near
+    moved: Float = fitted + lowest - to_middle
+    return moved

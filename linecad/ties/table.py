@@ -1,0 +1,75 @@
+"""The table of `linecad.ties.weights`: log-odds that a candidate is right, for each unit of a feature.
+
+Logistic regression with a small ridge, by tests/benchmarks/ties.py (docs/results/ties.md). Do not edit by hand.
+"""
+
+from linecad.ties.candidates import Kind
+
+AT_ONCE: dict[Kind, float] = {
+    "bundle": -1.7757,
+    "plane": -6.5091,
+    "level": -7.9334,
+}
+LOG_ODDS: dict[Kind, dict[str, float]] = {
+    "bundle": {
+        "near": 0.2855,
+        "not far": -5.7758,
+        "lines of the smaller": -0.1486,
+        "lines of the larger": 0.1680,
+        "levels": 0.1386,
+        "colour": 7.1199,
+        "level excess": 0.3276,
+        "level lead": 0.1402,
+        "same eaves": 0.4790,
+        "apart": -1.9318,
+        "log-odds": -0.0216,
+        "of all": 0.5881,
+        "all log-odds": -0.1637,
+        "matched": 0.4106,
+        "fewest lines": -0.3695,
+        "corners": 0.4319,
+        "pieces": -0.1784,
+        "gap": 0.1253,
+        "from both": 0.3222,
+        "supported": 1.4220,
+        "connected": -2.1271,
+        "plane of it": 1.3171,
+        "plane beside": 3.9048,
+    },
+    "plane": {
+        "near": -0.5416,
+        "not far": 0.0116,
+        "lines of the smaller": -0.7158,
+        "lines of the larger": -0.1210,
+        "levels": 0.4124,
+        "colour": 3.7738,
+        "level excess": 0.5275,
+        "level lead": 0.7313,
+        "same eaves": 1.8225,
+        "apart": -0.3672,
+        "planes near": 1.8215,
+        "planes not far": 1.5202,
+        "smaller share": 3.2226,
+        "larger share": 1.2099,
+        "fewest lines": -0.0954,
+        "most lines": 0.0832,
+        "rank": 0.1284,
+        "horizontal": -0.1921,
+        "supported": 3.8027,
+        "connected": -0.5624,
+    },
+    "level": {
+        "near": -0.3179,
+        "not far": -0.3744,
+        "lines of the smaller": -0.1759,
+        "lines of the larger": 0.1172,
+        "levels": 0.7131,
+        "colour": 2.8182,
+        "level excess": 0.8100,
+        "level lead": 0.5387,
+        "same eaves": 0.5374,
+        "apart": -4.6374,
+        "matches": 0.0565,
+        "by chance": 0.1112,
+    },
+}

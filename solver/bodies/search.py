@@ -1,0 +1,98 @@
+"""`place`: ties in, the scales of all bodies out."""
+
+import time
+from dataclasses import replace
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
+
+from linecad.arrays import Float, Int
+from linecad.line_graph import Status
+from solver.backends.scip import Watch, run, version
+from solver.bodies.local_search import improve, margins
+from solver.bodies.program import build
+from solver.bodies.ties import Placement, Ties
+from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_gap
+from solver.progress import Reporter, catch_interrupt
+
+MOST_NODES = 20_000  # where the options name no limit: about a minute; a photo takes up to some hundred
+ANCHOR = 1e-6  # weight that keeps what no counted tie holds
+
+
+def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_progress: OnProgress = None) -> Placement:
+    """The log scales of `count` bodies at which ties of the most weight hold at once, 0 for the `reference`.
+
+    Exact within `FARTHEST` of the reference, by SCIP; the same ties and seed give the same answer, since no clock
+    ends the search unless the options name a time. Bodies that no tie leads to keep their scale. Raises SolverError.
+    """
+    began = time.monotonic()
+    start = improve(ties, np.zeros(count), options.seed) if len(ties) else np.zeros(count)
+    start = _about(ties, start, reference)
+    objective = ties.value(start)
+    log_scale, bound, nodes = start, objective, 0
+    status: Status = "optimal"
+    if len(ties):
+        program = build(ties, count, reference)
+        program.offer(ties, start)
+        reporter = Reporter(began, objective, float(ties.weight.sum()), on_progress)
+        watch = Watch(program.model, reporter)
+        limits = replace(
+            options,
+            time_limit_s=options.time_limit_s or LONGEST_TIME_S,
+            node_limit=options.node_limit or MOST_NODES,
+        )
+        with catch_interrupt() as stop:
+            outcome = run(program.model, limits, watch, stop)
+        found = _about(ties, program.log_scale(), reference) if outcome.has_solution else start
+        if ties.value(found) > objective:
+            log_scale, objective = found, ties.value(found)
+        status, nodes = outcome.status, reporter.nodes
+        bound = objective if status == "optimal" else max(objective, reporter.bound)
+    log_scale = _refined(ties, log_scale, reference)
+    return Placement(
+        log_scale=log_scale,
+        counted=ties.counted(log_scale),
+        objective=objective,
+        bound=bound,
+        gap=relative_gap(objective, bound),
+        status=status,
+        nodes=nodes,
+        solver=version(),
+        margin=margins(ties, log_scale, reference),
+    )
+
+
+def _about(ties: Ties, log_scale: Float, reference: int) -> Float:
+    """The same scales with 0 for the reference, and for the first body of each part that no tie connects to it."""
+    part = _parts(ties, len(log_scale))
+    lead = np.array([int(np.argmax(part == number)) for number in range(part.max(initial=-1) + 1)], np.int64)
+    lead[part[reference]] = reference
+    about: Float = log_scale - log_scale[lead[part]]
+    return about
+
+
+def _parts(ties: Ties, count: int) -> Int:
+    first, second = ties.bodies.T
+    links = csr_matrix((np.ones(len(ties)), (first, second)), (count, count))
+    return np.asarray(connected_components(links, directed=False)[1], np.int64)
+
+
+def _refined(ties: Ties, log_scale: Float, reference: int) -> Float:
+    """The middle of what counts: weighted least squares, kept where the counted ties still hold there.
+
+    The program knows intervals only, and its answer lies at their ends.
+    """
+    counted = ties.counted(log_scale)
+    if not counted.any():
+        return log_scale
+    used = ties.subset(counted)
+    first, second = used.bodies.T
+    rows = np.zeros((len(used), len(log_scale)))
+    at = np.arange(len(used))
+    rows[at, first], rows[at, second] = 1.0, -1.0
+    weight = used.weight / used.tolerance**2
+    normal = rows.T @ (weight[:, None] * rows) + ANCHOR * np.eye(len(log_scale))
+    step = np.linalg.solve(normal, rows.T @ (weight * (used.log_ratio - rows @ log_scale)))
+    refined = _about(ties, log_scale + step, reference)
+    return refined if ties.value(refined) >= ties.value(log_scale) else log_scale

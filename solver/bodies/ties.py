@@ -1,0 +1,118 @@
+"""What the scene program is given and what it answers.
+
+A *tie* says that the scales of two bodies have a certain ratio, and how much log-odds that is worth. Ties without a
+group are independent of each other. Ties of one group repeat each other: where three bodies share a plane, the third
+pair says nothing that the other two did not. So of a group no more ties count than there are bodies in any part that
+they connect (a pseudoforest; these are the independent sets of the bicircular matroid, so that taking the heaviest
+first is best).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int, check_lengths, check_not_negative, freeze
+from linecad.line_graph import Status
+
+ROUNDING = 1e-7  # log ratio by which a tie may be missed and still hold
+
+
+@dataclass(frozen=True, eq=False)
+class Ties:
+    """T ties between bodies."""
+
+    bodies: Int  # (T, 2) two different bodies
+    log_ratio: Float  # (T,) log scale of the first less that of the second
+    tolerance: Float  # (T,) half width of the interval about log_ratio, positive
+    weight: Float  # (T,) positive: log-odds that are won where the ratio is in the interval
+    group: Int  # (T,) -1, or the group whose ties repeat each other
+
+    def __post_init__(self) -> None:
+        freeze(self, "bodies", np.int64, (None, 2))
+        for name in ("log_ratio", "tolerance", "weight"):
+            freeze(self, name, np.float64, (None,))
+        freeze(self, "group", np.int64, (None,))
+        check_lengths(self, len(self.bodies), ["log_ratio", "tolerance", "weight", "group"])
+        check_not_negative(self, ["bodies"])
+        if len(self) and not (self.tolerance.min() > 0 and self.weight.min() > 0):
+            raise ValueError("Ties.tolerance and Ties.weight must be positive")
+        if (self.bodies[:, 0] == self.bodies[:, 1]).any():
+            raise ValueError("Ties.bodies names one body twice")
+        if len(self) and self.group.min() < -1:
+            raise ValueError(f"Ties.group holds {self.group.min()}, expected -1 or more")
+
+    def __len__(self) -> int:
+        return len(self.bodies)
+
+    def subset(self, keep: Bool | Int) -> "Ties":
+        """The ties that a mask or an index array selects."""
+        return Ties(self.bodies[keep], self.log_ratio[keep], self.tolerance[keep], self.weight[keep], self.group[keep])
+
+    def misfit(self, log_scale: Float) -> Float:
+        """(T,) by how much log scales (B,) miss the ratios."""
+        first, second = self.bodies.T
+        misfit: Float = np.abs(log_scale[first] - log_scale[second] - self.log_ratio)
+        return misfit
+
+    def holds(self, log_scale: Float) -> Bool:
+        """(T,) the ties whose interval log scales (B,) are in."""
+        return np.asarray(self.misfit(log_scale) <= self.tolerance + ROUNDING)
+
+    def counted(self, log_scale: Float) -> Bool:
+        """(T,) the ties that hold at log scales (B,) and count: of each group the heaviest that may count at once."""
+        holds = self.holds(log_scale)
+        counted = holds & (self.group < 0)
+        for group in np.unique(self.group[holds & (self.group >= 0)]).tolist():
+            own = np.flatnonzero(holds & (self.group == group))
+            own = own[np.argsort(-self.weight[own], kind="stable")]
+            counted[own[pseudoforest(self.bodies[own])]] = True
+        return counted
+
+    def value(self, log_scale: Float) -> float:
+        """The weight of all that counts at log scales (B,)."""
+        return float(self.weight[self.counted(log_scale)].sum())
+
+
+def pseudoforest(edges: Int) -> Bool:
+    """Mask (E,) of the edges that are taken, first come first served, while no part has more edges than nodes."""
+    root: dict[int, int] = {}
+    is_full: dict[int, bool] = {}  # the part has as many edges as nodes
+
+    def find(node: int) -> int:
+        root.setdefault(node, node)
+        while root[node] != node:
+            root[node] = root[root[node]]
+            node = root[node]
+        return node
+
+    taken = np.zeros(len(edges), bool)
+    for number, (first, second) in enumerate(edges.tolist()):
+        one, other = find(first), find(second)
+        full, other_full = is_full.get(one, False), is_full.get(other, False)
+        if full and other_full:
+            continue
+        taken[number] = True
+        root[one] = other
+        is_full[other] = full or other_full or one == other
+    return taken
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """The scales of B bodies."""
+
+    log_scale: Float  # (B,) 0 for the reference body, and for the first of bodies that no tie leads to from there
+    counted: Bool  # (T,) ties that hold and count
+    objective: float  # their weight
+    bound: float  # proven: no scales are worth more
+    gap: float
+    status: Status
+    nodes: int
+    solver: str
+    margin: Float  # (B,) see `solver.bodies.margins`
+
+    def __post_init__(self) -> None:
+        freeze(self, "log_scale", np.float64, (None,))
+        freeze(self, "counted", np.bool_, (None,))
+        freeze(self, "margin", np.float64, (None,))
+        check_lengths(self, len(self.log_scale), ["margin"])

@@ -1,0 +1,170 @@
+"""The scene program against brute force, and what it promises."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+from numpy.random import Generator
+
+from linecad.arrays import Float
+from solver.bodies.local_search import ELSEWHERE
+from solver.bodies.search import place
+from solver.bodies.ties import Ties, pseudoforest
+from solver.options import Progress, SolveOptions
+
+OPTIONS = SolveOptions()
+
+
+def some_ties(rng: Generator, bodies: int, count: int, grouped: bool = True) -> Ties:
+    """Ties of which half are as one draw of scales asks."""
+    truth = rng.normal(0, 0.4, bodies)
+    pairs = np.array([rng.choice(bodies, 2, replace=False) for _ in range(count)])
+    right = rng.random(count) < 0.5
+    asked = truth[pairs[:, 0]] - truth[pairs[:, 1]] + rng.normal(0, 0.005, count)
+    return Ties(
+        bodies=pairs,
+        log_ratio=np.where(right, asked, rng.uniform(-0.8, 0.8, count)),
+        tolerance=np.full(count, 0.02),
+        weight=rng.uniform(1, 6, count),
+        group=rng.integers(-1, 2, count) if grouped else np.full(count, -1),
+    )
+
+
+def are_possible(ties: Ties, bodies: int) -> bool:
+    """Whether scales exist at which all ties hold: no negative cycle, by Floyd and Warshall."""
+    longest = np.where(np.eye(bodies, dtype=bool), 0.0, np.inf)
+    for (first, second), ratio, tolerance in zip(ties.bodies, ties.log_ratio, ties.tolerance, strict=True):
+        longest[second, first] = min(longest[second, first], ratio + tolerance)
+        longest[first, second] = min(longest[first, second], tolerance - ratio)
+    for middle in range(bodies):
+        longest = np.minimum(longest, longest[:, [middle]] + longest[[middle]])
+    return bool((np.diag(longest) >= -1e-9).all())
+
+
+def is_pseudoforest(edges: Float) -> bool:
+    """Whether no set of nodes holds more edges than nodes, by the definition."""
+    nodes = sorted(set(edges.ravel().tolist()))
+    for chosen in product([False, True], repeat=len(nodes)):
+        inside = {node for node, is_in in zip(nodes, chosen, strict=True) if is_in}
+        if sum(set(edge) <= inside for edge in edges.tolist()) > len(inside):
+            return False
+    return True
+
+
+def best_value(ties: Ties, bodies: int) -> float:
+    """The most weight of any subset of ties that may count and hold at once."""
+    best = 0.0
+    for chosen in product([False, True], repeat=len(ties)):
+        keep = np.array(chosen)
+        worth = float(ties.weight[keep].sum())
+        if worth <= best or not are_possible(ties.subset(keep), bodies):
+            continue
+        groups = [ties.bodies[keep & (ties.group == group)] for group in set(ties.group.tolist()) - {-1}]
+        if all(is_pseudoforest(edges) for edges in groups):
+            best = worth
+    return best
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_the_answer_is_the_best_of_all(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bodies = int(rng.integers(2, 5))
+    ties = some_ties(rng, bodies, int(rng.integers(1, 10)))
+    found = place(ties, bodies, 0, OPTIONS)
+    assert found.status == "optimal"
+    assert found.gap == 0
+    assert found.objective == pytest.approx(best_value(ties, bodies))
+    assert ties.weight[found.counted].sum() == pytest.approx(found.objective)
+    assert ties.holds(found.log_scale)[found.counted].all()
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_the_heaviest_first_are_the_best_pseudoforest(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    edges = np.array([rng.choice(4, 2, replace=False) for _ in range(7)])
+    weight = np.sort(rng.uniform(1, 5, len(edges)))[::-1]
+    best = max(
+        float(weight[np.array(keep)].sum())
+        for keep in product([False, True], repeat=len(edges))
+        if is_pseudoforest(edges[np.array(keep)])
+    )
+    assert weight[pseudoforest(edges)].sum() == pytest.approx(best)
+
+
+def test_the_same_ties_give_the_same_answer() -> None:
+    ties = some_ties(np.random.default_rng(5), 12, 60)
+    first, second = (place(ties, 12, 0, OPTIONS) for _ in range(2))
+    assert first.log_scale.tobytes() == second.log_scale.tobytes()
+    assert (first.objective, first.nodes, first.margin.tolist()) == (
+        second.objective, second.nodes, second.margin.tolist(),
+    )  # fmt: skip
+
+
+def test_scales_are_those_of_the_ties() -> None:
+    ties = Ties([[0, 1], [1, 2], [0, 2]], [0.3, -0.1, 0.2], [0.02] * 3, [2.0, 3.0, 1.0], [-1] * 3)
+    found = place(ties, 3, 0, OPTIONS)
+    assert found.log_scale == pytest.approx([0.0, -0.3, -0.2], abs=1e-5)
+    assert found.counted.all()
+
+
+def test_heavier_evidence_wins() -> None:
+    ties = Ties([[0, 1], [1, 0], [0, 1]], [0.3, 0.5, -0.5], [0.02] * 3, [4.0, 2.0, 2.5], [-1] * 3)
+    found = place(ties, 2, 0, OPTIONS)  # the second and third say the same
+    assert found.log_scale == pytest.approx([0.0, 0.5], abs=1e-5)
+    assert found.objective == pytest.approx(4.5)
+
+
+def test_what_no_tie_leads_to_stays() -> None:
+    found = place(Ties([[1, 2]], [0.4], [0.02], [1.0], [-1]), 4, 0, OPTIONS)
+    assert found.log_scale == pytest.approx([0.0, 0.0, -0.4, 0.0], abs=1e-5)
+    assert found.margin[[1, 2, 3]].tolist() == [0, 0, 0]
+
+
+def test_no_ties_are_an_answer() -> None:
+    found = place(Ties(np.zeros((0, 2)), [], [], [], []), 3, 1, OPTIONS)
+    assert found.log_scale.tolist() == [0, 0, 0]
+    assert (found.objective, found.status) == (0, "optimal")
+
+
+def test_ties_of_a_group_repeat_each_other() -> None:
+    """Four bodies in one plane: six ties, of which four count."""
+    pairs = [[a, b] for a in range(4) for b in range(a)]
+    ties = Ties(pairs, [0.0] * 6, [0.02] * 6, [1.0, 2.0, 3.0, 4.0, 5.0, 6.0], [0] * 6)
+    assert place(ties, 4, 0, OPTIONS).objective == pytest.approx(6 + 5 + 4 + 3)
+
+
+def test_margin_is_what_another_place_loses() -> None:
+    ties = Ties([[0, 1], [0, 1], [1, 2]], [0.0, 0.4, 0.0], [0.02] * 3, [5.0, 3.0, 1.0], [-1] * 3)
+    found = place(ties, 3, 0, OPTIONS)
+    assert found.margin.tolist() == pytest.approx([2.0, 2.0, 1.0])  # 2 moves alone; 1 takes 2 with it
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_margins_do_not_exceed_what_moving_one_body_loses(seed: int) -> None:
+    ties = some_ties(np.random.default_rng(seed), 6, 25)
+    found = place(ties, 6, 0, OPTIONS)
+    for body in range(1, 6):
+        for by in np.linspace(-1, 1, 81):
+            if abs(by) >= ELSEWHERE:
+                moved = found.log_scale + by * (np.arange(6) == body)
+                assert found.margin[body] <= found.objective - ties.value(moved) + 1e-9
+
+
+def test_progress_is_told_and_a_node_limit_ends_the_search() -> None:
+    told: list[Progress] = []
+    ties = some_ties(np.random.default_rng(3), 20, 160)
+    found = place(ties, 20, 0, SolveOptions(node_limit=1), told.append)
+    assert told
+    assert found.bound >= found.objective
+    assert found.status in ("optimal", "node limit")
+    assert (found.gap > 0) == (found.status == "node limit")
+
+
+@pytest.mark.parametrize(
+    ("field", "value"),
+    [("bodies", [[0, 0]]), ("tolerance", [0.0]), ("weight", [-1.0]), ("group", [-2]), ("log_ratio", [0.1, 0.2])],
+)
+def test_ties_that_mean_nothing_are_refused(field: str, value: list[object]) -> None:
+    known = {"bodies": [[0, 1]], "log_ratio": [0.1], "tolerance": [0.02], "weight": [1.0], "group": [-1]}
+    with pytest.raises(ValueError, match="Ties"):
+        Ties(**{**known, field: value})
