@@ -81,7 +81,7 @@ def place_lines(
         planar_pairs=np.zeros((0, 3), np.int64),
         log_depth=log_depth,
     )
-    probability = probabilities(setting, placement, reference)
+    probability = probabilities(setting, placement, reference, log_depth)
     return Placed(solution, setting, ties, placement, reference, probability)
 
 

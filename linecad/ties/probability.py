@@ -3,18 +3,34 @@
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.decide.stability import LEAST_TOLERANCE
 from linecad.ties.bodies import togetherness
 from linecad.ties.setting import Setting
 from solver.bodies.ties import Placement
 
 LARGEST_MARGIN = 12.0
 # Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
-AT_ONCE = 0.0
-LOG_ODDS: dict[str, float] = {}
+AT_ONCE = -10.9674
+LOG_ODDS: dict[str, float] = {
+    "of the reference": 2.2115,
+    "margin": 0.0029,
+    "root of margin": 0.6204,
+    "lines of the body": 0.0915,
+    "share of the reference": 3.5381,
+    "together": 1.9351,
+    "agreement of all": 2.5574,
+    "agreement of the line": 1.6336,
+    "bodies": 0.7789,
+}
 
 
-def features(setting: Setting, placement: Placement, reference: int) -> dict[str, Float]:
-    """What speaks for the place of each line, each (N,); lines of no body have 0 everywhere."""
+def features(setting: Setting, placement: Placement, reference: int, log_depth: Float) -> dict[str, Float]:
+    """What speaks for the place of each line at the depths (N,) that were found, each (N,); 0 for lines of no body."""
+    graph = setting.graph
+    agrees = graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
+    told, first, second = graph.informative, *graph.edges.T
+    many = np.bincount(np.r_[first[told], second[told]], minlength=len(log_depth))
+    agreeing = np.bincount(np.r_[first[told & agrees], second[told & agrees]], minlength=len(log_depth))
     body = setting.bodies.body
     own = body >= 0
     at = np.maximum(body, 0)
@@ -32,13 +48,15 @@ def features(setting: Setting, placement: Placement, reference: int) -> dict[str
         "lines of the body": np.log(size)[at],
         "share of the reference": np.full(len(body), size[reference] / max(1, own.sum())),
         "together": together,
-        "weight of the line": np.log1p(np.bincount(setting.graph.edges.ravel(), minlength=len(body)).astype(float)),
+        "agreement of all": np.full(len(body), agreeing.sum() / max(1, many.sum())),
+        "agreement of the line": (agreeing + 1) / (many + 2),
+        "bodies": np.full(len(body), np.log(setting.bodies.count + 1)),
     }
     return {name: np.where(own, value, 0.0) for name, value in found.items()}
 
 
-def probabilities(setting: Setting, placement: Placement, reference: int) -> Float:
+def probabilities(setting: Setting, placement: Placement, reference: int, log_depth: Float) -> Float:
     """(N,) from 0 to 1; 0 for lines of no body."""
-    known = features(setting, placement, reference)
+    known = features(setting, placement, reference, log_depth)
     log_odds = AT_ONCE + sum((LOG_ODDS.get(name, 0.0) * value for name, value in known.items()), np.zeros(len(setting.log_depth)))
     return np.where(setting.bodies.body >= 0, 1 / (1 + np.exp(-log_odds)), 0.0)
