@@ -10,12 +10,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal, get_args
 
 from linecad.errors import OptionError
-from linecad.line_graph import Formulation
+from linecad.line_graph import Formulation, Program
 from solver.options import (
     BACKENDS,
     DEFAULT_MU_BOUNDARY,
     FAMILIES,
-    FORMULATIONS,
     LARGEST_SEED,
     SolveOptions,
 )
@@ -24,6 +23,7 @@ Weights = Literal["odds", "junctions", "ones"]
 Joins = Literal["stable", "biconnected", "all"]
 WEIGHTS: tuple[Weights, ...] = get_args(Weights)
 JOINS: tuple[Joins, ...] = get_args(Joins)
+PROGRAMS: tuple[Program, ...] = get_args(Program)
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
@@ -46,6 +46,9 @@ LONG_REACH = Reach(75.0, 125.0, 18.75, 0.0035)
 MIDDLE_REACH = Reach(37.5, 62.5, 18.75, 0.002)  # for photos whose crossings contradict each other
 
 
+_USUAL = SolveOptions()
+
+
 @dataclass(frozen=True)
 class Options:
     """What a user can choose about a reconstruction. None: what suits the formulation, and for the reach the photo."""
@@ -58,13 +61,35 @@ class Options:
     largest_component: bool = False  # only the largest connected component, as in the paper
     # What a join of two bodies of lines must show (linecad.decide); None: stable with gain, all with the paper's.
     joins: Joins | None = None
+    # Place rigid bodies as wholes; None: unless something is asked for that only programs over crossings know.
+    over_bodies: bool | None = None
     faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     solve: SolveOptions = field(default_factory=SolveOptions)
 
     @property
     def formulation(self) -> Formulation:
-        """The program in use."""
+        """The program over all crossings that is in use where bodies are not placed."""
         return self.solve.formulation
+
+    @property
+    def uses_bodies(self) -> bool:
+        """Whether the scene program places rigid bodies (linecad.ties).
+
+        It does unless `over_bodies` says so, or --fast, the paper's program, joins, weights, a reach or a field of the
+        solver's options is chosen that it does not know.
+        """
+        if self.over_bodies is not None:
+            return self.over_bodies
+        chosen = replace(
+            self.solve, time_limit_s=None, node_limit=None, seed=0, memory_limit_mb=_USUAL.memory_limit_mb,
+            real=(), fake=(),
+        )  # fmt: skip
+        return chosen == _USUAL and (self.joins, self.weights, self.reach, self.collinear) == (None,) * 4
+
+    @property
+    def program(self) -> Program:
+        """The program in use, as the scene names it."""
+        return "bodies" if self.uses_bodies else self.formulation
 
     @property
     def is_paper(self) -> bool:
@@ -84,18 +109,21 @@ class Options:
     @property
     def joins_used(self) -> Joins:
         """`joins` in use."""
-        return self.joins if self.joins is not None else "all" if self.is_paper else "stable"
+        if self.joins is not None:
+            return self.joins
+        return "all" if self.is_paper or self.uses_bodies else "stable"
 
     @property
     def needs_inconsistency(self) -> bool:
         """Whether it matters how often the crossings of the photo contradict each other."""
-        return self.joins_used == "stable" or (self.reach is None and not self.is_paper)
+        return self.joins_used == "stable" or (self.reach is None and not self.is_paper and not self.uses_bodies)
 
     def reach_for(self, is_inconsistent: bool) -> Reach:
         """`reach` and `extension` in use, for a photo that is inconsistent or not."""
         reach = self.reach
         if reach is None:
-            reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if is_inconsistent else LONG_REACH
+            shorter = is_inconsistent and not self.uses_bodies
+            reach = SHORT_REACH if self.is_paper else MIDDLE_REACH if shorter else LONG_REACH
         return reach if self.extension is None else replace(reach, extension=self.extension)
 
 
@@ -163,8 +191,8 @@ def _listed(words: Sequence[str]) -> str:
 _ANY = 1e6
 _NUMBER = "a number from 0 to 1000000"
 SWITCHES: tuple[Switch, ...] = (
-    Switch("formulation", "gain", _listed(FORMULATIONS), "the program: gain, fast, or as the paper prints it",
-           _word(FORMULATIONS), of_solver=True),
+    Switch("formulation", "bodies", _listed(PROGRAMS), "the program: over rigid bodies, over all crossings (gain, "
+           "also where an option below is given that only it knows), or as the paper prints it", _word(PROGRAMS)),
     Switch("backend", "scip", _listed(BACKENDS), "the solver (highs: pip install 'linecad[highs]')",
            _word(BACKENDS), of_solver=True),
     Switch("without", "none", f"one or more of {', '.join(FAMILIES)}", "leave out families of constraints",
@@ -219,4 +247,8 @@ def read_options(texts: Iterable[str], options: Options | None = None) -> Option
             (of_solver if switch.of_solver else others)[switch.name] = switch.read(value)
         except ValueError:
             raise OptionError(f"option {key} is {value[:LONGEST_VALUE]!a}, expected {switch.accepted}") from None
+    program = others.pop("formulation", None)
+    if program is not None:
+        others["over_bodies"] = program == "bodies"
+        of_solver["formulation"] = "gain" if program == "bodies" else program
     return replace(options, **others, solve=replace(options.solve, **of_solver))

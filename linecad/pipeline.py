@@ -6,7 +6,7 @@ from linecad.camera.photo import Photo
 from linecad.corrections.apply import CorrectedLines, correct
 from linecad.corrections.edits import Corrections
 from linecad.corrections.lengths import measured
-from linecad.decide.annotations import annotate, solve_annotated
+from linecad.decide.annotations import annotate, solve_annotated, told_in_the_photo, with_annotations
 from linecad.decide.decision import Decision, decide
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Solution
@@ -15,6 +15,7 @@ from linecad.model.lifting import Lifted, lift
 from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Scene
+from linecad.ties.placing import place_lines
 from solver.options import OnProgress
 
 
@@ -67,8 +68,15 @@ def reconstruct_lines(
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)
     graph, annotations = annotate(graph, corrected)
-    on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
-    solution = solve_annotated(graph, options.solve, annotations, corrected, on_progress)
+    probability = None
+    if options.uses_bodies:
+        limits = with_annotations(options.solve, annotations)
+        with told_in_the_photo(graph, corrected):
+            placed = place_lines(graph, found.camera.width, found.pixels, limits, on_progress, on_stage)
+        solution, probability = placed.solution, placed.probability
+    else:
+        on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
+        solution = solve_annotated(graph, options.solve, annotations, corrected, on_progress)
     on_stage("deciding which crossings are real")
     inconsistency = found.inconsistency if options.joins_used == "stable" else None
     decision = decide(graph, solution, options, inconsistency, annotations)
@@ -79,5 +87,5 @@ def reconstruct_lines(
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:
         decision = decision.within(found_components.kept, graph)
-    scene = build_scene(view, graph, solution, decision, found_components)
+    scene = build_scene(view, graph, solution, decision, found_components, probability)
     return Reconstruction(whole, graph, solution, decision, lifted, scene)

@@ -29,6 +29,7 @@ LAYERS = (
     ("linecad.graph",),
     ("linecad.camera",),
     ("linecad.decide",),
+    ("linecad.ties",),
     ("linecad.model", "linecad.dataset"),
     ("linecad.finding",),
     ("linecad.pipeline", "linecad.outputs"),

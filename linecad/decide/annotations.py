@@ -1,5 +1,7 @@
 """What a person fixed: annotations of crossings, which every answer keeps to."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
@@ -39,9 +41,21 @@ def solve_annotated(
     on_progress: OnProgress,
 ) -> Solution:
     """The solution that keeps to the annotations; ContradictionError, by places in the photo, where none can."""
+    with told_in_the_photo(graph, corrected):
+        return solve(graph, with_annotations(options, annotations), on_progress)
+
+
+def with_annotations(options: SolveOptions, annotations: Annotations) -> SolveOptions:
+    """The options that keep to the annotations."""
     real, fake = (tuple(np.flatnonzero(flags).tolist()) for flags in (annotations.real, annotations.fake))
+    return replace(options, real=real, fake=fake)
+
+
+@contextmanager
+def told_in_the_photo(graph: LineGraph, corrected: CorrectedLines | None) -> Iterator[None]:
+    """Where annotations contradict each other, name them by their places in the photo."""
     try:
-        return solve(graph, replace(options, real=real, fake=fake), on_progress)
+        yield
     except ContradictionError as error:
         if corrected is None:
             raise

@@ -74,11 +74,24 @@ def find_components(
     return Components(parts, component, by_grids, lifted, largest_alone)
 
 
-def build_scene(view: View, graph: LineGraph, solution: Solution, decision: Decision, found: Components) -> Scene:
-    """The scene of the components that were found, each with its scale, with planes and faces."""
+def build_scene(
+    view: View,
+    graph: LineGraph,
+    solution: Solution,
+    decision: Decision,
+    found: Components,
+    probability: Float | None = None,
+) -> Scene:
+    """The scene of the components that were found, with planes and faces.
+
+    `probability` (N,) is that of `Lines`, where bodies were placed: then all components have one scale. Else each is
+    put at the depth of its neighbours.
+    """
     kept = np.flatnonzero(found.kept)
-    scale = _component_scales(graph, found.lifted, found.parts)[found.component]
+    scale = _component_scales(graph, found.lifted, found.parts, probability is not None)[found.component]
     lines = _lines(graph, solution, decision, found, scale)
+    if probability is not None:
+        lines = replace(lines, probability=probability[kept])
     offset = (found.lifted.offset * scale[:, None])[kept]
     planes = find_planes(offset, found.lifted.shared[kept], lines.id)
     planes = find_faces(planes, lines, view.camera, view.frame.rotation)
@@ -102,7 +115,8 @@ def build_scene(view: View, graph: LineGraph, solution: Solution, decision: Deci
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:
     kept = np.flatnonzero(found.kept)
-    sure = "proven" if solution.status == "optimal" else "supported"
+    # The scene program proves where bodies are best placed, nothing about single crossings.
+    sure = "proven" if solution.status == "optimal" and solution.formulation != "bodies" else "supported"
     word = np.where(decision.is_firm & ~found.by_grids, sure, "supported")
     confidence: Text = np.asarray(np.where(found.component == 0, word, "weak"), np.str_)
     return Lines(
@@ -166,11 +180,12 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
 
 
-def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Float:
+def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int], are_placed: bool) -> Float:
     """One factor a component, and 1 at the end for lines of none: component 0 gets TYPICAL_DEPTH as median depth.
 
-    Nothing in the photo joins the others to it, so each is put at the depth of the lines of component 0 that are
-    nearest to it in the photo: near enough to be looked at, marked as weak.
+    Where the others are placed relative to it they get the same factor. Else nothing in the photo joins them to it, so
+    each is put at the depth of the lines of component 0 that are nearest to it in the photo: near enough to be looked
+    at, marked as weak.
     """
     middle = graph.segments.ends.mean(axis=1)
     # Camera depth of a line at its segment's middle, from its two exact coordinates.
@@ -179,6 +194,8 @@ def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int]) -> Flo
     depth = (rays * offset).sum(axis=1) / (rays**2).sum(axis=1)
     main = parts[0]
     scales = [TYPICAL_DEPTH / float(np.median(depth[main]))]
+    if are_placed:
+        return np.array([*(scales * len(parts)), 1.0])
     for part in parts[1:]:
         distance = np.linalg.norm(middle[part][:, None] - middle[main][None], axis=2)
         beside = main[distance.argmin(axis=1)]
@@ -203,7 +220,7 @@ def _notes(view: View, graph: LineGraph, solution: Solution, found: Components) 
             f"{by_grids} lines of component 0 are not connected to the rest of it by crossings: their place follows "
             "from window grids that continue (supported)"
         )
-    return (*notes, *_solver_notes(solution), *_placing_notes(found))
+    return (*notes, *_solver_notes(solution), *_placing_notes(found, solution.formulation == "bodies"))
 
 
 def _solver_notes(solution: Solution) -> list[str]:
@@ -217,12 +234,17 @@ def _solver_notes(solution: Solution) -> list[str]:
     return [f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal"]
 
 
-def _placing_notes(found: Components) -> list[str]:
+def _placing_notes(found: Components, are_placed: bool) -> list[str]:
     notes = []
     if len(found.parts) > 1:
         notes.append(
-            f"{len(found.parts) - 1} smaller groups of lines, each with a scale of its own, are placed at the depth of "
-            "their neighbours in the photo and marked weak"
+            f"{len(found.parts) - 1} smaller groups of lines, which no crossings connect to component 0, are placed "
+            + (
+                "where planes and heights that match put them"
+                if are_placed
+                else "at the depth of their neighbours in the photo"
+            )
+            + " and marked weak"
         )
     shift = found.lifted.shift[found.kept]
     moved = int((shift > SHIFT_NOTED).sum())

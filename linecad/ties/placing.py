@@ -1,15 +1,16 @@
 """The stage that puts every body where it most likely is: fit, rigid bodies, evidence, scene program."""
 
-from dataclasses import dataclass, replace
 import time
+from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.decide.stability import resample
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
-from linecad.ties.bodies import RigidBodies, find_rigid_bodies
+from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import find_candidates
 from linecad.ties.probability import probabilities
 from linecad.ties.setting import Setting
@@ -43,7 +44,7 @@ class Placed:
 def place_lines(
     graph: LineGraph,
     width: int,
-    pixels: "np.ndarray | None",
+    pixels: NDArray[np.uint8] | None,
     options: SolveOptions,
     on_progress: OnProgress = None,
     on_stage: StageReport = silent,
@@ -86,7 +87,7 @@ def place_lines(
 
 
 def _setting(
-    graph: LineGraph, width: int, pixels: "np.ndarray | None", options: SolveOptions, real: Bool, fake: Bool
+    graph: LineGraph, width: int, pixels: NDArray[np.uint8] | None, options: SolveOptions, real: Bool, fake: Bool
 ) -> Setting:
     believed = replace(
         graph, weight=np.where(real, CERTAIN, graph.weight), informative=graph.informative & ~fake

@@ -58,5 +58,7 @@ def features(setting: Setting, placement: Placement, reference: int, log_depth: 
 def probabilities(setting: Setting, placement: Placement, reference: int, log_depth: Float) -> Float:
     """(N,) from 0 to 1; 0 for lines of no body."""
     known = features(setting, placement, reference, log_depth)
-    log_odds = AT_ONCE + sum((LOG_ODDS.get(name, 0.0) * value for name, value in known.items()), np.zeros(len(setting.log_depth)))
+    log_odds = AT_ONCE + sum(
+        (LOG_ODDS.get(name, 0.0) * value for name, value in known.items()), np.zeros(len(setting.log_depth))
+    )
     return np.where(setting.bodies.body >= 0, 1 / (1 + np.exp(-log_odds)), 0.0)
