@@ -45,7 +45,7 @@ def margins(ties: Ties, log_scale: Float, reference: int) -> Float:
     """(B,) by how much the weight falls at least where a body is moved by ELSEWHERE or more against the reference.
 
     Moves of one set of bodies are tried, each body alone, with those that ties hold to it, and with those on its side
-    of a cut; others might lose less, so this is an upper bound. 0 for bodies that no tie leads to; the reference has
+    of a cut, to ratios that ties ask for; others might lose less, so this is an upper bound. 0 for bodies that no tie leads to; the reference has
     the largest of all.
     """
     value = ties.value(log_scale)

@@ -17,13 +17,13 @@ OPTIONS = SolveOptions()
 
 def some_ties(rng: Generator, bodies: int, count: int, grouped: bool = True) -> Ties:
     """Ties of which half are as one draw of scales asks."""
-    truth = rng.normal(0, 0.4, bodies)
+    truth = rng.uniform(-0.2, 0.2, bodies)
     pairs = np.array([rng.choice(bodies, 2, replace=False) for _ in range(count)])
     right = rng.random(count) < 0.5
     asked = truth[pairs[:, 0]] - truth[pairs[:, 1]] + rng.normal(0, 0.005, count)
     return Ties(
         bodies=pairs,
-        log_ratio=np.where(right, asked, rng.uniform(-0.8, 0.8, count)),
+        log_ratio=np.where(right, asked, rng.uniform(-0.45, 0.45, count)),
         tolerance=np.full(count, 0.02),
         weight=rng.uniform(1, 6, count),
         group=rng.integers(-1, 2, count) if grouped else np.full(count, -1),
@@ -69,7 +69,7 @@ def best_value(ties: Ties, bodies: int) -> float:
 def test_the_answer_is_the_best_of_all(seed: int) -> None:
     rng = np.random.default_rng(seed)
     bodies = int(rng.integers(2, 5))
-    ties = some_ties(rng, bodies, int(rng.integers(1, 10)))
+    ties = some_ties(rng, bodies, int(rng.integers(1, 9)))
     found = place(ties, bodies, 0, OPTIONS)
     assert found.status == "optimal"
     assert found.gap == 0
@@ -92,8 +92,8 @@ def test_the_heaviest_first_are_the_best_pseudoforest(seed: int) -> None:
 
 
 def test_the_same_ties_give_the_same_answer() -> None:
-    ties = some_ties(np.random.default_rng(5), 12, 60)
-    first, second = (place(ties, 12, 0, OPTIONS) for _ in range(2))
+    ties = some_ties(np.random.default_rng(5), 10, 36)
+    first, second = (place(ties, 10, 0, OPTIONS) for _ in range(2))
     assert first.log_scale.tobytes() == second.log_scale.tobytes()
     assert (first.objective, first.nodes, first.margin.tolist()) == (
         second.objective, second.nodes, second.margin.tolist(),
@@ -143,8 +143,12 @@ def test_margin_is_what_another_place_loses() -> None:
 def test_margins_do_not_exceed_what_moving_one_body_loses(seed: int) -> None:
     ties = some_ties(np.random.default_rng(seed), 6, 25)
     found = place(ties, 6, 0, OPTIONS)
+    first, second = ties.bodies.T
     for body in range(1, 6):
-        for by in np.linspace(-1, 1, 81):
+        own = np.flatnonzero((first == body) | (second == body))
+        sign = np.where(first[own] == body, 1.0, -1.0)
+        missed = sign * (ties.log_ratio - found.log_scale[first] + found.log_scale[second])[own]
+        for by in [9.0, *missed.tolist()]:
             if abs(by) >= ELSEWHERE:
                 moved = found.log_scale + by * (np.arange(6) == body)
                 assert found.margin[body] <= found.objective - ties.value(moved) + 1e-9
