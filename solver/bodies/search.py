@@ -24,7 +24,7 @@ def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_prog
     """The log scales of `count` bodies at which ties of the most weight hold at once, 0 for the `reference`.
 
     Exact within `FARTHEST` of the reference, by SCIP; the same ties and seed give the same answer, since no clock
-    ends the search unless the options name a time. Bodies that no tie leads to keep their scale. Raises SolverError.
+    ends the search unless the options name a time. Bodies that no counted tie leads to keep their scale. Raises SolverError.
     """
     began = time.monotonic()
     start = improve(ties, np.zeros(count), options.seed) if len(ties) else np.zeros(count)
@@ -49,7 +49,7 @@ def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_prog
             log_scale, objective = found, ties.value(found)
         status, nodes = outcome.status, reporter.nodes
         bound = objective if status == "optimal" else max(objective, reporter.bound)
-    log_scale = _refined(ties, log_scale, reference)
+    log_scale = _about(ties, _refined(ties, log_scale), reference)
     return Placement(
         log_scale=log_scale,
         counted=ties.counted(log_scale),
@@ -64,8 +64,11 @@ def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_prog
 
 
 def _about(ties: Ties, log_scale: Float, reference: int) -> Float:
-    """The same scales with 0 for the reference, and for the first body of each part that no tie connects to it."""
-    part = _parts(ties, len(log_scale))
+    """The same scales with 0 for the reference, and for the first body of each part that no counted tie leads to.
+
+    What is left of the evidence says nothing about such a part, so its largest body stays where the fit has it.
+    """
+    part = _parts(ties.subset(ties.counted(log_scale)), len(log_scale))
     lead = np.array([int(np.argmax(part == number)) for number in range(part.max(initial=-1) + 1)], np.int64)
     lead[part[reference]] = reference
     about: Float = log_scale - log_scale[lead[part]]
@@ -78,7 +81,7 @@ def _parts(ties: Ties, count: int) -> Int:
     return np.asarray(connected_components(links, directed=False)[1], np.int64)
 
 
-def _refined(ties: Ties, log_scale: Float, reference: int) -> Float:
+def _refined(ties: Ties, log_scale: Float) -> Float:
     """The middle of what counts: weighted least squares, kept where the counted ties still hold there.
 
     The program knows intervals only, and its answer lies at their ends.
@@ -94,5 +97,5 @@ def _refined(ties: Ties, log_scale: Float, reference: int) -> Float:
     weight = used.weight / used.tolerance**2
     normal = rows.T @ (weight[:, None] * rows) + ANCHOR * np.eye(len(log_scale))
     step = np.linalg.solve(normal, rows.T @ (weight * (used.log_ratio - rows @ log_scale)))
-    refined = _about(ties, log_scale + step, reference)
+    refined = log_scale + step
     return refined if ties.value(refined) >= ties.value(log_scale) else log_scale

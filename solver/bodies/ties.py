@@ -101,7 +101,7 @@ def pseudoforest(edges: Int) -> Bool:
 class Placement:
     """The scales of B bodies."""
 
-    log_scale: Float  # (B,) 0 for the reference body, and for the first of bodies that no tie leads to from there
+    log_scale: Float  # (B,) 0 for the reference, and for the first of bodies that no counted tie leads to from it
     counted: Bool  # (T,) ties that hold and count
     objective: float  # their weight
     bound: float  # proven: no scales are worth more
