@@ -12,6 +12,7 @@ BINS = 24  # along each of the two axes of colour
 SPREAD = 0.8  # bins
 BESIDE = (14.0, 26.0)  # px at the reference width to both sides of a line, where its wall is looked at
 ALONG = np.linspace(0.1, 0.9, 5)
+TYPICAL = 0.87  # likeness of two walls of one photo: what is assumed where there is nothing to look at
 
 
 def find_colours(setting: Setting) -> list[Float] | None:
@@ -42,5 +43,5 @@ def find_colours(setting: Setting) -> list[Float] | None:
 
 
 def likeness(colours: list[Float] | None, first: int, second: int) -> float:
-    """The part of their colours that two bodies have in common, 0 to 1; one half where nothing is known."""
-    return 0.5 if colours is None else float(np.minimum(colours[first], colours[second]).sum())
+    """The part of their colours that two bodies have in common, 0 to 1; TYPICAL where nothing is known."""
+    return TYPICAL if colours is None else float(np.minimum(colours[first], colours[second]).sum())
