@@ -53,7 +53,7 @@ def add_reconstruction(parser: argparse.ArgumentParser, options: str) -> None:
         "--fast", action="store_true", help="a robust fit in tenths of a second, without a search or a proof"
     )
     parser.add_argument(
-        "--time-limit", type=positive, metavar="S", help="seconds for the solver (10; 60 with formulation=paper)"
+        "--time-limit", type=positive, metavar="S", help="seconds for the solver (none; formulation gain 10, paper 60)"
     )
     add_option(parser, options)
 

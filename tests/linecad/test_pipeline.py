@@ -263,7 +263,9 @@ def test_stages_are_reported_in_order(drawn):
         "finding the Manhattan frame",
         "finding faint",
         "following lines",
-        "solving",
+        "fitting depths",
+        "finding what ties",
+        "placing",
         "deciding",
         "lifting",
     ]

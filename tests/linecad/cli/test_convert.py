@@ -176,7 +176,8 @@ def read_terminal(descriptor):
 
 @posix
 def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
-    street = [SAMPLES / "street.jpg", "--camera", SAMPLES / "street.json", "--option", "extension=90"]
+    street = [SAMPLES / "street.jpg", "--camera", SAMPLES / "street.json", "--option", "extension=90",
+              "--option", "formulation=gain"]  # fmt: skip
     code, out, _ = interrupt(["convert", *street, "-o", "a.json", "-o", "a.obj"], folder, "Ctrl-C keeps the best")
     assert code == 0
     scene = json.loads((folder / "a.json").read_text())

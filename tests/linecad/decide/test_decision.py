@@ -18,7 +18,7 @@ from solver.families import find_families
 from solver.robust import RobustFit
 
 GRID = 12  # lines of each direction of a wall
-ALL, LOOSE = Options(joins="all"), Options(joins="biconnected")
+ALL, LOOSE, STABLE = Options(joins="all"), Options(joins="biconnected"), Options(joins="stable")
 
 
 def walls(between=(), lone=0):
@@ -138,7 +138,7 @@ def test_a_join_that_falls_with_a_few_lines_is_unstable():
     between[: 2 * GRID**2] = False
     ratio = np.where(between & (first % 2 == 1), 0.2, 0.0)
     graph = replace(graph, log_ratio=ratio)
-    found = decided(graph, Options(), ratio == 0, inconsistency=0.5)
+    found = decided(graph, STABLE, ratio == 0, inconsistency=0.5)
     assert set(found.reason[between & (ratio == 0)]) == {"unstable"}
     assert found.real[~between].all()
     assert any("often contradict each other" in note for note in found.notes)
@@ -146,7 +146,7 @@ def test_a_join_that_falls_with_a_few_lines_is_unstable():
 
 def test_stable_joins_need_the_inconsistency_of_the_photo():
     with pytest.raises(ValueError, match="inconsistency"):
-        decided(walls(), Options())
+        decided(walls(), STABLE)
 
 
 def test_a_group_of_few_lines_is_too_small():
@@ -210,17 +210,17 @@ MANY_BARS = [(i, 3 * GRID + j) for i in range(9) for j in range(6)]
 
 def test_an_annotated_join_makes_unstable_bodies_one():
     graph, joins = contradicting(walls(MANY_BARS))
-    free = decided(graph, Options(), graph.log_ratio == 0, inconsistency=0.5)
+    free = decided(graph, STABLE, graph.log_ratio == 0, inconsistency=0.5)
     assert set(free.reason[joins]) == {"unstable"}
     one = int(np.flatnonzero(joins)[0])
-    fixed = decided(graph, Options(), graph.log_ratio == 0, annotations_of(graph, real=[one]), inconsistency=0.5)
+    fixed = decided(graph, STABLE, graph.log_ratio == 0, annotations_of(graph, real=[one]), inconsistency=0.5)
     assert fixed.reason[one] == "annotated"
     assert fixed.real[joins].all()
 
 
 def test_in_an_inconsistent_photo_stable_bodies_that_one_line_joins_are_loose():
     graph = walls(ONE_BAR)
-    found = decided(graph, Options(), inconsistency=0.5)
+    found = decided(graph, STABLE, inconsistency=0.5)
     joins = np.arange(len(graph.edges)) >= 2 * GRID**2
     assert set(found.reason[joins]) <= {"loose", "unstable"}
     assert "loose" in set(found.reason[joins])
@@ -230,12 +230,12 @@ def test_in_an_inconsistent_photo_stable_bodies_that_one_line_joins_are_loose():
 def test_in_a_consistent_photo_a_rigid_line_that_is_not_firm_is_not_as_sure_as_the_solution():
     graph, _ = contradicting(walls(MANY_BARS))
     fit = RobustFit(graph)
-    fits = resample(graph, lambda present: fit.depths(present=present), Options().solve.seed)
+    fits = resample(graph, lambda present: fit.depths(present=present), STABLE.solve.seed)
     solution = solution_of(graph, graph.log_ratio == 0)
     stable = find_stable_bodies(
         graph, agreeing(graph, solution.connected, solution.log_depth), solution.log_depth, fits, False
     )
-    found = decided(graph, Options(), graph.log_ratio == 0, inconsistency=0.0)
+    found = decided(graph, STABLE, graph.log_ratio == 0, inconsistency=0.0)
     assert (stable.bodies.rigid & ~stable.firm).any()
     assert not found.is_firm[stable.bodies.rigid & ~stable.firm].any()
 
