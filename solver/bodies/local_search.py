@@ -44,9 +44,9 @@ def _climb(ties: Ties, start: Float) -> tuple[Float, float]:
 def margins(ties: Ties, log_scale: Float, reference: int) -> Float:
     """(B,) by how much the weight falls at least where a body is moved by ELSEWHERE or more against the reference.
 
-    Moves of one set of bodies are tried, each body alone, with those that ties hold to it, and with those on its side
-    of a cut, to ratios that ties ask for; others might lose less, so this is an upper bound. 0 for bodies that no tie leads to; the reference has
-    the largest of all.
+    Moves of one set of bodies are tried, to ratios that ties ask for: each body alone, with those that ties hold to
+    it, and with those on its side of a cut. Other moves might lose less, so this is an upper bound. 0 for bodies that
+    no tie leads to; the reference has the largest of all.
     """
     value = ties.value(log_scale)
     margin = np.full(len(log_scale), np.inf)

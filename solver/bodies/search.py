@@ -24,7 +24,8 @@ def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_prog
     """The log scales of `count` bodies at which ties of the most weight hold at once, 0 for the `reference`.
 
     Exact within `FARTHEST` of the reference, by SCIP; the same ties and seed give the same answer, since no clock
-    ends the search unless the options name a time. Bodies that no counted tie leads to keep their scale. Raises SolverError.
+    ends the search unless the options name a time. Bodies that no counted tie leads to keep their scale. Raises
+    SolverError.
     """
     began = time.monotonic()
     start = improve(ties, np.zeros(count), options.seed) if len(ties) else np.zeros(count)
