@@ -141,15 +141,11 @@ def test_levels_are_the_heights_of_courses(build_town, build_wall, build_setting
 
 
 def test_levels_of_two_walls_meet_where_both_are_in_place(build_town, build_row, build_setting):
-    heights = np.linspace(-3.0, 3.0, 12)
-    first, second = build_row(0)
-    for line, height in zip(second[12:], heights, strict=True):
-        line[1][2] = line[2][2] = height
-    seen = build_town(first, second)
+    seen = build_town(*build_row(0, level=True))
     one, other = find_levels(build_setting(seen, moved=(0.1, 0.35)))
     best = LevelPair(one, other).peaks[0]
     assert best.log_ratio == pytest.approx(0.25, abs=WIDTH + 1e-12)
-    assert best.matches == 12
+    assert best.matches == one.count == other.count == 10  # two courses are at eye level
 
 
 @pytest.mark.parametrize(("apart", "count"), [(0.9, 1), (1.1, 2)])
