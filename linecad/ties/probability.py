@@ -40,12 +40,12 @@ def features(setting: Setting, placement: Placement, reference: int, log_depth: 
         core = body == number
         together[lines] = togetherness(setting.fits, shift, core)[lines]
     margin = np.minimum(placement.margin, LARGEST_MARGIN)
-    size = setting.bodies.size
+    size = np.bincount(body[own], minlength=len(margin))  # a photo without bodies has one place all the same
     found = {
         "of the reference": (body == reference).astype(np.float64),
         "margin": margin[at],
         "root of margin": np.sqrt(margin)[at],
-        "lines of the body": np.log(size)[at],
+        "lines of the body": np.log(np.maximum(size, 1))[at],
         "share of the reference": np.full(len(body), size[reference] / max(1, own.sum())),
         "together": together,
         "agreement of all": np.full(len(body), agreeing.sum() / max(1, many.sum())),
@@ -59,6 +59,6 @@ def probabilities(setting: Setting, placement: Placement, reference: int, log_de
     """(N,) from 0 to 1; 0 for lines of no body."""
     known = features(setting, placement, reference, log_depth)
     log_odds = AT_ONCE + sum(
-        (LOG_ODDS.get(name, 0.0) * value for name, value in known.items()), np.zeros(len(setting.log_depth))
+        (LOG_ODDS[name] * value for name, value in known.items()), np.zeros(len(setting.log_depth))
     )
     return np.where(setting.bodies.body >= 0, 1 / (1 + np.exp(-log_odds)), 0.0)

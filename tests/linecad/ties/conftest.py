@@ -85,17 +85,18 @@ def setting(seen, moved=(), body=None, fits=None, pixels=None):
     return Setting(seen.graph, log_depth, RigidBodies(body, count), fits, WIDTH, pixels)
 
 
-def row(bars, at=(10.0, 10.0), lift=0.0):
+def row(bars, at=(10.0, 10.0), level=False, end=4.0):
     """Two walls of 24 lines each, one beside the other too far to touch; so many courses of the first reach the second.
 
-    `at` is how far away they stand; the heights of the second are higher by `lift`.
+    `at` is how far away they stand, `end` where these courses end before the second. If `level`, the courses of both
+    have the same heights.
     """
-    first = wall(1, at[0], np.linspace(-5.5, -1.2, 12), np.linspace(-3.0, 3.0, 12))
-    longer = first[12 : 12 + 2 * bars : 2]
-    for _, _, end in longer:
-        end[0] = 4.0 * at[0] / at[1]
-    second = wall(1, at[1], np.linspace(0.8, 5.0, 12), np.linspace(-2.9, 2.9, 12) + lift)
-    return first, second
+    random = np.random.default_rng(7)
+    heights, others = (np.linspace(-3.0, 3.0, 12) + random.uniform(-0.2, 0.2, 12) for _ in range(2))
+    first = wall(1, at[0], np.linspace(-5.5, -1.2, 12), heights)
+    for _, _, far in first[15 : 15 + bars]:
+        far[0] = end * at[0] / at[1]
+    return first, wall(1, at[1], np.linspace(0.8, 5.0, 12), heights if level else others)
 
 
 @pytest.fixture(scope="session")

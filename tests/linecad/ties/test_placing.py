@@ -1,0 +1,205 @@
+"""The stage as a whole, on exact made walls: their scales are found, and annotations are kept to."""
+
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from linecad.errors import ContradictionError, SolverError
+from linecad.ties.candidates import find_candidates
+from linecad.ties.placing import FITS, place_lines
+from solver.options import SolveOptions
+
+WIDTH = 3840  # px
+NEAR, FAR = 9.5, 12.0
+PLACED = 0.005  # log depth: half the width of a peak of levels
+
+
+def placed(seen, **more):
+    return place_lines(seen.graph, WIDTH, None, SolveOptions(**more))
+
+
+def off(seen, found):
+    """By how much log depths are off between the two parts: the median of the first less that of the second."""
+    error = found.solution.log_depth - seen.log_depth
+    first, second = (error[seen.part == part] for part in range(2))
+    return float(np.median(first) - np.median(second))
+
+
+def between(seen):
+    """The crossings of the two parts."""
+    return np.flatnonzero(np.diff(seen.part[seen.graph.edges])[:, 0])
+
+
+@pytest.fixture(scope="module")
+def street(build_town, build_row):
+    """Two walls of equal heights, the second set back, with a course of the first before it."""
+    first, second = build_row(1, at=(NEAR, FAR), level=True, end=1.7)
+    return build_town(first, second[:8] + second[12:])  # without some uprights, so that the first wall is the larger
+
+
+@pytest.fixture(scope="module")
+def usual(street):
+    return placed(street)
+
+
+@pytest.fixture(scope="module")
+def facade(build_town, build_row):
+    """Two walls in one plane that one course joins."""
+    return build_town(*build_row(1))
+
+
+@pytest.fixture(scope="module")
+def corner(build_town, build_wall):
+    """Two walls that meet in an edge, whose courses meet there in points."""
+    heights = np.linspace(-2.4, 2.1, 7)
+    across, away = np.linspace(2.0, 3.6, 6), np.array([6.0, 6.6, 7.4, 8.4, 10.0, 13.0])
+    return build_town(build_wall(1, 6.0, across, heights), build_wall(0, 2.0, away, heights)[1:])
+
+
+def test_walls_are_placed_where_they_stand(street, usual):
+    assert usual.setting.bodies.count == 2
+    assert abs(off(street, usual)) < PLACED
+    inside = usual.solution.log_depth - street.log_depth
+    assert all(np.ptp(inside[(street.part == part) & (np.arange(44) != 15)]) < 1e-6 for part in range(2))
+
+
+def test_the_answer_is_proven_over_bodies(usual):
+    solution = usual.solution
+    assert (solution.status, solution.formulation, solution.gap) == ("optimal", "bodies", 0.0)
+    assert solution.objective == solution.bound == pytest.approx(usual.ties.value(usual.placement.log_scale))
+    assert solution.objective > 0
+    assert usual.reference == 0
+    assert len(usual.setting.fits.present) == FITS
+
+
+def test_crossings_are_connected_where_they_agree(street, usual):
+    misfit = street.graph.misfit(usual.solution.log_depth)
+    told = street.graph.informative
+    assert usual.solution.connected[told & (misfit < 1e-6)].all()
+    assert not usual.solution.connected[told & (misfit > 0.1)].any()
+    assert not usual.solution.connected[between(street)].any(), "the course passes before the second wall"
+
+
+def test_walls_at_a_corner_are_one_body_in_place(corner):
+    found = placed(corner)
+    assert found.setting.bodies.count == 1
+    error = found.solution.log_depth - corner.log_depth
+    assert np.ptp(error) < 1e-6
+    assert (len(found.ties), found.solution.status, found.solution.objective) == (0, "optimal", 0.0)
+    assert found.solution.is_boundary.any()
+    assert (found.probability > 0.5).all()
+
+
+def test_a_crossing_called_real_is_kept_to(street, usual):
+    edge = int(between(street)[2])
+    assert not usual.solution.connected[edge]
+    found = placed(street, real=(edge,))
+    assert found.solution.connected[edge]
+    assert street.graph.misfit(found.solution.log_depth)[edge] < 1e-6
+    assert off(street, found) == pytest.approx(np.log(FAR / NEAR), abs=0.005), "the walls are in one plane then"
+
+
+def test_crossings_called_fake_are_not_taken(facade):
+    edges = between(facade)
+    assert placed(facade).solution.connected[edges].all()
+    found = placed(facade, fake=tuple(edges.tolist()))
+    assert not found.solution.connected[edges].any()
+    kinds = {candidate.kind for candidate in find_candidates(found.setting)}
+    assert "bundle" not in kinds, "what is fake is no evidence"
+
+
+def test_fake_crossings_hold_no_body_together(build_town, build_row):
+    seen = build_town(*build_row(6))
+    assert placed(seen).setting.bodies.count == 1
+    found = placed(seen, fake=tuple(between(seen).tolist()))
+    assert found.setting.bodies.count == 2
+    assert not found.solution.connected[between(seen)].any()
+
+
+def test_annotations_that_contradict_each_other_are_named(build_town):
+    """A line away from the camera under an upright at 12 and below a level line at 9, all in one place of the photo."""
+    lines = [(0, (0.0, 9.0, -1.0), (3.0, 9.0, -1.0)), (2, (1.0, 12.0, -2.0), (1.0, 12.0, 1.0))]
+    seen = build_town([*lines, (1, (1.0, 8.0, -1.11), (1.0, 14.0, -1.11))])
+    assert seen.graph.edges.tolist() == [[0, 1], [0, 2], [1, 2]]
+    for real in combinations(range(3), 2):
+        assert placed(seen, real=real).solution.connected[list(real)].all()
+    with pytest.raises(ContradictionError, match="cannot all be real") as caught:
+        placed(seen, real=(0, 1, 2))
+    assert caught.value.lines == (0, 1, 2)
+
+
+def test_a_crossing_that_the_graph_has_not_is_refused(facade):
+    with pytest.raises(SolverError, match="called real, but the graph has"):
+        placed(facade, real=(len(facade.graph.edges),))
+    with pytest.raises(SolverError, match="both real and fake"):
+        placed(facade, real=(0,), fake=(0,))
+
+
+def test_two_runs_give_the_same_bytes(street, usual):
+    again = placed(street)
+    for one, other in ((usual.solution, again.solution), (usual.placement, again.placement), (usual.ties, again.ties)):
+        for name, value in vars(one).items():
+            if isinstance(value, np.ndarray):
+                assert value.tobytes() == getattr(other, name).tobytes(), name
+    assert usual.probability.tobytes() == again.probability.tobytes()
+
+
+def test_colours_speak_for_walls_and_against_them(facade):
+    """Two walls of one plane are one house if they have one colour."""
+    alike = np.full((2880, WIDTH, 3), (150, 120, 100), np.uint8)
+    different = alike.copy()
+    different[:, 1728:] = (60, 90, 190)
+    weights = [
+        place_lines(facade.graph, WIDTH, pixels, SolveOptions()).ties.weight.sum() for pixels in (alike, different)
+    ]
+    assert weights[0] > weights[1]
+
+
+def test_lines_that_are_too_few_for_a_body_keep_the_fit(build_town, build_wall):
+    upright, *_, course = build_wall(1, 10.0, np.array([-4.0, -3.0]), np.array([-1.0, 1.0]))
+    seen = build_town([upright, course])
+    found = placed(seen)
+    assert found.setting.bodies.count == 0
+    assert found.probability.tolist() == [0.0, 0.0]
+    assert found.solution.status == "optimal"
+    assert found.solution.connected.tolist() == [True]
+    assert np.ptp(found.solution.log_depth - seen.log_depth) < 1e-9
+
+
+def test_a_graph_without_lines_is_placed(facade):
+    found = place_lines(facade.graph.subset(np.zeros(0, int)), WIDTH, None, SolveOptions())
+    assert (len(found.solution.log_depth), len(found.probability), found.solution.objective) == (0, 0, 0.0)
+
+
+def test_lines_of_no_body_keep_the_fit(build_town, build_row, build_wall):
+    stray = build_wall(1, 10.0, np.array([-0.2, 0.0]), np.array([-0.3, 0.3]))[:1]
+    first, second = build_row(1)
+    seen = build_town(first, second, stray)
+    found = placed(seen)
+    assert found.setting.bodies.body[-1] == -1
+    assert found.probability[-1] == 0
+    assert found.solution.log_depth[-1] == found.setting.log_depth[-1]
+
+
+def test_the_way_is_told(street):
+    stages, reports = [], []
+    place_lines(street.graph, WIDTH, None, SolveOptions(), reports.append, stages.append)
+    assert stages[0].startswith("fitting depths")
+    assert stages[1:] == ["finding what ties 2 bodies", f"placing 2 bodies by {len(placed(street).ties)} ties"]
+    assert reports
+    for report in reports:
+        assert report.bound >= report.objective - 1e-9
+
+
+def test_the_seed_is_that_of_the_options(street, usual):
+    other = placed(street, seed=5)
+    assert (other.setting.fits.present != usual.setting.fits.present).any()
+    assert abs(off(street, other)) < PLACED
+
+
+def test_a_real_crossing_outweighs_all_other_ties(street):
+    found = placed(street, real=(int(between(street)[2]),))
+    assert found.ties.weight[-1] > 1000 * found.ties.weight[:-1].sum()
+    assert found.ties.tolerance[-1] == street.graph.tolerance[between(street)[2]]
+    assert found.placement.counted[-1]
