@@ -119,14 +119,18 @@ def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
     return {"AT_ONCE": {kind: fitted.at_once for kind, fitted in fits.items()}, "LOG_ODDS": slopes}
 
 
-Placed = tuple[Float, Float, Float, Float]
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A photo with its bodies in their places."""
+
+    score: tuple[float, float]  # recall and precision at 5 %
+    proven: bool
+    features: Float  # (P, F) of the lines at the points that are judged; none where the reference body shows too few
+    right: Float  # (P,) 0 or 1
 
 
 def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Placed:
-    """Recall and precision at 5 %; the features of the lines (P', F) at the points, and whether these are right (P',).
-
-    P' is 0 where the reference body shows too few points.
-    """
+    """The photo placed by a table, without the candidates of some kinds."""
     setting = photo.setting
     candidates = [candidate for candidate in photo.candidates if candidate.kind not in kinds]
     with mock.patch.multiple(linecad.ties.weights, **table):
@@ -144,7 +148,8 @@ def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Pl
     else:
         error = error - densest(error[body[line] == reference])
     right = np.abs(np.expm1(error)) < RIGHT_DEPTH
-    return *photo.score(log_depth), np.array([value[line] for value in known.values()]).T, right.astype(np.float64)
+    of_lines = np.array([value[line] for value in known.values()]).T
+    return Placed(photo.score(log_depth), placement.status == "optimal", of_lines, right.astype(np.float64))
 
 
 def print_ablation(
@@ -153,23 +158,27 @@ def print_ablation(
     """Print a row for each part of the evidence; the placements with all of it."""
     print("\n| recall / precision at 5 % | " + " | ".join(datasets) + " |\n| --- " + "| --- " * len(datasets) + "|")
     _print_row("the robust fit alone", photos, [photo.score(photo.setting.log_depth) for photo in photos], datasets)
+    at_truth = [photo.score(_at_true_scales(photo)) for photo in photos]
+    _print_row("bodies at their true scales", photos, at_truth, datasets)
     complete: list[Placed] = []
     scenes = sorted({photo.scene for photo in photos})
     for name, (kinds, without) in WITHOUT.items():
         table = {scene: tables(fits_without(photos, rows, scene, without), rows) for scene in scenes}
         jobs = [pool.submit(placed, photo, kinds, table[photo.scene]) for photo in photos]
         found = [job.result() for job in jobs]
-        _print_row(name, photos, [(recall, precision) for recall, precision, _, _ in found], datasets)
+        _print_row(name, photos, [one.score for one in found], datasets)
         complete = complete or found
-    at_truth = [photo.score(_at_true_scales(photo)) for photo in photos]
-    _print_row("bodies at their true scales", photos, at_truth, datasets)
+    print(f"\nwith all evidence {sum(one.proven for one in complete)} of {len(photos)} are proven", flush=True)
     return complete
 
 
 def _at_true_scales(photo: Judged) -> Float:
-    """Log depths (N,), as fitted for bodies whose scale is not known."""
-    body = photo.setting.bodies.body
-    shift: Float = np.nan_to_num(photo.true_scale)[np.maximum(body, 0)]
+    """Log depths (N,); bodies whose scale is not known keep their place beside the largest whose scale is."""
+    body, known = photo.setting.bodies.body, np.isfinite(photo.true_scale)
+    if not known.any():
+        return photo.setting.log_depth
+    largest = int(np.where(known, photo.setting.bodies.size, 0).argmax())
+    shift: Float = np.where(known, photo.true_scale, photo.true_scale[largest])[np.maximum(body, 0)]
     return photo.setting.log_depth + np.where(body >= 0, shift, 0.0)
 
 
@@ -183,13 +192,13 @@ def _print_row(name: str, photos: list[Judged], scores: list[tuple[float, float]
 
 def print_probabilities(photos: list[Judged], found: list[Placed], datasets: list[str]) -> logistic.Logistic:
     """Print how far the probabilities of lines hold; the regression over all photos, each of one weight."""
-    known = [(photo, one) for photo, one in zip(photos, found, strict=True) if len(one[3])]
-    of_lines = np.concatenate([one[2] for _, one in known])
-    right = np.concatenate([one[3] for _, one in known])
-    weight = np.concatenate([np.full(len(one[3]), 1 / len(one[3])) for _, one in known])
+    known = [(photo, one) for photo, one in zip(photos, found, strict=True) if len(one.right)]
+    of_lines = np.concatenate([one.features for _, one in known])
+    right = np.concatenate([one.right for _, one in known])
+    weight = np.concatenate([np.full(len(one.right), 1 / len(one.right)) for _, one in known])
     weight /= weight.mean()
-    scene = np.concatenate([np.full(len(one[3]), photo.scene) for photo, one in known])
-    dataset = np.concatenate([np.full(len(one[3]), photo.dataset) for photo, one in known])
+    scene = np.concatenate([np.full(len(one.right), photo.scene) for photo, one in known])
+    dataset = np.concatenate([np.full(len(one.right), photo.dataset) for photo, one in known])
     predicted = np.zeros(len(right))
     for name in np.unique(scene):
         out = scene == name
@@ -238,7 +247,8 @@ def print_changes(table: dict[str, dict], of_lines: logistic.Logistic) -> None:
         change = [table["AT_ONCE"][kind] - linecad.ties.table.AT_ONCE[kind]]
         change += [value - known[name] for name, value in table["LOG_ODDS"][kind].items()]
         print(f"{kind}: the fit differs from the table by up to {np.abs(change).max():.4f}")
-    change = np.array([*linecad.ties.probability.LOG_ODDS.values()]) - of_lines.slope
+    known = [linecad.ties.probability.AT_ONCE, *linecad.ties.probability.LOG_ODDS.values()]
+    change = np.array(known) - np.r_[of_lines.at_once, of_lines.slope]
     print(f"lines: the fit differs from the table by up to {np.abs(change).max():.4f}")
 
 
