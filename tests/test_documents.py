@@ -24,7 +24,6 @@ WIDEST = 120  # characters of a line of a decision
 SLANG = {
     r"hinges?": "articulation line",
     r"witness(es)?": "independent line",
-    r"ties": "connects, or what it is: a window grid, a crossing",
     r"sheets?": "plane cell",
     r"pencils?": "lines along vanishing points",
     r"support|supports": "resampling stability",

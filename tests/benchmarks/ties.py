@@ -1,0 +1,284 @@
+"""What ties bodies, fitted and measured on photos of known depth: python tests/benchmarks/ties.py DATASET ...
+
+DATASET is a folder that `linecad evaluate` knows and whose truth has depth. A candidate (linecad.ties.candidates) is
+right where its ratio is that of the true scales of its two bodies within 3 %. Prints how well each kind of evidence
+tells right from wrong, what each is worth to the placement, and how far the probabilities of lines hold. All of it is
+cross-validated: a scene is judged by the others; the photos of one real dataset are one scene. `--write` puts the fits
+to all photos into linecad/ties/table.py and linecad/ties/probability.py.
+"""
+
+import argparse
+import re
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from unittest import mock
+
+import logistic
+import numpy as np
+from ties_truth import Judged, densest, judge
+
+import linecad.ties.probability
+import linecad.ties.table
+import linecad.ties.weights
+from linecad.arrays import Float, Int
+from linecad.evaluation.datasets import find_dataset
+from linecad.ties.candidates import KINDS, Kind
+from linecad.ties.probability import features
+from linecad.ties.weights import weigh_candidates
+from solver.bodies.search import place
+from solver.options import SolveOptions
+
+RIGHT = 0.03  # log ratio of a candidate
+RIGHT_DEPTH = 0.05
+LEAST_REFERENCE = 10  # points on the reference body, for the others to be relative to
+RIDGE, RIDGE_OF_LINES = 3.0, 30.0
+SURE = 0.9
+
+# For each row of the ablation the kinds that are left out, and the features that the fit does without.
+WITHOUT: dict[str, tuple[tuple[Kind, ...], tuple[str, ...]]] = {
+    "all evidence": ((), ()),
+    "bundles only": (("plane", "level"), ()),
+    "without planes": (("plane",), ("plane of it", "plane beside")),
+    "without levels": (("level",), ("levels", "level excess", "level lead", "same eaves")),
+    "without colour": ((), ("colour",)),
+    "without resampling": ((), ("supported", "connected")),
+}
+Fits = dict[Kind, logistic.Logistic]
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """The candidates of one kind whose truth is known, of all photos."""
+
+    names: list[str]  # of the features
+    features: Float  # (M, F)
+    right: Float  # (M,) 0 or 1
+    dataset: list[str]
+    scene: Int  # (M,)
+
+    def fit(self, chosen: np.ndarray, without: tuple[str, ...] = ()) -> logistic.Logistic:
+        """The regression over the chosen rows (M,)."""
+        used = np.array([name not in without for name in self.names])
+        return logistic.fit(self.features[chosen], self.right[chosen], RIDGE, used=used)
+
+
+def rows_of(photos: list[Judged], kind: Kind) -> Rows:
+    scenes = sorted({photo.scene for photo in photos})
+    known = [
+        (candidate, photo.error_of(candidate), photo)
+        for photo in photos
+        for candidate in photo.candidates
+        if candidate.kind == kind and np.isfinite(photo.error_of(candidate))
+    ]
+    return Rows(
+        list(known[0][0].features),
+        np.array([list(candidate.features.values()) for candidate, _, _ in known]),
+        np.array([float(error < RIGHT) for _, error, _ in known]),
+        [photo.dataset for _, _, photo in known],
+        np.array([scenes.index(photo.scene) for _, _, photo in known]),
+    )
+
+
+def print_kinds(rows: dict[Kind, Rows], datasets: list[str]) -> None:
+    print("\n| kind | dataset | candidates | right | area under the curve | log loss |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    calibration = ["| kind | " + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10)) + " |", "| --- " * 11 + "|"]
+    for kind, of_kind in rows.items():
+        predicted = np.zeros(len(of_kind.right))
+        for scene in np.unique(of_kind.scene):
+            out = of_kind.scene == scene
+            predicted[out] = of_kind.fit(~out).probability(of_kind.features[out])
+        for dataset in datasets:
+            own = np.array([name == dataset for name in of_kind.dataset])
+            right, p = of_kind.right[own], predicted[own]
+            if own.any():
+                print(
+                    f"| {kind} | {dataset} | {own.sum()} | {right.mean():.2f} | "
+                    f"{logistic.area_under_curve(right, p):.3f} | {logistic.log_loss(right, p):.3f} |"
+                )
+        calibration.append(f"| {kind} | " + " | ".join(map(_cell, logistic.tenths(of_kind.right, predicted))) + " |")
+    print("\n" + "\n".join(calibration), flush=True)
+
+
+def _cell(tenth: tuple[float, float, int] | None) -> str:
+    return "" if tenth is None else f"{tenth[0]:.2f} / {tenth[1]:.2f} ({tenth[2]})"
+
+
+def fits_without(photos: list[Judged], rows: dict[Kind, Rows], left_out: str, without: tuple[str, ...]) -> Fits:
+    """The fits to all scenes but one."""
+    number = sorted({photo.scene for photo in photos}).index(left_out)
+    return {kind: of_kind.fit(of_kind.scene != number, without) for kind, of_kind in rows.items()}
+
+
+def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
+    """The same in the form of linecad.ties.table."""
+    slopes = {
+        kind: dict(zip(rows[kind].names, fitted.slope.tolist(), strict=True)) for kind, fitted in fits.items()
+    }  # fmt: skip
+    return {"AT_ONCE": {kind: fitted.at_once for kind, fitted in fits.items()}, "LOG_ODDS": slopes}
+
+
+@dataclass(frozen=True, eq=False)
+class Placed:
+    """A photo with its bodies in their places."""
+
+    score: tuple[float, float]  # recall and precision at 5 %
+    proven: bool
+    features: Float  # (P, F) of the lines at the points that are judged; none where the reference body shows too few
+    right: Float  # (P,) 0 or 1
+
+
+def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Placed:
+    """The photo placed by a table, without the candidates of some kinds."""
+    setting = photo.setting
+    candidates = [candidate for candidate in photo.candidates if candidate.kind not in kinds]
+    with mock.patch.multiple(linecad.ties.weights, **table):
+        ties = weigh_candidates(candidates, setting.bodies.size)
+    body = setting.bodies.body
+    reference = int(setting.bodies.size.argmax()) if setting.bodies.count else 0
+    placement = place(ties, max(1, setting.bodies.count), reference, SolveOptions())
+    log_depth = setting.log_depth + np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
+    known = features(setting, placement, reference, log_depth)
+    seen = photo.seen
+    line = photo.on[seen]
+    error = log_depth[line] + photo.log_factor[seen] - photo.log_true[seen]
+    if (body[line] == reference).sum() < LEAST_REFERENCE:
+        line, error = line[:0], error[:0]
+    else:
+        error = error - densest(error[body[line] == reference])
+    right = np.abs(np.expm1(error)) < RIGHT_DEPTH
+    of_lines = np.array([value[line] for value in known.values()]).T
+    return Placed(photo.score(log_depth), placement.status == "optimal", of_lines, right.astype(np.float64))
+
+
+def print_ablation(
+    photos: list[Judged], rows: dict[Kind, Rows], datasets: list[str], pool: ProcessPoolExecutor
+) -> list[Placed]:
+    """Print a row for each part of the evidence; the placements with all of it."""
+    print("\n| recall / precision at 5 % | " + " | ".join(datasets) + " |\n| --- " + "| --- " * len(datasets) + "|")
+    _print_row("the robust fit alone", photos, [photo.score(photo.setting.log_depth) for photo in photos], datasets)
+    at_truth = [photo.score(_at_true_scales(photo)) for photo in photos]
+    _print_row("bodies at their true scales", photos, at_truth, datasets)
+    complete: list[Placed] = []
+    scenes = sorted({photo.scene for photo in photos})
+    for name, (kinds, without) in WITHOUT.items():
+        table = {scene: tables(fits_without(photos, rows, scene, without), rows) for scene in scenes}
+        jobs = [pool.submit(placed, photo, kinds, table[photo.scene]) for photo in photos]
+        found = [job.result() for job in jobs]
+        _print_row(name, photos, [one.score for one in found], datasets)
+        complete = complete or found
+    print(f"\nwith all evidence {sum(one.proven for one in complete)} of {len(photos)} are proven", flush=True)
+    return complete
+
+
+def _at_true_scales(photo: Judged) -> Float:
+    """Log depths (N,); bodies whose scale is not known keep their place beside the largest whose scale is."""
+    body, known = photo.setting.bodies.body, np.isfinite(photo.true_scale)
+    if not known.any():
+        return photo.setting.log_depth
+    largest = int(np.where(known, photo.setting.bodies.size, 0).argmax())
+    shift: Float = np.where(known, photo.true_scale, photo.true_scale[largest])[np.maximum(body, 0)]
+    return photo.setting.log_depth + np.where(body >= 0, shift, 0.0)
+
+
+def _print_row(name: str, photos: list[Judged], scores: list[tuple[float, float]], datasets: list[str]) -> None:
+    cells = []
+    for dataset in datasets:
+        own = [one for photo, one in zip(photos, scores, strict=True) if photo.dataset == dataset]
+        cells.append("{:.3f} / {:.3f}".format(*np.mean(own, axis=0)))
+    print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
+
+
+def print_probabilities(photos: list[Judged], found: list[Placed], datasets: list[str]) -> logistic.Logistic:
+    """Print how far the probabilities of lines hold; the regression over all photos, each of one weight."""
+    known = [(photo, one) for photo, one in zip(photos, found, strict=True) if len(one.right)]
+    of_lines = np.concatenate([one.features for _, one in known])
+    right = np.concatenate([one.right for _, one in known])
+    weight = np.concatenate([np.full(len(one.right), 1 / len(one.right)) for _, one in known])
+    weight /= weight.mean()
+    scene = np.concatenate([np.full(len(one.right), photo.scene) for photo, one in known])
+    dataset = np.concatenate([np.full(len(one.right), photo.dataset) for photo, one in known])
+    predicted = np.zeros(len(right))
+    for name in np.unique(scene):
+        out = scene == name
+        fitted = logistic.fit(of_lines[~out], right[~out], RIDGE_OF_LINES, weight[~out])
+        predicted[out] = fitted.probability(of_lines[out])
+    print("\n| lines | " + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10)) + " | at 0.9: precision | recall |")
+    print("| --- " * 13 + "|")
+    for name in datasets:
+        own = dataset == name
+        cells = [_cell(tenth) for tenth in logistic.tenths(right[own], predicted[own], weight[own])]
+        sure = own & (predicted >= SURE)
+        share = (weight[sure] * right[sure]).sum() / (weight[own] * right[own]).sum()
+        precision = np.average(right[sure], weights=weight[sure]) if sure.any() else np.nan
+        print(f"| {name} | " + " | ".join([*cells, f"{precision:.3f}", f"{share:.2f}"]) + " |", flush=True)
+    return logistic.fit(of_lines, right, RIDGE_OF_LINES, weight)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("datasets", nargs="+", type=Path)
+    parser.add_argument("--workers", type=int, default=2, help="processes")
+    parser.add_argument("--write", action="store_true", help="the tables into linecad/ties")
+    chosen = parser.parse_args()
+    datasets = [folder.name for folder in chosen.datasets]
+    with ProcessPoolExecutor(chosen.workers) as pool:
+        jobs = [
+            pool.submit(judge, folder.name, case) for folder in chosen.datasets for case in find_dataset(folder).cases
+        ]
+        photos = [photo for job in jobs if (photo := job.result()) is not None]
+        print(f"{len(photos)} of {len(jobs)} photos", flush=True)
+        rows = {kind: rows_of(photos, kind) for kind in KINDS}
+        print_kinds(rows, datasets)
+        found = print_ablation(photos, rows, datasets, pool)
+        of_lines = print_probabilities(photos, found, datasets)
+    fits = {kind: of_kind.fit(np.ones(len(of_kind.right), bool)) for kind, of_kind in rows.items()}
+    print_changes(tables(fits, rows), of_lines)
+    if chosen.write:
+        write_table(tables(fits, rows))
+        write_probability(of_lines)
+
+
+def print_changes(table: dict[str, dict], of_lines: logistic.Logistic) -> None:
+    """By how much the fits to all photos differ from what the project has, at most."""
+    for kind in KINDS:
+        known = linecad.ties.table.LOG_ODDS[kind]
+        change = [table["AT_ONCE"][kind] - linecad.ties.table.AT_ONCE[kind]]
+        change += [value - known[name] for name, value in table["LOG_ODDS"][kind].items()]
+        print(f"{kind}: the fit differs from the table by up to {np.abs(change).max():.4f}")
+    known = [linecad.ties.probability.AT_ONCE, *linecad.ties.probability.LOG_ODDS.values()]
+    change = np.array(known) - np.r_[of_lines.at_once, of_lines.slope]
+    print(f"lines: the fit differs from the table by up to {np.abs(change).max():.4f}")
+
+
+def write_table(table: dict[str, dict]) -> None:
+    path = Path(linecad.ties.table.__file__)
+    head = path.read_text(encoding="utf-8").partition("AT_ONCE")[0]
+    lines = ["AT_ONCE: dict[Kind, float] = {"]
+    lines += [f'    "{kind}": {value:.4f},' for kind, value in table["AT_ONCE"].items()]
+    lines += ["}", "LOG_ODDS: dict[Kind, dict[str, float]] = {"]
+    for kind, slopes in table["LOG_ODDS"].items():
+        lines += [f'    "{kind}": {{', *(f'        "{name}": {value:.4f},' for name, value in slopes.items()), "    },"]
+    path.write_text(head + "\n".join([*lines, "}", ""]), encoding="utf-8")
+
+
+def write_probability(of_lines: logistic.Logistic) -> None:
+    path = Path(linecad.ties.probability.__file__)
+    names = linecad.ties.probability.LOG_ODDS
+    slopes = "".join(
+        f'    "{name}": {value:.4f},\n' for name, value in zip(names, of_lines.slope.tolist(), strict=True)
+    )
+    table = f"AT_ONCE = {of_lines.at_once:.4f}\nLOG_ODDS: dict[str, float] = {{\n{slopes}}}\n"
+    text = re.sub(
+        r"^AT_ONCE = .*?^}\n",
+        lambda _: table,
+        path.read_text(encoding="utf-8"),
+        count=1,
+        flags=re.DOTALL | re.MULTILINE,
+    )
+    path.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

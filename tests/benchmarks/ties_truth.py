@@ -1,0 +1,113 @@
+"""Photos of known depth with their bodies, the candidates between them and what is true of these; used by ties.py."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from types import SimpleNamespace
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.decide.stability import resample
+from linecad.errors import LinecadError
+from linecad.evaluation.datasets import Case
+from linecad.evaluation.depth import NO_LINE, depths_of, nearest_lines, score
+from linecad.evaluation.references import open_case
+from linecad.finding import FoundLines, connect, find_lines
+from linecad.options import LONG_REACH, Options
+from linecad.ties.bodies import find_rigid_bodies
+from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.placing import FITS
+from linecad.ties.setting import Setting
+from solver.robust import RobustFit
+
+WIDTH = 0.02  # log scale, half of the window whose points give a body its true scale
+LEAST_POINTS, LEAST_AGREEING, AGREEING = 6, 0.6, 0.05
+
+
+@dataclass(frozen=True, eq=False)
+class Judged:
+    """A photo with its candidates, and what is true of them."""
+
+    dataset: str
+    scene: str
+    setting: Setting  # without pixels
+    candidates: list[Candidate]
+    on: Int  # (P,) the line that shows each point of known depth, NO_LINE for none
+    log_factor: Float  # (P,) log depth of the point where its line has log depth 0
+    log_true: Float  # (P,)
+    true_scale: Float  # (B,) log, NaN where the points do not tell
+
+    @cached_property
+    def seen(self) -> Int:
+        """The points that lines of bodies show."""
+        lines = np.flatnonzero(self.setting.bodies.body >= 0)
+        return np.flatnonzero(np.isin(self.on, lines))
+
+    def error_of(self, candidate: Candidate) -> float:
+        """Log ratio; NaN where it is not known."""
+        first, second = candidate.bodies
+        return float(abs(self.true_scale[first] - self.true_scale[second] - candidate.log_ratio))
+
+    def score(self, log_depth: Float) -> tuple[float, float]:
+        """Recall and precision at 5 % of all lines of bodies at log depths (N,)."""
+        found, seen = np.full(len(self.on), np.nan), self.seen
+        found[seen] = np.exp(log_depth[self.on[seen]] + self.log_factor[seen])
+        result = score(found, np.exp(self.log_true))
+        return result.recall_5, result.precision_5
+
+
+def judge(dataset: str, case: Case) -> Judged | None:
+    """The photo of a case; None where it has no lines in space, or its truth no depths."""
+    photo, reference = open_case(case)
+    if reference.edges is None:
+        return None
+    try:
+        found = find_lines(photo)
+        graph = connect(found, Options(reach=LONG_REACH))[1]
+    except LinecadError as error:
+        print(f"{case.name}: {error}", flush=True)
+        return None
+    fit = RobustFit(graph)
+    log_depth = fit.depths()
+    fits = resample(graph, lambda present: fit.depths(present=present), 0, FITS)
+    bodies = find_rigid_bodies(graph, log_depth, fits)
+    setting = Setting(graph, log_depth, bodies, fits, found.camera.width, found.pixels)
+    candidates = find_candidates(setting)
+    on, log_factor = lines_at(setting, found, reference.edges.pixels)
+    log_true = np.log(reference.edges.depth)
+    scene = f"{dataset}/{case.name}" if case.kind == "made" else dataset
+    true_scale = true_scales(setting, on, log_true - log_factor)
+    return Judged(dataset, scene, replace(setting, pixels=None), candidates, on, log_factor, log_true, true_scale)
+
+
+def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, Float]:
+    """The line (P,) nearest to each pixel, and the log depth (P,) of its ray where that line has log depth 0."""
+    graph = setting.graph
+    ends = np.repeat(graph.rays[:, None], 2, axis=1)
+    lines = SimpleNamespace(segment=graph.segments.ends, axis=graph.axis, ends=ends)
+    scene = SimpleNamespace(camera=found.camera, rotation=found.frame.rotation, lines=lines)
+    on = nearest_lines(scene, pixels, np.ones(len(graph.axis), bool))
+    factor = depths_of(scene, pixels, on)
+    before = np.isfinite(factor) & (factor > 0)
+    return np.where(before, on, NO_LINE), np.log(np.where(before, factor, 1.0))
+
+
+def true_scales(setting: Setting, on: Int, log_line_depth: Float) -> Float:
+    """The log (B,) by which each body must grow, from the true log depths (P,) of the lines `on` which points lie."""
+    scale = np.full(setting.bodies.count, np.nan)
+    shift = np.where(on == NO_LINE, 0.0, log_line_depth - setting.log_depth[on])
+    for body, lines in enumerate(setting.lines):
+        own = shift[np.isin(on, lines)]
+        if len(own) >= LEAST_POINTS:
+            middle = densest(own)
+            agreeing = np.abs(own - middle) < AGREEING
+            scale[body] = middle if agreeing.mean() >= LEAST_AGREEING else np.nan
+    return scale
+
+
+def densest(values: Float) -> float:
+    """The median of the most values that lie within 2 WIDTH."""
+    values = np.sort(values)
+    count = np.searchsorted(values, values + 2 * WIDTH) - np.arange(len(values))
+    first = int(count.argmax())
+    return float(np.median(values[first : first + count[first]]))
