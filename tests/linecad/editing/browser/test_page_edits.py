@@ -355,7 +355,9 @@ def test_a_reload_and_a_killed_server_bring_everything_back(new_screen, start):
 
 
 def test_a_search_tells_how_far_it_is_and_stop_keeps_the_best(new_screen, start, long_search):
-    slow = new_screen(start("--option", "extension=200", "--time-limit", "120", photo=long_search))
+    slow = new_screen(
+        start("--option", "extension=200", "--option", "formulation=gain", "--time-limit", "120", photo=long_search)
+    )
     slow.page.goto(slow.served.address)
     slow.wait("globalThis.linecad?.store.solve.state === 'running'")
     slow.page.get_by_text("bound").wait_for()
