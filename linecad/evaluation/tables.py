@@ -159,7 +159,7 @@ def measures(wholes: Sequence[WholeResult]) -> Table:
     ]  # fmt: skip
     return Table(
         "Default settings, whole photos",
-        "Formulation gain, collinear edges, all components; the planes scored are those of component 0.",
+        "All lines that were found, all components; the planes scored are those of component 0.",
         (Column("value", ""),),
         tuple(Row(name, (cell,), unit) for name, unit, cell in rows if cell is not None),
     )
