@@ -17,7 +17,6 @@ from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_ga
 from solver.progress import Reporter, catch_interrupt
 
 MOST_NODES = 20_000  # where the options name no limit: about a minute; a photo takes up to some hundred
-ANCHOR = 1e-6  # weight that keeps what no counted tie holds
 
 
 def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_progress: OnProgress = None) -> Placement:
@@ -95,8 +94,9 @@ def _refined(ties: Ties, log_scale: Float) -> Float:
     rows = np.zeros((len(used), len(log_scale)))
     at = np.arange(len(used))
     rows[at, first], rows[at, second] = 1.0, -1.0
-    weight = used.weight / used.tolerance**2
-    normal = rows.T @ (weight[:, None] * rows) + ANCHOR * np.eye(len(log_scale))
-    step = np.linalg.solve(normal, rows.T @ (weight * (used.log_ratio - rows @ log_scale)))
+    # The shortest step of all, so that what no counted tie holds stays. By the rows themselves and not their squares:
+    # what a person called real weighs so much that the normal equations are singular to machine precision.
+    weight = np.sqrt(used.weight) / used.tolerance
+    step = np.linalg.lstsq(weight[:, None] * rows, weight * (used.log_ratio - rows @ log_scale))[0]
     refined = log_scale + step
     return refined if ties.value(refined) >= ties.value(log_scale) else log_scale
