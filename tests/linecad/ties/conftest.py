@@ -7,7 +7,7 @@ import pytest
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import Fits
-from linecad.geometry import central_camera, project
+from linecad.geometry import central_camera, project, rotation_about
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.options import LONG_REACH
@@ -23,10 +23,7 @@ FITS = 4
 
 @dataclass(frozen=True, eq=False)
 class Town:
-    """Parts of lines, each (axis, point, other end), that the camera sees; the depth of a line is that of its middle.
-
-    The depth of a segment's middle is exact for lines of any axis.
-    """
+    """Parts of lines, each (axis, point, other end), that the camera sees."""
 
     graph: LineGraph
     log_depth: Float  # (N,) true, of the middle of each segment
@@ -48,16 +45,18 @@ def wall(normal, place, across, heights):
     return lines
 
 
-def town(*parts, weights="odds", collinear=True):
-    """What the camera sees of parts; every line must be long enough to be seen."""
+def town(*parts, collinear=True, yaw=0.0):
+    """What the camera, turned to the right by `yaw` (rad), sees of parts; every line must be long enough to be seen."""
     lines = [line for part in parts for line in part]
     axis = np.array([line[0] for line in lines])
     ends = np.array([line[1:] for line in lines], float)
-    pixels = project(ends, CAMERA.matrix, FRONTAL.rotation)
+    rotation = FRONTAL.rotation @ rotation_about(np.array([0.0, 0.0, yaw]))
+    pixels = project(ends, CAMERA.matrix, rotation)
     assert ends[..., 1].min() > 1
     assert pixels.min() > 0
     assert (pixels < [WIDTH, HEIGHT]).all()
-    graph = build_line_graph(Segments(pixels, axis), CAMERA, FRONTAL, LONG_REACH, weights, collinear)
+    frame = ManhattanFrame(rotation, 0.0, 1.0)
+    graph = build_line_graph(Segments(pixels, axis), CAMERA, frame, LONG_REACH, "odds", collinear)
     assert len(graph.segments) == len(lines)
     # The ray of a middle has depth 1; across its axis it is the line's own coordinate over the depth.
     fixed = np.where(axis == 1, np.where(np.abs(graph.rays[:, 0]) > np.abs(graph.rays[:, 2]), 0, 2), 1)

@@ -108,9 +108,11 @@ def test_togetherness_is_a_share_of_the_fits_that_see_the_line():
 
 def test_togetherness_is_measured_at_the_main_part_of_a_core():
     fits = fits_of(6)
-    fits.group[:4, 3:] = 1
+    fits.depth[:, 1:3] += [0.6 * SAME_DEPTH, 1.2 * SAME_DEPTH]
+    fits.group[:, 3:] = 1
+    fits.depth[:, 3:] += 9.0
     share = togetherness(fits, fits.depth, np.array([True] * 5 + [False]))
-    assert share.tolist() == pytest.approx([1.0] * 3 + [0.6] * 3)
+    assert share.tolist() == [1.0] * 3 + [0.0] * 3
 
 
 def test_a_small_core_is_none(build_links):

@@ -43,6 +43,13 @@ def test_the_ratio_makes_the_crossings_hold(build_town, build_row, build_setting
     assert bundle.coordinates == {1}
 
 
+@pytest.mark.parametrize(("body", "log_ratio"), [((0, 1), 0.2 - 0.5 + 0.1), ((1, 0), -0.2 + 0.5 - 0.1)])
+def test_a_ratio_has_the_sign_of_the_smaller_body(build_links, body, log_ratio):
+    graph = build_links(2, [(0, 1)], log_ratio=np.array([0.2]))
+    (bundle,) = find_bundles(Setting(graph, np.array([0.5, 0.1]), RigidBodies(np.array(body), 2), None, 3840, None))
+    assert bundle.log_ratio == pytest.approx(log_ratio)
+
+
 def test_crossings_that_ask_for_different_ratios_are_bundles_of_their_own(build_links):
     edges = across((0, 0), (1, 1), (2, 2), (3, 3), (4, 4))
     ratio = np.array([0.0, 0.5, 1.9 * WIDTH, 0.5, 0.52])

@@ -17,7 +17,7 @@ from linecad.ties.candidates import (
 )
 from linecad.ties.colours import TYPICAL
 from linecad.ties.levels import MOST
-from linecad.ties.planes import INDUCED
+from linecad.ties.planes import INDUCED, SharedPlane
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 
 GAP = 2.0 * 3000 / 10  # px between the walls of a row
@@ -26,7 +26,7 @@ GAP = 2.0 * 3000 / 10  # px between the walls of a row
 @pytest.fixture(scope="module")
 def row(build_town, build_row):
     """A row of two walls at 10, joined by so many courses."""
-    return lambda bars, **more: build_town(*build_row(bars, **more))
+    return lambda bars, collinear=True, **more: build_town(*build_row(bars, **more), collinear=collinear)
 
 
 @pytest.fixture(scope="module")
@@ -53,6 +53,7 @@ def scenes(row, stepped, build_setting):
         build_setting(row(0), moved=(0.3, -0.2)),
         build_setting(row(3, at=(10.0, 11.0))),
         build_setting(stepped, moved=(0.1, 0.0)),
+        build_setting(row(0, level=True, collinear=False), moved=(0.2, 0.0)),
     ]
 
 
@@ -168,6 +169,21 @@ def test_features_of_a_bundle(row, build_setting, monkeypatch):
         "from both": 1.0,
     }
     assert {name: found.features[name] for name in expected} == pytest.approx(expected)
+
+
+def test_the_planes_at_the_ratio_of_a_bundle_count_by_their_larger_share(row, build_setting, monkeypatch):
+    setting = build_setting(row(2))
+    shares = [
+        (1, 0.0, (0.2, 0.9)),
+        (1, 0.01, (0.5, 0.6)),
+        (0, 0.0, (0.4, 0.3)),
+        (2, 0.0, (0.1, 0.1)),
+        (0, 0.02, (1, 1)),
+    ]
+    planes = [SharedPlane((0, 1), ratio, normal, 1.0, share, (5, 5), 0) for normal, ratio, share in shares]
+    monkeypatch.setattr(linecad.ties.candidates, "find_shared_planes", lambda _: planes)
+    (bundle,) = of_kind(find_candidates(setting), "bundle")
+    assert (bundle.features["plane of it"], bundle.features["plane beside"]) == (0.5, 0.3)
 
 
 @pytest.mark.parametrize(("by", "apart"), [(0.4, 0.4), (-0.4, 0.4), (1.7, FARTHEST)])

@@ -121,6 +121,13 @@ def test_lines_that_leave_their_body_in_the_fits_are_less_sure(placed):
     assert np.delete(after, 5).tolist() == np.delete(before, 5).tolist()
 
 
+def test_lines_move_relative_to_the_fit_to_all(placed):
+    depth = np.linspace(0.0, 3.0, len(placed.bodies.body))
+    fits = replace(placed.fits, depth=np.tile(depth, (len(placed.fits.depth), 1)))
+    together = known(replace(placed, log_depth=depth, fits=fits))["together"]
+    assert (together[placed.bodies.body >= 0] == 1).all()
+
+
 def test_a_photo_without_bodies_has_no_sure_line(placed):
     none = replace(placed, bodies=RigidBodies(np.full(len(placed.bodies.body), -1), 0))
     assert sure(none, (0.0,)).tolist() == [0.0] * len(placed.bodies.body)
