@@ -1,8 +1,8 @@
 """Candidates: ratios of the scales of two bodies that some evidence asks for, each with all that speaks for it.
 
-A ratio is a candidate once. Where crossings ask for it, it is of kind *bundle*; else, where planes would become one, of
-kind *plane*; else, where levels match, of kind *level*. Planes and levels that match at the ratio of a bundle are then
-features of the bundle.
+A ratio is of one kind. Where crossings ask for it, it is of kind *bundle*; else, where planes would become one, of kind
+*plane*; else, where levels match, of kind *level*. Planes and levels that match at the ratio of a bundle are then
+features of the bundle. Only planes may repeat a ratio, each pair of planes for itself.
 """
 
 from dataclasses import dataclass
