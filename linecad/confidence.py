@@ -1,12 +1,15 @@
 """A scene without the lines whose depth is not sure enough, by the probability that it is right."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
+from typing import TypeVar
 
 import numpy as np
 
 from linecad.arrays import Bool
 from linecad.errors import ConfidenceError
 from linecad.scene import Intersections, Lines, Plane, Scene
+
+Record = TypeVar("Record", Lines, Intersections)
 
 
 def keep_probable(scene: Scene, least: float) -> Scene:
@@ -32,41 +35,21 @@ def keep_probable(scene: Scene, least: float) -> Scene:
             f"{probability.max():.3g}; choose a smaller --confidence"
         )
     ids = set(lines.id[kept].tolist())
+    crossings = scene.intersections
+    both = np.asarray(np.isin(crossings.lines, list(ids)).all(axis=1))
     planes = tuple(plane for plane in (_plane_of(each, ids) for each in scene.planes) if plane.lines)
     return replace(
         scene,
-        lines=_lines_of(lines, kept),
-        intersections=_crossings_of(scene.intersections, ids),
+        lines=_rows(lines, kept),
+        intersections=_rows(crossings, both),
         planes=planes,
         notes=(*scene.notes, _note(scene, int(kept.sum()), len(planes), least)),
     )
 
 
-def _lines_of(lines: Lines, kept: Bool) -> Lines:
-    return Lines(
-        id=lines.id[kept],
-        axis=lines.axis[kept],
-        segment=lines.segment[kept],
-        ends=lines.ends[kept],
-        is_boundary=lines.is_boundary[kept],
-        component=lines.component[kept],
-        confidence=lines.confidence[kept],
-        probability=np.asarray(lines.probability)[kept],
-    )
-
-
-def _crossings_of(crossings: Intersections, ids: set[int]) -> Intersections:
-    """The crossings of two lines that are both kept."""
-    kept = np.isin(crossings.lines, list(ids)).all(axis=1)
-    return Intersections(
-        lines=crossings.lines[kept],
-        kind=crossings.kind[kept],
-        pixel=crossings.pixel[kept],
-        real=crossings.real[kept],
-        in_tree=crossings.in_tree[kept],
-        weight=crossings.weight[kept],
-        reason=np.asarray(crossings.reason)[kept],
-    )
+def _rows(record: Record, kept: Bool) -> Record:
+    """The masked entries of every field of a record of arrays."""
+    return replace(record, **{each.name: np.asarray(getattr(record, each.name))[kept] for each in fields(record)})
 
 
 def _plane_of(plane: Plane, ids: set[int]) -> Plane:

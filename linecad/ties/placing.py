@@ -56,7 +56,8 @@ def place_lines(
     began = time.monotonic()
     ratios = end_ratios(graph)
     real, fake = read_annotations(graph, options)
-    check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
+    if real.any():
+        check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
     on_stage("fitting depths, with and without some of the lines")
     setting = _setting(graph, width, pixels, options, real, fake)
     on_stage(f"finding what ties {setting.bodies.count} bodies")

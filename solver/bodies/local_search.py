@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float
 from solver.bodies.ties import Ties
 
 RESTARTS = 3
@@ -55,7 +55,7 @@ def margins(ties: Ties, log_scale: Float, reference: int) -> Float:
             continue
         _, worth = _best_move(ties, log_scale, moved, ELSEWHERE)
         margin[moved] = np.minimum(margin[moved], max(0.0, value - worth))
-    reached = _groups(ties, np.ones(len(ties), bool), len(log_scale))
+    reached = ties.parts(np.ones(len(ties), bool), len(log_scale))
     margin[reached != reached[reference]] = 0.0
     finite = margin[np.isfinite(margin)]
     margin[~np.isfinite(margin)] = finite.max() if len(finite) else 0.0
@@ -94,22 +94,12 @@ def _sets(ties: Ties, log_scale: Float) -> list[Bool]:
     """Sets of bodies (B,) that may move together: each alone, those that ties hold together, both sides of a cut."""
     count = len(log_scale)
     holds = ties.holds(log_scale)
-    group = _groups(ties, holds, count)
+    group = ties.parts(holds, count)
     sets = [np.arange(count) == body for body in range(count)]
     sets += [group == number for number in np.unique(group) if 1 < (group == number).sum() < count]
     first, second = np.sort(ties.bodies, axis=1).T
     for one, other in sorted(set(zip(first[holds].tolist(), second[holds].tolist(), strict=True))):
-        cut = _groups(ties, holds & ~((first == one) & (second == other)), count)
+        cut = ties.parts(holds & ~((first == one) & (second == other)), count)
         if cut[one] != cut[other]:
             sets += [cut == cut[one], cut == cut[other]]
     return sets
-
-
-def _groups(ties: Ties, used: Bool, count: int) -> Int:
-    """Number (B,) of the group of bodies that the used ties (T,) connect: its smallest body."""
-    group = np.arange(count)
-    for first, second in ties.bodies[used].tolist():
-        one, other = group[first], group[second]
-        if one != other:
-            group[group == max(one, other)] = min(one, other)
-    return group

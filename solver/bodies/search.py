@@ -4,10 +4,8 @@ import time
 from dataclasses import replace
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Float
 from linecad.line_graph import Status
 from solver.backends.scip import Watch, run, version
 from solver.bodies.local_search import improve, margins
@@ -68,17 +66,11 @@ def _about(ties: Ties, log_scale: Float, reference: int) -> Float:
 
     What is left of the evidence says nothing about such a part, so its largest body stays where the fit has it.
     """
-    part = _parts(ties.subset(ties.counted(log_scale)), len(log_scale))
+    part = ties.parts(ties.counted(log_scale), len(log_scale))
     lead = np.array([int(np.argmax(part == number)) for number in range(part.max(initial=-1) + 1)], np.int64)
     lead[part[reference]] = reference
     about: Float = log_scale - log_scale[lead[part]]
     return about
-
-
-def _parts(ties: Ties, count: int) -> Int:
-    first, second = ties.bodies.T
-    links = csr_matrix((np.ones(len(ties)), (first, second)), (count, count))
-    return np.asarray(connected_components(links, directed=False)[1], np.int64)
 
 
 def _refined(ties: Ties, log_scale: Float) -> Float:

@@ -10,6 +10,8 @@ first is best).
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int, check_lengths, check_not_negative, freeze
 from linecad.line_graph import Status
@@ -47,6 +49,12 @@ class Ties:
     def subset(self, keep: Bool | Int) -> "Ties":
         """The ties that a mask or an index array selects."""
         return Ties(self.bodies[keep], self.log_ratio[keep], self.tolerance[keep], self.weight[keep], self.group[keep])
+
+    def parts(self, used: Bool, count: int) -> Int:
+        """Number (B,) of the part that each of `count` bodies is in by the used ties (T,), in order of first bodies."""
+        first, second = self.bodies[used].T
+        links = csr_matrix((np.ones(len(first)), (first, second)), (count, count))
+        return np.asarray(connected_components(links, directed=False)[1], np.int64)
 
     def misfit(self, log_scale: Float) -> Float:
         """(T,) by how much log scales (B,) miss the ratios."""
