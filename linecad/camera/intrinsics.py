@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Float
 from linecad.camera.fspy import SUFFIX, read_fspy
+from linecad.camera.row_resampling import resample_rows
 from linecad.errors import CameraError
 from linecad.io import strict_json as strictjson
 from linecad.io.strict_json import JsonError, Node
@@ -109,6 +110,12 @@ def undistort_photo(pixels: NDArray[np.uint8], calibration: Calibration) -> tupl
             f"down to {REMAP_LIMIT} px"
         )
     coefficients = np.array(calibration.distortion)
+    if not calibration.distortion:  # only rows move, and all of a row as its first pixel
+        _, column = cv2.initUndistortRectifyMap(
+            calibration.matrix, coefficients, None, calibration.square_matrix, (1, height), cv2.CV_32FC1
+        )
+        place = np.asarray(column[:, 0], np.float64)
+        return resample_rows(pixels, place), float(((place < -0.5) | (place > height - 0.5)).mean())
     map_x, map_y = cv2.initUndistortRectifyMap(
         calibration.matrix, coefficients, None, calibration.square_matrix, (width, height), cv2.CV_32FC1
     )
