@@ -39,11 +39,11 @@ def find_faces(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation
         cells = build_plane_cells(plane, members, planes, lines, samples, camera, rotation)
         if cells is not None:
             cell_sets.append(cells)
-    winner = _compete(cell_sets, len(samples.rays))
-    winner = _take_back(cell_sets, winner)
+    winner = _take_back(cell_sets, _compete(cell_sets, len(samples.rays)))
     for number, cells in enumerate(cell_sets):
-        others = cells.count(((winner >= 0) & (winner != number)) | ~np.isfinite(cells.distance))
-        free = cells.possible & (others <= (1 - FREE_SHARE) * cells.count(np.ones(len(winner), bool)))
+        shown = winner[cells.sample]
+        others = cells.count(((shown >= 0) & (shown != number)) | ~np.isfinite(cells.distance))
+        free = cells.possible & (others <= (1 - FREE_SHARE) * cells.total)
         cells.kept = without_slivers(cells.kept, free, cells.width, cells.height, LEAST_WIDTH.px(camera.width))
     winner = _winner(cell_sets, len(samples.rays))
     found = _apart(cell_sets, winner, samples, camera, rotation)
@@ -56,9 +56,11 @@ def _winner(cell_sets: list[PlaneCells], count: int) -> Int:
     winner = np.full(count, -1)
     for number, cells in enumerate(cell_sets):
         covered = cells.covers(cells.kept) & np.isfinite(cells.distance)
-        nearer = (cells.distance < best - 1) | ((cells.distance < best + 1) & (cells.depth < depth))
+        before, behind = best[cells.sample], depth[cells.sample]
+        nearer = (cells.distance < before - 1) | ((cells.distance < before + 1) & (cells.depth < behind))
         better = covered & nearer
-        best[better], depth[better], winner[better] = cells.distance[better], cells.depth[better], number
+        own = cells.sample[better]
+        best[own], depth[own], winner[own] = cells.distance[better], cells.depth[better], number
     return winner
 
 
@@ -68,8 +70,8 @@ def _compete(cell_sets: list[PlaneCells], count: int) -> Int:
         winner = _winner(cell_sets, count)
         changed = False
         for number, cells in enumerate(cell_sets):
-            total, won = cells.count(np.ones(count, bool)), cells.count(winner == number)
-            kept = cells.kept & (won >= (SHARE if turn else FIRST_SHARE) * total)
+            won = cells.count(winner[cells.sample] == number)
+            kept = cells.kept & (won >= (SHARE if turn else FIRST_SHARE) * cells.total)
             changed |= bool((kept != cells.kept).any())
             cells.kept = kept
         if not changed and turn:
@@ -79,14 +81,15 @@ def _compete(cell_sets: list[PlaneCells], count: int) -> Int:
 
 def _take_back(cell_sets: list[PlaneCells], winner: Int) -> Int:
     """Cells whose winners were left out themselves, given back to the plane that has the most around."""
+    winner = winner.copy()
     shown = np.bincount(winner[winner >= 0], minlength=len(cell_sets))
     for number in np.argsort(-shown, kind="stable").tolist():
         cells = cell_sets[number]
-        total = cells.count(np.ones(len(winner), bool))
-        free = cells.count(np.isin(winner, (-1, number)) & np.isfinite(cells.distance))
-        back = cells.possible & ~cells.kept & (total > 0) & (free >= FREE_SHARE * total)
+        seen = winner[cells.sample]
+        free = cells.count(((seen < 0) | (seen == number)) & np.isfinite(cells.distance))
+        back = cells.possible & ~cells.kept & (cells.total > 0) & (free >= FREE_SHARE * cells.total)
         cells.kept = cells.kept | back
-        winner = np.where(cells.covers(back) & (winner < 0), number, winner)
+        winner[cells.sample[cells.covers(back) & (seen < 0)]] = number
     return winner
 
 

@@ -5,6 +5,7 @@ lines on both sides go on above the photo, so does the wall between them.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -49,27 +50,37 @@ class Samples:
 
 @dataclass(eq=False)
 class PlaneCells:
-    """The cells of one plane while it is decided which of them are wall."""
+    """The cells of one plane while it is decided which of them are wall.
+
+    Of the samples of the photo only the M count that show a possible cell.
+    """
 
     plane: Plane
     flat: tuple[int, int]  # u and v among the axes
     grid: Cells
     possible: Bool  # (U, V)
     kept: Bool  # (U, V)
-    at: Int  # (S,) cell of each sample, -1 outside
-    distance: Float  # (S,) to the nearest line, in samples; inf where a line behind is nearer
-    depth: Float  # (S,)
+    sample: Int  # (M,) ascending
+    at: Int  # (M,) flat index of its cell
+    distance: Float  # (M,) to the nearest line, in samples; inf where a line behind is nearer
+    depth: Float  # (M,)
     width: Float  # (U, V) px
     height: Float  # (U, V) px
 
     def covers(self, cells: Bool) -> Bool:
-        """Samples (S,) in the given cells (U, V)."""
-        return (self.at >= 0) & cells.ravel()[self.at]
+        """Mask (M,) of the samples in the given cells (U, V)."""
+        covered: Bool = cells.ravel()[self.at]
+        return covered
 
     def count(self, samples: Bool) -> Int:
-        """How many of the masked samples lie in each cell (U, V)."""
-        counts: Int = np.bincount(self.at[samples & (self.at >= 0)], minlength=self.kept.size)
+        """How many of the masked samples (M,) lie in each cell (U, V)."""
+        counts: Int = np.bincount(self.at[samples], minlength=self.kept.size)
         return counts.reshape(self.kept.shape)
+
+    @cached_property
+    def total(self) -> Int:
+        """How many samples lie in each cell (U, V); 0 where it is not possible."""
+        return self.count(np.ones(len(self.at), bool))
 
 
 def take_samples(lines: Lines, camera: Camera, rotation: Float) -> Samples:
@@ -117,7 +128,9 @@ def build_plane_cells(
         return None
     corners = np.empty((len(grid.u), len(grid.v), 3))
     corners[..., plane.axis], corners[..., u], corners[..., v] = plane.offset, grid.u[:, None], grid.v
-    own = np.isin(samples.line, members)
+    is_member = np.zeros(len(lines), bool)
+    is_member[members] = True
+    own = is_member[samples.line]
     depth = corners @ rotation[2]
     far = depth > NEAREST * float(np.median(samples.line_depth[own])) if own.any() else np.zeros(depth.shape, bool)
     possible = _possible(plane, grid, far)
@@ -127,13 +140,15 @@ def build_plane_cells(
     component = lines.component[members[0]]
     # Other components have scales of their own: what is behind what is not known there.
     comparable = lines.component[samples.line] == component
-    at, distance, sample_depth = _seen(plane, grid, possible, samples, own, comparable)
+    sample, at, sample_depth = _samples_of(plane, (u, v), grid, possible, samples)
+    distance = _distance(plane, (u, v), grid, possible, samples, own, comparable)[sample]
     return PlaneCells(
         plane=plane,
         flat=(u, v),
         grid=grid,
         possible=possible,
         kept=possible,
+        sample=sample,
         at=at,
         distance=distance * (WEAK_FACTOR if component else 1.0),
         depth=sample_depth,
@@ -150,28 +165,38 @@ def _possible(plane: Plane, grid: Cells, far: Bool) -> Bool:
     return whole
 
 
-def _seen(
-    plane: Plane, grid: Cells, possible: Bool, samples: Samples, own: Bool, comparable: Bool
-) -> tuple[Int, Float, Float]:
-    """For each sample (S,): the cell of a plane that it shows, the distance to the plane's nearest line, the depth.
+def _samples_of(
+    plane: Plane, flat: tuple[int, int], grid: Cells, possible: Bool, samples: Samples
+) -> tuple[Int, Int, Float]:
+    """The samples (M,) that show a possible cell of a plane, their cells and their depths."""
+    with np.errstate(divide="ignore"):
+        depth = plane.offset / samples.rays[:, plane.axis]
+    sample = np.flatnonzero(np.isfinite(depth) & (depth > 0))
+    for axis, coordinates in zip(flat, (grid.u, grid.v), strict=True):  # few are inside, and only those are looked up
+        place = samples.rays[sample, axis] * depth[sample]
+        sample = sample[(place > coordinates[0]) & (place <= coordinates[-1])]
+    at = grid.find(samples.rays[sample][:, flat] * depth[sample, None])
+    shows = possible.ravel()[at]
+    return sample[shows], at[shows], depth[sample[shows]]
 
-    The distance is in samples, infinite where a line behind the plane is nearer. Of the points on lines (T,), those
-    are `own` that lie on lines of the plane, and `comparable` whose depth can be compared with the plane's.
+
+def _distance(
+    plane: Plane, flat: tuple[int, int], grid: Cells, possible: Bool, samples: Samples, own: Bool, comparable: Bool
+) -> Float:
+    """Distance (S,) of each sample to the plane's nearest line, in samples; infinite where a line behind is nearer.
+
+    Of the points on lines (T,), those are `own` that lie on lines of the plane, and `comparable` whose depth can be
+    compared with the plane's.
     """
-    flat = [axis for axis in range(3) if axis != plane.axis]
     with np.errstate(divide="ignore", invalid="ignore"):
-        sample_depth = plane.offset / samples.rays[:, plane.axis]
         plane_depth = plane.offset / samples.line_rays[:, plane.axis]
-    seen = np.isfinite(sample_depth) & (sample_depth > 0)
-    points = samples.rays[:, flat] * np.where(seen, sample_depth, 0)[:, None]
     behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
     # Only a line that would be seen through the wall speaks against it, not one beside it.
     through = grid.find(samples.line_rays[behind][:, flat] * plane_depth[behind, None])
     behind[behind] = (through >= 0) & possible.ravel()[through]
     distance, speaks = samples.distance(own), samples.distance(behind)
     nearest = distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5
-    at = np.where(seen, grid.find(points), -1)
-    return at, np.where(nearest, distance, np.inf), np.where(seen, sample_depth, np.inf)
+    return np.where(nearest, distance, np.inf)
 
 
 def _edges(lines: Lines, own: Int, across: int, camera: Camera, rotation: Float) -> Edges:
