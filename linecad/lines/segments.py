@@ -4,6 +4,8 @@ The paper used MCMLSD, which finds whole lines first. OpenCV's detector gives fr
 fragments of one axis that lie on one image line through its vanishing point and nearly touch become one segment.
 """
 
+from dataclasses import dataclass
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +27,7 @@ LABEL_ANGLE = np.radians(3.0)  # largest angle between a segment and its vanishi
 LABEL_ANGLE_LIMIT = np.radians(5.0)  # the most in narrower photos, where segments are short and it grows in proportion
 # Between fragments of one line; no segment is placed better than the floor, and the frame of a small photo is worse.
 GROUP_ACROSS = PhotoLength(2.5, floor=1.25)
+PAIRS = 2**16  # of fragments that are compared at a time: more would not fit into a processor's cache
 GAP_FLOOR = 4.0  # px in any photo, of the largest gap between fragments of one line
 
 
@@ -74,10 +77,11 @@ def group_segments(
     axes: list[int] = []
     for axis in range(3):
         own = segments.ends[segments.axis == axis]
-        grouped = [_join(own[m], points[axis]) for m in _gathered(own, points[axis], across, along)]
-        ends += grouped
-        axes += [axis] * len(grouped)
-    return Segments(np.array(ends), np.array(axes, np.int64))
+        lines = _gathered(own, points[axis], across, along)
+        centre = _centres(own, lines)
+        ends.append(_stretched(own, lines, centre, directions_to(centre, points[axis])))
+        axes += [axis] * len(lines)
+    return Segments(np.concatenate(ends), np.array(axes, np.int64))
 
 
 def fit_whole(ends: Float, vanishing: Float, width: int) -> Float:
@@ -85,8 +89,9 @@ def fit_whole(ends: Float, vanishing: Float, width: int) -> Float:
 
     They are gathered as by `group_segments` but not turned to the vanishing point, so that they can tell where it is.
     """
-    whole = [_fit(ends[members]) for members in _gathered(ends, vanishing, *_reach(width, SHORT_REACH.largest_gap))]
-    return np.array(whole).reshape(-1, 2, 2)
+    lines = _gathered(ends, vanishing, *_reach(width, SHORT_REACH.largest_gap))
+    centre = _centres(ends, lines)
+    return _stretched(ends, lines, centre, _fitted_directions(ends, lines, centre))
 
 
 def _reach(width: int, largest_gap: float) -> tuple[float, float]:
@@ -96,23 +101,47 @@ def _reach(width: int, largest_gap: float) -> tuple[float, float]:
 
 def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> list[Int]:
     """The fragments of each line, as indices of fragments (N, 2, 2) of one axis, the longest leader first."""
-    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    middle = ends.mean(axis=1)
-    direction = directions_to(middle, vanishing)
+    order = np.argsort(-_length(ends), kind="stable")
     free = np.ones(len(ends), bool)
     lines: list[Int] = []
-    for leader in np.argsort(-length, kind="stable"):
-        if not free[leader]:
-            continue
-        normal = np.array([-direction[leader, 1], direction[leader, 0]])
-        # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
-        one_side = direction @ direction[leader] > 0
-        near = np.flatnonzero(free & one_side & (np.abs((middle - middle[leader]) @ normal) < across))
-        reach = (ends[near] - middle[leader]) @ direction[leader]
-        members = near[_touching(reach.min(axis=1), reach.max(axis=1), along, int(np.flatnonzero(near == leader)[0]))]
-        free[members] = False
-        lines.append(members)
+    rows = max(1, PAIRS // max(1, len(ends)))
+    for first in range(0, len(order), rows):
+        leaders = order[first : first + rows]
+        leaders = leaders[free[leaders]]
+        pairs = _near(ends, directions_to(ends.mean(axis=1), vanishing), leaders, across)
+        for leader, start, end in zip(leaders.tolist(), pairs.start[:-1], pairs.start[1:], strict=True):
+            if not free[leader]:
+                continue
+            own = np.arange(start, end)[free[pairs.other[start:end]]]
+            if len(own) > 1:
+                own = own[_touching(pairs.low[own], pairs.high[own], along, int((pairs.other[own] == leader).argmax()))]
+            lines.append(pairs.other[own])
+            free[lines[-1]] = False
     return lines
+
+
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """Leaders with the fragments that are on their image lines, P pairs in the order of the L leaders."""
+
+    start: list[int]  # L + 1, the first pair of each leader, and P
+    other: Int  # (P,) the fragment, in ascending order for each leader; the leader itself is among them
+    low: Float  # (P,) px, where it begins along the line
+    high: Float  # (P,) px, where it ends
+
+
+def _near(ends: Float, direction: Float, leaders: Int, across: float) -> _Pairs:
+    """The fragments (N, 2, 2) with directions (N, 2) to their vanishing point that are near the leaders' lines."""
+    middle = ends.mean(axis=1)
+    normal = direction[leaders] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
+    off = np.abs(normal @ middle.T - (normal * middle[leaders]).sum(axis=1, keepdims=True))
+    # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
+    one_side = direction[leaders] @ direction.T > 0
+    row, other = np.nonzero(one_side & (off < across))
+    leader = leaders[row]
+    reach = ((ends[other] - middle[leader, None]) * direction[leader, None]).sum(axis=2)
+    start = np.searchsorted(row, np.arange(len(leaders) + 1)).tolist()
+    return _Pairs(start, other, reach.min(axis=1), reach.max(axis=1))
 
 
 def _touching(low: Float, high: Float, gap: float, leader: int) -> Int:
@@ -125,23 +154,35 @@ def _touching(low: Float, high: Float, gap: float, leader: int) -> Int:
     return together
 
 
-def _fit(ends: Float) -> Float:
-    """One segment (2, 2) through fragments (M, 2, 2): the line with the least squares of distance along all of them."""
-    along, middle = ends[:, 1] - ends[:, 0], ends.mean(axis=1)
-    length = np.linalg.norm(along, axis=1)
-    centre = np.average(middle, axis=0, weights=length)
-    off = middle - centre
-    spread = (off * length[:, None]).T @ off + (along * length[:, None]).T @ along / 12
-    direction = np.linalg.eigh(spread)[1][:, 1]
-    reach = (ends.reshape(-1, 2) - centre) @ direction
-    segment: Float = centre + np.array([[reach.min()], [reach.max()]]) * direction
-    return segment
+def _length(ends: Float) -> Float:
+    """Lengths (N,) px of fragments (N, 2, 2)."""
+    length: Float = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    return length
 
 
-def _join(ends: Float, vanishing: Float) -> Float:
-    """One segment (2, 2) through fragments (M, 2, 2), turned to pass exactly through the vanishing point."""
-    centre = np.average(ends.mean(axis=1), axis=0, weights=np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1))
-    direction = directions_to(centre, vanishing)
-    reach = (ends.reshape(-1, 2) - centre) @ direction
-    segment: Float = centre + np.array([[reach.min()], [reach.max()]]) * direction
-    return segment
+def _centres(ends: Float, lines: list[Int]) -> Float:
+    """The mean (G, 2) of the middles of the fragments of each line, by their length."""
+    length = _length(ends)
+    weighted = ends.mean(axis=1) * length[:, None]
+    return np.array([weighted[own].sum(axis=0) / length[own].sum() for own in lines]).reshape(-1, 2)
+
+
+def _fitted_directions(ends: Float, lines: list[Int], centre: Float) -> Float:
+    """The direction (G, 2) of each line that has the least squares of distance along all of its fragments."""
+    along, middle, length = ends[:, 1] - ends[:, 0], ends.mean(axis=1), _length(ends)[:, None]
+    spread = []
+    for own, at in zip(lines, centre, strict=True):
+        off = middle[own] - at
+        spread.append((off * length[own]).T @ off + (along[own] * length[own]).T @ along[own] / 12)
+    directions: Float = np.linalg.eigh(np.array(spread).reshape(-1, 2, 2))[1][:, :, 1]
+    return directions
+
+
+def _stretched(ends: Float, lines: list[Int], centre: Float, direction: Float) -> Float:
+    """Segments (G, 2, 2) through the centres (G, 2), along the directions (G, 2) as far as the fragments reach."""
+    reach = np.empty((len(lines), 2, 1))
+    for number, own in enumerate(lines):
+        along = (ends[own].reshape(-1, 2) - centre[number]) @ direction[number]
+        reach[number] = [[along.min()], [along.max()]]
+    segments: Float = centre[:, None] + reach * direction[:, None]
+    return segments
