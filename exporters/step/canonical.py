@@ -5,6 +5,7 @@ ids of assembly parts come from a counter of the whole process. The geometry its
 the entities are numbered anew from the geometry on, and the colours are sorted by what they say in these numbers.
 """
 
+import functools
 import itertools
 import re
 
@@ -46,6 +47,7 @@ def _ordered(entities: dict[str, str]) -> dict[str, int]:
         if root not in lists:
             _append(root, entities, order)
 
+    @functools.cache  # most styles are those of many parts
     def described(name: str) -> str:
         """The entity's text, with the place of what is geometry and the text of what is not."""
         return _REFERENCE.sub(

@@ -5,6 +5,7 @@ in the third coordinate alpha: s_i d_i = s_j d_j, an equation between the logs o
 free parameter: it is how far the equation moves when the segments move by their pixel noise.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,6 +29,7 @@ COLLINEAR_GAP_SHARE = 1.5  # of the shorter segment; a larger gap needs longer s
 
 NOISE = PhotoLength(1.25, 0.5)  # across the segment, one standard deviation; the detector is never better
 NOISE_FACTOR = 3.0  # standard deviations that a tolerance covers
+PAIRS = 2**16  # of segments that are compared at a time: more would not fit into a processor's cache
 MAX_TOLERANCE = np.log(1.6)  # beyond it the crossing says nothing about depth
 
 
@@ -116,53 +118,62 @@ def _find_crossings(segments: Segments, extension: float) -> _Crossings:
     start, along = segments.ends[:, 0], segments.ends[:, 1] - segments.ends[:, 0]
     length = segments.length
     unit = along / length[:, None]
-    edges, points, reach = [], [], []
-    for i in range(len(segments)):
-        others = np.flatnonzero(segments.axis[i + 1 :] != segments.axis[i]) + i + 1
-        to = start[others] - start[i]
-        turn = unit[i, 0] * unit[others, 1] - unit[i, 1] * unit[others, 0]
-        crossing = np.abs(turn) > 1e-9
-        others, to, turn = others[crossing], to[crossing], turn[crossing]
-        on_own = (to[:, 0] * unit[others, 1] - to[:, 1] * unit[others, 0]) / turn
-        on_other = (to[:, 0] * unit[i, 1] - to[:, 1] * unit[i, 0]) / turn
-        meets = (np.abs(on_own - length[i] / 2) <= length[i] / 2 + extension) & (
-            np.abs(on_other - length[others] / 2) <= length[others] / 2 + extension
-        )
-        edges.append(np.column_stack([np.full(meets.sum(), i), others[meets]]))
-        points.append(start[i] + on_own[meets, None] * unit[i])
-        reach.append(np.column_stack([on_own[meets], on_other[meets]]))
-    if not edges:
-        return _Crossings(np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 2)))
-    pairs, position = np.concatenate(edges), np.concatenate(reach)
-    to_end = np.minimum(position, length[pairs] - position)  # negative outside the segment
-    return _Crossings(pairs, np.concatenate(points), np.maximum(-to_end, 0), np.maximum(to_end, 0))
+    (x, y), (unit_x, unit_y) = start.T, unit.T
+
+    def may_meet(i: Int, j: Int) -> Bool:
+        """Whether `i` meets the extended `j`: that leaves few pairs."""
+        turn = unit_x[i] * unit_y[j] - unit_y[i] * unit_x[j]
+        with np.errstate(divide="ignore", invalid="ignore"):  # parallel ones
+            on_other = ((x[j] - x[i]) * unit_y[i] - (y[j] - y[i]) * unit_x[i]) / turn
+        meets = np.abs(on_other - length[j] / 2) <= length[j] / 2 + extension
+        return meets & (np.abs(turn) > 1e-9) & (segments.axis[i] != segments.axis[j])
+
+    edges = _pairs(len(segments), may_meet)
+    i, j = edges.T
+    to, turn = start[j] - start[i], unit_x[i] * unit_y[j] - unit_y[i] * unit_x[j]
+    on_own = (to[:, 0] * unit_y[j] - to[:, 1] * unit_x[j]) / turn
+    on_other = (to[:, 0] * unit_y[i] - to[:, 1] * unit_x[i]) / turn
+    meets = np.abs(on_own - length[i] / 2) <= length[i] / 2 + extension
+    edges, position = edges[meets], np.column_stack([on_own, on_other])[meets]
+    to_end = np.minimum(position, length[edges] - position)  # negative outside the segment
+    point = (start[i] + on_own[:, None] * unit[i])[meets]
+    return _Crossings(edges, point, np.maximum(-to_end, 0), np.maximum(to_end, 0))
 
 
 def _find_collinear(segments: Segments, direction: Float, width: int) -> _Crossings:
     """Pairs of segments of one axis that lie on one image line, one after the other; the point is between them."""
     across = COLLINEAR_ACROSS.px(width)
     middle, length = segments.ends.mean(axis=1), segments.length
-    edges, points, gaps = [], [], []
-    for i in range(len(segments)):
-        others = np.flatnonzero(segments.axis[i + 1 :] == segments.axis[i]) + i + 1
-        to = middle[others] - middle[i]
-        own = np.abs(to[:, 0] * direction[i, 1] - to[:, 1] * direction[i, 0])
-        other = np.abs(to[:, 0] * direction[others, 1] - to[:, 1] * direction[others, 0])
-        reach = (segments.ends[others] - middle[i]) @ direction[i]
-        ahead = reach.min(axis=1) - length[i] / 2
-        behind = -length[i] / 2 - reach.max(axis=1)
-        gap = np.maximum(ahead, behind)
-        shorter = np.minimum(length[i], length[others])
-        limit = np.minimum(COLLINEAR_GAP.px(width), COLLINEAR_GAP_SHARE * shorter)
-        one_line = (np.maximum(own, other) < across) & (gap > 0) & (gap <= limit)
-        side = np.where(ahead > behind, 1, -1)[one_line]
-        edges.append(np.column_stack([np.full(one_line.sum(), i), others[one_line]]))
-        points.append(middle[i] + (side * (length[i] + gap[one_line]) / 2)[:, None] * direction[i])
-        gaps.append(np.column_stack([gap[one_line], gap[one_line]]) / 2)
-    if not edges:
-        return _Crossings(np.zeros((0, 2), np.int64), np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 2)))
-    gap_halves = np.concatenate(gaps)
-    return _Crossings(np.concatenate(edges), np.concatenate(points), gap_halves, np.zeros_like(gap_halves))
+    (x, y), (along_x, along_y) = middle.T, direction.T
+
+    def off(i: Int, j: Int, line: Int) -> Float:
+        """Distance, px, between the middles of `i` and `j` across one of the two."""
+        distance: Float = np.abs((x[j] - x[i]) * along_y[line] - (y[j] - y[i]) * along_x[line])
+        return distance
+
+    edges = _pairs(len(segments), lambda i, j: (segments.axis[i] == segments.axis[j]) & (off(i, j, i) < across))
+    edges = edges[off(*edges.T, edges[:, 1]) < across]
+    i, j = edges.T
+    reach = ((segments.ends[j] - middle[i, None]) @ direction[i, :, None])[..., 0]
+    ahead = reach.min(axis=1) - length[i] / 2
+    behind = -length[i] / 2 - reach.max(axis=1)
+    gap = np.maximum(ahead, behind)
+    shorter = np.minimum(length[i], length[j])
+    one_line = (gap > 0) & (gap <= np.minimum(COLLINEAR_GAP.px(width), COLLINEAR_GAP_SHARE * shorter))
+    side = np.where(ahead > behind, 1, -1)
+    point = middle[i] + (side * (length[i] + gap) / 2)[:, None] * direction[i]
+    halves = np.column_stack([gap, gap])[one_line] / 2
+    return _Crossings(edges[one_line], point[one_line], halves, np.zeros_like(halves))
+
+
+def _pairs(count: int, may_be: Callable[[Int, Int], Bool]) -> Int:
+    """The pairs (P, 2), the smaller number first, for which `may_be` of indices (R, 1) and (count,) holds, in order."""
+    found = [np.zeros((0, 2), np.int64)]
+    every, rows = np.arange(count), max(1, PAIRS // max(1, count))
+    for first in range(0, count, rows):
+        row, column = np.nonzero(may_be(every[first : first + rows, None], every))
+        found.append(np.column_stack([row + first, column])[column > row + first])
+    return np.concatenate(found)
 
 
 def _joined(first: _Crossings, second: _Crossings) -> _Crossings:

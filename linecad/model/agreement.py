@@ -52,8 +52,11 @@ def bounding(planes: tuple[Plane, ...], lines: Lines) -> tuple[Bool, Bool]:
         reach = ON_FACE * float(np.ptp(lines.ends[members][:, :, flat], axis=(0, 1)).max())
         for face in plane.faces:
             polygon = shapely.Polygon(_flat(face.outline, flat), [_flat(hole, flat) for hole in face.holes])
-            along = shapely.length(shapely.intersection(pieces, polygon.buffer(reach)))
-            touched[members, plane.axis] |= along > 2 * reach
+            area = polygon.buffer(reach)
+            shapely.prepare(area)
+            near = np.flatnonzero(shapely.intersects(area, pieces))
+            along = shapely.length(shapely.intersection(pieces[near], area))
+            touched[members[near], plane.axis] |= along > 2 * reach
     count = touched.sum(axis=1)
     return count == 2, count > 0
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags_array
 from scipy.sparse.linalg import spsolve
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, Text
 from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineDepths, LineGraph
 from linecad.model.plane_merging import MIN_TOLERANCE, NOISE_FACTOR, Merges, find_merges
@@ -163,27 +163,28 @@ def _ends(graph: LineGraph, offset: Float) -> tuple[Float, Float]:
 
 def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, ends: Float) -> Float:
     """Ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
-    junctions: dict[tuple[int, int], list[float]] = {}
-    for edge in np.flatnonzero(chosen & (graph.kind != "collinear")).tolist():  # those have no point in common
-        for side in range(2):
-            line, other = graph.edges[edge, side], graph.edges[edge, 1 - side]
-            if _ends_there(graph, edge, side):
-                to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edge], axis=1)
-                nearer = (int(line), int(to_ends.argmin()))
-                junctions.setdefault(nearer, []).append(float(offset[other, graph.axis[line]]))
+    edges = np.flatnonzero(chosen & (graph.kind != "collinear"))  # those have no point in common
+    line = graph.edges[edges]
+    to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edges, None, None], axis=3)
+    there = _ends_there(graph.kind[edges, None], graph.gap[edges], to_ends.min(axis=2))
+    place = offset[line[:, ::-1], graph.axis[line]][there]
+    end = (2 * line + to_ends.argmin(axis=2))[there]  # place in the flat (N, 2)
+    highest, lowest = np.full(2 * len(ends), -np.inf), np.full(2 * len(ends), np.inf)
+    np.maximum.at(highest, end, place)
+    np.minimum.at(lowest, end, place)
+    along = np.take_along_axis(ends, graph.axis[:, None, None], axis=2)[..., 0]
+    is_high = (along > along[:, ::-1]).ravel()
+    outermost = np.where(is_high, highest, lowest)
     moved = ends.copy()
-    for (line, end), places in junctions.items():
-        axis = graph.axis[line]
-        outward = float(np.sign(ends[line, end, axis] - ends[line, 1 - end, axis]))
-        moved[line, end, axis] = max(places) if outward > 0 else min(places)
+    own = np.unique(end)
+    moved[own // 2, own % 2, graph.axis[own // 2]] = outermost[own]
     return moved
 
 
-def _ends_there(graph: LineGraph, edge: int, side: int) -> bool:
-    """Whether a line ends at a crossing: both do at an L, one does at a T, and an X is passed by all that reach it."""
-    if graph.gap[edge, side] > 0 or graph.kind[edge] == "L":
-        return True
-    if graph.kind[edge] == "X" or graph.gap[edge, 1 - side] > 0:
-        return False
-    to_ends = np.linalg.norm(graph.segments.ends[graph.edges[edge]] - graph.crossing[edge], axis=2).min(axis=1)
-    return bool(to_ends[side] < to_ends[1 - side])
+def _ends_there(kind: Text, gap: Float, to_end: Float) -> Bool:
+    """Which lines (M, 2) end at crossings (M, 1): both do at an L, one does at a T, and an X is passed by all it joins.
+
+    `gap` (M, 2) is by how much each falls short, `to_end` (M, 2) how far its end is from the crossing.
+    """
+    is_nearer = to_end < to_end[:, ::-1]
+    return (gap > 0) | (kind == "L") | ((kind != "X") & (gap[:, ::-1] <= 0) & is_nearer)

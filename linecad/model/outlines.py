@@ -94,9 +94,10 @@ def _merge(values: Float, reach: Float, preferred: Float) -> Float:
     group: list[int] = []
     for index in [*order.tolist(), -1]:
         if group and (index < 0 or values[index] - values[group[0]] > min(reach[index], reach[group[0]])):
-            own = values[group]
-            known = own[np.isin(own, preferred)]
-            merged[group] = known[0] if len(known) else own[len(own) // 2]
+            if len(group) > 1:
+                own = values[group]
+                known = own[np.isin(own, preferred)]
+                merged[group] = known[0] if len(known) else own[len(own) // 2]
             group = []
         group.append(index)
     return merged
@@ -118,13 +119,12 @@ def _runs(kept: Bool, allowed: Bool, size: Float, least: float, fill: bool, turn
     """Narrow runs of one direction turned over: gaps between cells where `fill`, else strips."""
     cells, may, sizes = (kept.T, allowed.T, size.T) if turned else (kept, allowed, size)
     result = cells.copy()
-    for column in np.flatnonzero(cells.any(axis=0)).tolist():
-        own = cells[:, column] != fill
-        change = np.flatnonzero(np.diff(own.astype(np.int8), prepend=0, append=0))
-        for start, end in change.reshape(-1, 2).tolist():
-            inner = start > 0 and end < len(own)
-            if (inner or not fill) and sizes[start:end, column].sum() < least and may[start:end, column].all():
-                result[start:end, column] = fill
+    own = np.pad((cells != fill) & cells.any(axis=0), ((1, 1), (0, 0)))
+    columns, changes = np.nonzero((own[1:] != own[:-1]).T)
+    for column, (start, end) in zip(columns[::2].tolist(), changes.reshape(-1, 2).tolist(), strict=True):
+        inner = start > 0 and end < len(cells)
+        if (inner or not fill) and sizes[start:end, column].sum() < least and may[start:end, column].all():
+            result[start:end, column] = fill
     return result.T if turned else result
 
 

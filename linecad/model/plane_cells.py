@@ -97,14 +97,14 @@ def take_samples(lines: Lines, camera: Camera, rotation: Float) -> Samples:
     column, below = np.floor((points.T + 0.5) / step).astype(np.int64)
     inside = (column >= 0) & (column < shape[1]) & (below >= 0) & (below < shape[0])
     line, points = line[inside], points[inside]
-    rays = world_rays(points, camera.matrix, rotation)
+    rays = np.asfortranarray(world_rays(points, camera.matrix, rotation))
     across = np.stack([(lines.axis + 1) % 3, (lines.axis + 2) % 3], axis=1)
     ray = np.take_along_axis(rays, across[line], axis=1)
     fixed = np.take_along_axis(lines.ends[:, 0], across, axis=1)[line]
     depth = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
-    return Samples(
-        shape, step, world_rays(pixels, camera.matrix, rotation), line, (below * shape[1] + column)[inside], rays, depth
-    )
+    # By columns, as planes look at one coordinate of all.
+    all_rays = np.asfortranarray(world_rays(pixels, camera.matrix, rotation))
+    return Samples(shape, step, all_rays, line, (below * shape[1] + column)[inside], rays, depth)
 
 
 def build_plane_cells(

@@ -115,15 +115,15 @@ def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
     place = np.repeat(graph.crossing[edges], 2, axis=0)
     order = np.argsort(line, kind="stable")
     starts = np.searchsorted(line[order], np.arange(len(graph.segments) + 1))
-    pairs: set[tuple[int, int]] = set()
+    found = [np.zeros((0, 2), np.int64)]
     for start, end in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True):
         own = order[start:end]
         if len(own) < 2:
             continue
         apart = np.linalg.norm(place[own, None] - place[None, own], axis=2) >= SHOWN_STEP
         first, second = np.nonzero(apart & (at[own, None] < at[None, own]))
-        pairs.update(zip(at[own[first]].tolist(), at[own[second]].tolist(), strict=True))
-    return pairs
+        found.append(np.unique(np.column_stack([at[own[first]], at[own[second]]]), axis=0))
+    return {(one, other) for one, other in np.concatenate(found).tolist()}
 
 
 def _joined(

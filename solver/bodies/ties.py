@@ -10,8 +10,6 @@ first is best).
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int, check_lengths, check_not_negative, freeze
 from linecad.line_graph import Status
@@ -52,9 +50,12 @@ class Ties:
 
     def parts(self, used: Bool, count: int) -> Int:
         """Number (B,) of the part that each of `count` bodies is in by the used ties (T,), in order of first bodies."""
-        first, second = self.bodies[used].T
-        links = csr_matrix((np.ones(len(first)), (first, second)), (count, count))
-        return np.asarray(connected_components(links, directed=False)[1], np.int64)
+        # Without SciPy, whose calls take far longer than these few ties.
+        root: dict[int, int] = {}
+        for first, second in self.bodies[used].tolist():
+            one, other = _find(root, first), _find(root, second)
+            root[max(one, other)] = min(one, other)
+        return np.unique([_find(root, body) for body in range(count)], return_inverse=True)[1]
 
     def misfit(self, log_scale: Float) -> Float:
         """(T,) by how much log scales (B,) miss the ratios."""
@@ -81,21 +82,22 @@ class Ties:
         return float(self.weight[self.counted(log_scale)].sum())
 
 
+def _find(root: dict[int, int], node: int) -> int:
+    """The root of the part that a node is in, with shorter ways to it for the next time (union-find)."""
+    root.setdefault(node, node)
+    while root[node] != node:
+        root[node] = root[root[node]]
+        node = root[node]
+    return node
+
+
 def pseudoforest(edges: Int) -> Bool:
     """Mask (E,) of the edges that are taken, first come first served, while no part has more edges than nodes."""
     root: dict[int, int] = {}
     is_full: dict[int, bool] = {}  # the part has as many edges as nodes
-
-    def find(node: int) -> int:
-        root.setdefault(node, node)
-        while root[node] != node:
-            root[node] = root[root[node]]
-            node = root[node]
-        return node
-
     taken = np.zeros(len(edges), bool)
     for number, (first, second) in enumerate(edges.tolist()):
-        one, other = find(first), find(second)
+        one, other = _find(root, first), _find(root, second)
         full, other_full = is_full.get(one, False), is_full.get(other, False)
         if full and other_full:
             continue
