@@ -115,15 +115,16 @@ def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
     place = np.repeat(graph.crossing[edges], 2, axis=0)
     order = np.argsort(line, kind="stable")
     starts = np.searchsorted(line[order], np.arange(len(graph.segments) + 1))
-    found = [np.zeros((0, 2), np.int64)]
+    classes = int(shared.max(initial=0)) + 1
+    found = [np.zeros(0, np.int64)]
     for start, end in zip(starts[:-1].tolist(), starts[1:].tolist(), strict=True):
         own = order[start:end]
         if len(own) < 2:
             continue
         apart = np.linalg.norm(place[own, None] - place[None, own], axis=2) >= SHOWN_STEP
         first, second = np.nonzero(apart & (at[own, None] < at[None, own]))
-        found.append(np.unique(np.column_stack([at[own[first]], at[own[second]]]), axis=0))
-    return {(one, other) for one, other in np.concatenate(found).tolist()}
+        found.append(at[own[first]] * classes + at[own[second]])
+    return {divmod(pair, classes) for pair in np.unique(np.concatenate(found)).tolist()}
 
 
 def _joined(
