@@ -3,13 +3,12 @@
 from collections.abc import Callable
 from typing import NoReturn
 
-import networkx as nx
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.errors import ContradictionError, SolverError
 from linecad.line_graph import LineGraph
-from solver.cycles import Cycle, find_contradiction, is_balanced
+from solver.cycles import Cycle, find_contradiction
 from solver.depths import near_log_ratio
 from solver.families import Families
 from solver.options import SolveOptions
@@ -45,6 +44,8 @@ def check_annotations(graph: LineGraph, families: Families, options: SolveOption
     """
     if not real.any():
         return
+    from solver.cycles_around import shorter_cycle
+
     step, log_range = near_log_ratio(graph, ratios), np.inf
     if options.formulation == "paper":
         log_range = float(np.log(options.depth_range))
@@ -60,7 +61,7 @@ def check_annotations(graph: LineGraph, families: Families, options: SolveOption
     found = [cycle for cycle in families.cycles if real[list(cycle)].all()]
     around, beyond = find_contradiction(graph, real), contradiction_of(real)
     if len(around):
-        found.append(_shorter(graph, real, tuple(around.tolist())))
+        found.append(shorter_cycle(graph, real, tuple(around.tolist())))
     if len(beyond):
         found.append(tuple(beyond.tolist()))
     if found:
@@ -70,31 +71,15 @@ def check_annotations(graph: LineGraph, families: Families, options: SolveOption
 
 def _why(graph: LineGraph, edges: Cycle, options: SolveOptions) -> str:
     """What is wrong with edges that close a cycle, or that lead further than the range of depths."""
+    from solver.cycles_around import lines_around
+
     lines = np.unique(graph.edges[list(edges)]).tolist()
     if len(edges) == len(lines):
-        return f"the crossings of {_around(graph, edges)} cannot all be real; take one back"
+        return f"the crossings of {lines_around(graph, edges)} cannot all be real; take one back"
     return (
         f"the crossings that are called real put lines {', '.join(map(str, lines))} further apart than a depth "
         f"range of {options.depth_range:g}; allow a larger one or take one back"
     )
-
-
-def _shorter(graph: LineGraph, real: Bool, cycle: Cycle) -> Cycle:
-    """The shortest unbalanced cycle that one edge closes in a tree of shortest paths, or `cycle` if none is shorter."""
-    network = nx.Graph()
-    for edge in np.flatnonzero(real & graph.informative).tolist():
-        network.add_edge(*graph.edges[edge].tolist(), edge=edge)
-    for root in sorted(network):
-        paths = nx.single_source_shortest_path(network, root, cutoff=(len(cycle) - 1) // 2)
-        for i, j, edge in network.subgraph(paths).edges(data="edge"):
-            if paths[i][-2:] == [j, i] or paths[j][-2:] == [i, j] or len(paths[i]) + len(paths[j]) - 1 >= len(cycle):
-                continue
-            if set(paths[i]) & set(paths[j]) == {root}:
-                steps = [*zip(paths[i], paths[i][1:], strict=False), *zip(paths[j], paths[j][1:], strict=False)]
-                closed = (edge, *(network.edges[step]["edge"] for step in steps))
-                if not is_balanced(graph, closed):
-                    cycle = closed
-    return cycle
 
 
 def _needed(graph: LineGraph, edges: Cycle, fits: Callable[[Bool], bool]) -> Cycle:
@@ -105,13 +90,6 @@ def _needed(graph: LineGraph, edges: Cycle, fits: Callable[[Bool], bool]) -> Cyc
         kept[edge] = False
         kept[edge] = fits(kept)
     return tuple(np.flatnonzero(kept).tolist())
-
-
-def _around(graph: LineGraph, cycle: Cycle) -> str:
-    """The lines of a cycle in order around, in words."""
-    network = nx.Graph([graph.edges[edge].tolist() for edge in cycle])
-    lines = [first for first, _ in nx.find_cycle(network, source=min(network))]
-    return "lines " + ", ".join(map(str, [*lines, lines[0]]))
 
 
 def _contradict(graph: LineGraph, edges: Cycle, text: str) -> NoReturn:

@@ -12,7 +12,6 @@ import numpy as np
 
 from linecad.arrays import Bool, Int
 from linecad.decide.bodies import Bodies, with_hanging
-from linecad.graph.connectivity import as_network, biconnected_blocks
 from linecad.line_graph import LineGraph
 
 LEAST_BODY = 4  # lines
@@ -30,7 +29,7 @@ def find_blocks(graph: LineGraph, chosen: Bool) -> Bodies:
     blocks.sort(key=lambda block: (-len(block), min(block)))
     blocks = _joined_by_pieces(blocks, graph.edges[used & (graph.kind == "collinear")])
     count = len(graph.segments)
-    net, corners = as_network(count, edges), as_network(count, graph.edges[used & (graph.kind == "L")])
+    net, corners = _as_network(count, edges), _as_network(count, graph.edges[used & (graph.kind == "L")])
     body = np.full(count, -1)
     for line in range(count):
         own = [number for number, block in enumerate(blocks) if line in block]
@@ -51,3 +50,18 @@ def _joined_by_pieces(blocks: list[set[int]], pieces: Int) -> list[set[int]]:
         net.add_edges_from((one, other) for one in of_first for other in of_second)
     joined = [set().union(*(blocks[number] for number in group)) for group in nx.connected_components(net)]
     return sorted(joined, key=lambda block: (-len(block), min(block)))
+
+
+def _as_network(count: int, edges: Int) -> "nx.Graph[int]":
+    """The lines and edges (E, 2) of a graph of `count` lines, for NetworkX."""
+    net: nx.Graph[int] = nx.Graph()
+    net.add_nodes_from(range(count))
+    net.add_edges_from(map(tuple, edges.tolist()))
+    return net
+
+
+def biconnected_blocks(edges: Int) -> list[set[int]]:
+    """The sets of three lines or more that edges (E, 2) connect so that no single line parts them."""
+    net: nx.Graph[int] = nx.Graph()
+    net.add_edges_from(map(tuple, edges.tolist()))
+    return [set(block) for block in nx.biconnected_components(net) if len(block) > 2]

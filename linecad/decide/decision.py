@@ -12,7 +12,6 @@ import numpy as np
 
 from linecad.arrays import Bool, Int, Text
 from linecad.corrections.annotations import Annotations
-from linecad.decide.blocks import find_blocks
 from linecad.decide.bodies import Bodies, agreeing
 from linecad.decide.stability import (
     MOST_INCONSISTENT,
@@ -102,6 +101,8 @@ def _joins(
     agrees = agreeing(graph, solution.connected, solution.log_depth)
     sure = graph.edges[annotations.real & solution.connected & graph.informative]
     if options.joins_used == "biconnected":
+        from linecad.decide.blocks import find_blocks
+
         bodies = find_blocks(graph, agrees).merged(sure)
         return _Joins(bodies, bodies.rigid, np.where(bodies.joins(graph), may, "loose"))
     if inconsistency is None:
@@ -114,6 +115,8 @@ def _joins(
     reason = np.where(merged.joins(graph), may, "unstable")
     if not is_inconsistent:
         return _Joins(merged, stable.firm, reason, STABILITY)
+    from linecad.decide.blocks import find_blocks
+
     blocks = find_blocks(graph, agrees & stable.bodies.joins(graph))
     bodies = blocks.merged(sure)
     reason = np.where(bodies.joins(graph), may, np.where(reason == "", "loose", reason))

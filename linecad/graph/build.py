@@ -125,8 +125,9 @@ def _find_crossings(segments: Segments, extension: float) -> _Crossings:
         turn = unit_x[i] * unit_y[j] - unit_y[i] * unit_x[j]
         with np.errstate(divide="ignore", invalid="ignore"):  # parallel ones
             on_other = ((x[j] - x[i]) * unit_y[i] - (y[j] - y[i]) * unit_x[i]) / turn
-        meets = np.abs(on_other - length[j] / 2) <= length[j] / 2 + extension
-        return meets & (np.abs(turn) > 1e-9) & (segments.axis[i] != segments.axis[j])
+        meets: Bool = np.abs(on_other - length[j] / 2) <= length[j] / 2 + extension
+        meets &= (np.abs(turn) > 1e-9) & (segments.axis[i] != segments.axis[j])
+        return meets
 
     edges = _pairs(len(segments), may_meet)
     i, j = edges.T
@@ -152,7 +153,7 @@ def _find_collinear(segments: Segments, direction: Float, width: int) -> _Crossi
         return distance
 
     edges = _pairs(len(segments), lambda i, j: (segments.axis[i] == segments.axis[j]) & (off(i, j, i) < across))
-    edges = edges[off(*edges.T, edges[:, 1]) < across]
+    edges = edges[off(edges[:, 0], edges[:, 1], edges[:, 1]) < across]
     i, j = edges.T
     reach = ((segments.ends[j] - middle[i, None]) @ direction[i, :, None])[..., 0]
     ahead = reach.min(axis=1) - length[i] / 2

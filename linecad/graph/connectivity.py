@@ -1,9 +1,8 @@
-"""How a line graph hangs together: groups, components, spanning trees, biconnected blocks."""
+"""How a line graph hangs together: groups, components, spanning trees, lines on cycles."""
 
-import networkx as nx
 import numpy as np
 from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import connected_components
+from scipy.sparse.csgraph import breadth_first_order, connected_components, minimum_spanning_tree
 
 from linecad.arrays import Bool, Float, Int
 from linecad.line_graph import LineGraph
@@ -28,34 +27,58 @@ def components(graph: LineGraph, chosen: Bool | None = None) -> list[Int]:
 
 
 def spanning_tree(graph: LineGraph, chosen: Bool, residual: Float) -> Bool:
-    """Mask (E,) of the minimum spanning forest of the chosen edges by Kruskal, in order of residual (paper, MST)."""
-    net = nx.Graph()
-    for edge in np.flatnonzero(chosen):
-        net.add_edge(*graph.edges[edge].tolist(), weight=float(residual[edge]), edge=int(edge))
+    """Mask (E,) of the minimum spanning forest of the chosen edges, in order of residual (paper, MST)."""
+    edges = np.flatnonzero(chosen)
+    edges = edges[np.argsort(residual[edges], kind="stable")]
+    rank = np.arange(1, len(edges) + 1)  # instead of residuals, since SciPy takes 0 for no edge
+    count = len(graph.segments)
+    forest = minimum_spanning_tree(csr_matrix((rank, tuple(graph.edges[edges].T)), (count, count)))
     tree = np.zeros(len(graph.edges), bool)
-    for _, _, data in nx.minimum_spanning_edges(net, algorithm="kruskal", data=True):
-        tree[data["edge"]] = True
+    tree[edges[forest.data.astype(np.int64) - 1]] = True
     return tree
 
 
-def as_network(count: int, edges: Int) -> "nx.Graph[int]":
-    """The lines and edges (E, 2) of a graph of `count` lines, for NetworkX."""
-    net: nx.Graph[int] = nx.Graph()
-    net.add_nodes_from(range(count))
-    net.add_edges_from(map(tuple, edges.tolist()))
-    return net
-
-
-def biconnected_blocks(edges: Int) -> list[set[int]]:
-    """The sets of three lines or more that edges (E, 2) connect so that no single line parts them."""
-    net: nx.Graph[int] = nx.Graph()
-    net.add_edges_from(map(tuple, edges.tolist()))
-    return [set(block) for block in nx.biconnected_components(net) if len(block) > 2]
-
-
 def in_no_block(graph: LineGraph, chosen: Bool) -> Bool:
-    """Mask (N,) of lines whose place depends on a single crossing: they are in no biconnected block."""
-    outside = np.ones(len(graph.segments), bool)
-    for block in biconnected_blocks(graph.edges[chosen]):
-        outside[list(block)] = False
+    """Mask (N,) of lines whose place depends on a single crossing: they are in no biconnected block of three lines.
+
+    So no cycle of chosen crossings (E,) leads through them. Each edge outside a spanning tree closes one; what such
+    cycles went through before is passed over in one step.
+    """
+    count, edges = len(graph.segments), graph.edges[chosen]
+    parent, depth = _forest(count, edges)
+    lead = list(range(count + 1))  # of the lines that cycles join, one that is nearest to the root, or on the way to it
+
+    def led(line: int) -> int:
+        while lead[line] != line:
+            lead[line] = lead[lead[line]]
+            line = lead[line]
+        return line
+
+    outside = np.ones(count, bool)
+    for first, second in edges.tolist():
+        if parent[first] == second or parent[second] == first:
+            continue
+        outside[[first, second]] = False
+        one, other = led(first), led(second)
+        while one != other:
+            deeper, one = (one, other) if depth[one] > depth[other] else (other, one)
+            lead[deeper] = parent[deeper]
+            outside[[deeper, parent[deeper]]] = False
+            other = led(parent[deeper])
     return outside
+
+
+def _forest(count: int, edges: Int) -> tuple[list[int], list[int]]:
+    """The parents and depths of `count` lines in a spanning forest of edges (E, 2), whose roots are of one line more.
+
+    That line, `count`, is its own parent.
+    """
+    roots = np.unique(group_numbers(count, edges), return_index=True)[1]
+    first, second = np.concatenate([edges, np.column_stack([roots, np.full(len(roots), count)])]).T
+    links = csr_matrix((np.ones(len(first)), (first, second)), (count + 1, count + 1))
+    order, parent = breadth_first_order(links, count, directed=False)
+    parent[count] = count
+    parents, depth = parent.tolist(), [0] * (count + 1)
+    for line in order[1:].tolist():
+        depth[line] = depth[parents[line]] + 1
+    return parents, depth

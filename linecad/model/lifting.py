@@ -186,5 +186,6 @@ def _ends_there(kind: Text, gap: Float, to_end: Float) -> Bool:
 
     `gap` (M, 2) is by how much each falls short, `to_end` (M, 2) how far its end is from the crossing.
     """
-    is_nearer = to_end < to_end[:, ::-1]
-    return (gap > 0) | (kind == "L") | ((kind != "X") & (gap[:, ::-1] <= 0) & is_nearer)
+    is_stem: Bool = (kind != "X") & (gap[:, ::-1] <= 0) & (to_end < to_end[:, ::-1])
+    ends_there: Bool = (gap > 0) | (kind == "L") | is_stem
+    return ends_there

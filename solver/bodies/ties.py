@@ -71,10 +71,11 @@ class Ties:
         """(T,) the ties that hold at log scales (B,) and count: of each group the heaviest that may count at once."""
         holds = self.holds(log_scale)
         counted = holds & (self.group < 0)
-        for group in np.unique(self.group[holds & (self.group >= 0)]).tolist():
-            own = np.flatnonzero(holds & (self.group == group))
-            own = own[np.argsort(-self.weight[own], kind="stable")]
-            counted[own[pseudoforest(self.bodies[own])]] = True
+        own = np.flatnonzero(holds & (self.group >= 0))
+        own = own[np.argsort(-self.weight[own], kind="stable")]
+        # The bodies of each group are other nodes, so that all groups can be gone through at once.
+        nodes = self.bodies[own] + self.group[own, None] * (self.bodies.max(initial=0) + 1)
+        counted[own[pseudoforest(nodes)]] = True
         return counted
 
     def value(self, log_scale: Float) -> float:

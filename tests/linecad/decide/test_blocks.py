@@ -8,11 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.decide.blocks import find_blocks
+from linecad.decide.blocks import biconnected_blocks, find_blocks
 from linecad.decide.bodies import agreeing as all_agreeing
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
-from linecad.graph.connectivity import biconnected_blocks
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
 
