@@ -72,8 +72,11 @@ def angles_to(ends: Float, vanishing: Float) -> Float:
     middle = ends.mean(axis=1)
     along = ends[:, 1] - ends[:, 0]
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
-    towards = directions_to(middle[None], vanishing[:, None])
-    sines: Float = np.abs(towards[..., 0] * along[:, 1] - towards[..., 1] * along[:, 0])
+    # As by `directions_to`, x and y apart: pairs of numbers would take NumPy three times as long.
+    x = vanishing[:, :1] - middle[:, 0] * vanishing[:, 2:]
+    y = vanishing[:, 1:2] - middle[:, 1] * vanishing[:, 2:]
+    length = np.maximum(np.sqrt(x * x + y * y), np.finfo(float).tiny)
+    sines: Float = np.abs(x / length * along[:, 1] - y / length * along[:, 0])
     return sines
 
 

@@ -27,11 +27,16 @@ def components(graph: LineGraph, chosen: Bool | None = None) -> list[Int]:
 
 
 def spanning_tree(graph: LineGraph, chosen: Bool, residual: Float) -> Bool:
-    """Mask (E,) of the minimum spanning forest of the chosen edges, in order of residual (paper, MST)."""
-    edges = np.flatnonzero(chosen)
-    edges = edges[np.argsort(residual[edges], kind="stable")]
+    """Mask (E,) of the minimum spanning forest of the chosen edges, in order of residual (paper, MST).
+
+    Of equal residuals those of the line come first that the chosen edges name first.
+    """
+    count, edges = len(graph.segments), np.flatnonzero(chosen)
+    lines, named = np.unique(graph.edges[edges], return_index=True)
+    first_named = np.zeros(count, np.int64)
+    first_named[lines] = named
+    edges = edges[np.lexsort([first_named[graph.edges[edges]].min(axis=1), residual[edges]])]
     rank = np.arange(1, len(edges) + 1)  # instead of residuals, since SciPy takes 0 for no edge
-    count = len(graph.segments)
     forest = minimum_spanning_tree(csr_matrix((rank, tuple(graph.edges[edges].T)), (count, count)))
     tree = np.zeros(len(graph.edges), bool)
     tree[edges[forest.data.astype(np.int64) - 1]] = True
