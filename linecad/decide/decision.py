@@ -76,7 +76,7 @@ def decide(
         is_boundary=boundaries(graph, real),
         planar_pairs=_planar_pairs(graph, solution, options, real),
         bodies=joined.bodies,
-        is_firm=joined.firm & ~touched & ~in_no_block(graph, real & graph.informative),
+        is_firm=joined.firm & ~touched & ~in_no_block(len(graph.segments), graph.edges[real & graph.informative]),
         notes=_notes(refused & _in_large_groups(graph, real), joined, inconsistency),
     )
 

@@ -43,13 +43,12 @@ def spanning_tree(graph: LineGraph, chosen: Bool, residual: Float) -> Bool:
     return tree
 
 
-def in_no_block(graph: LineGraph, chosen: Bool) -> Bool:
-    """Mask (N,) of lines whose place depends on a single crossing: they are in no biconnected block of three lines.
+def in_no_block(count: int, edges: Int) -> Bool:
+    """Mask (N,) of lines whose place depends on single edges (E, 2): they are in no biconnected block of three lines.
 
-    So no cycle of chosen crossings (E,) leads through them. Each edge outside a spanning tree closes one; what such
-    cycles went through before is passed over in one step.
+    So no cycle leads through them. Each edge outside a spanning tree closes one; what such cycles went through before
+    is passed over in one step.
     """
-    count, edges = len(graph.segments), graph.edges[chosen]
     parent, depth = _forest(count, edges)
     lead = list(range(count + 1))  # of the lines that cycles join, one that is nearest to the root, or on the way to it
 

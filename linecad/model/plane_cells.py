@@ -39,13 +39,14 @@ class Samples:
     line_rays: Float  # (T, 3)
     line_depth: Float  # (T,)
 
-    def distance(self, points: Bool) -> Float:
-        """Distance (S,) in samples to the nearest of the masked points on lines."""
+    def distance(self, sample: Int, points: Bool) -> Float:
+        """Distance (M,) in samples from some of them to the nearest of the masked points on lines."""
         image = np.ones(self.shape[0] * self.shape[1], np.uint8)
         image[self.cell[points]] = 0
         if image.all():
-            return np.full(len(image), np.inf)
-        return np.asarray(cv2.distanceTransform(image.reshape(self.shape), cv2.DIST_L2, 3), np.float64).ravel()
+            return np.full(len(sample), np.inf)
+        distance = cv2.distanceTransform(image.reshape(self.shape), cv2.DIST_L2, 3)
+        return np.asarray(distance.ravel()[sample], np.float64)
 
 
 @dataclass(eq=False)
@@ -141,7 +142,9 @@ def build_plane_cells(
     # Other components have scales of their own: what is behind what is not known there.
     comparable = lines.component[samples.line] == component
     sample, at, sample_depth = _samples_of(plane, (u, v), grid, possible, samples)
-    distance = _distance(plane, (u, v), grid, possible, samples, own, comparable)[sample]
+    behind = _behind(plane, (u, v), grid, possible, samples, comparable & ~own)
+    distance, speaks = samples.distance(sample, own), samples.distance(sample, behind)
+    nearest = distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5
     return PlaneCells(
         plane=plane,
         flat=(u, v),
@@ -150,7 +153,7 @@ def build_plane_cells(
         kept=possible,
         sample=sample,
         at=at,
-        distance=distance * (WEAK_FACTOR if component else 1.0),
+        distance=np.where(nearest, distance, np.inf) * (WEAK_FACTOR if component else 1.0),
         depth=sample_depth,
         width=np.linalg.norm(np.diff(pixels, axis=0), axis=2)[:, :-1],
         height=np.linalg.norm(np.diff(pixels, axis=1), axis=2)[:-1],
@@ -180,23 +183,17 @@ def _samples_of(
     return sample[shows], at[shows], depth[sample[shows]]
 
 
-def _distance(
-    plane: Plane, flat: tuple[int, int], grid: Cells, possible: Bool, samples: Samples, own: Bool, comparable: Bool
-) -> Float:
-    """Distance (S,) of each sample to the plane's nearest line, in samples; infinite where a line behind is nearer.
-
-    Of the points on lines (T,), those are `own` that lie on lines of the plane, and `comparable` whose depth can be
-    compared with the plane's.
-    """
+def _behind(
+    plane: Plane, flat: tuple[int, int], grid: Cells, possible: Bool, samples: Samples, comparable: Bool
+) -> Bool:
+    """Which points on lines (T,) are behind possible wall of a plane, of those whose depth is comparable."""
     with np.errstate(divide="ignore", invalid="ignore"):
         plane_depth = plane.offset / samples.line_rays[:, plane.axis]
-    behind = comparable & ~own & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
+    behind = comparable & (plane_depth > 0) & (samples.line_depth > (1 + BEHIND) * plane_depth)
     # Only a line that would be seen through the wall speaks against it, not one beside it.
     through = grid.find(samples.line_rays[behind][:, flat] * plane_depth[behind, None])
     behind[behind] = (through >= 0) & possible.ravel()[through]
-    distance, speaks = samples.distance(own), samples.distance(behind)
-    nearest = distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5
-    return np.where(nearest, distance, np.inf)
+    return behind
 
 
 def _edges(lines: Lines, own: Int, across: int, camera: Camera, rotation: Float) -> Edges:

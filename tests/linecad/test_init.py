@@ -65,6 +65,14 @@ def test_importing_loads_nothing():
     assert ended.stdout == "{'linecad'}\n"
 
 
+def test_a_reconstruction_loads_no_networkx():
+    script = "import sys, linecad.convert; print('networkx' in sys.modules)"
+    ended = subprocess.run(
+        [sys.executable, "-c", script], cwd=ROOT, capture_output=True, text=True, check=True, timeout=60
+    )
+    assert ended.stdout == "False\n"
+
+
 @pytest.mark.parametrize("start", ["solver.solve", "exporters.formats", "linecad.scene"])
 def test_every_package_may_be_the_first_one_loaded(start):
     script = f"import {start}; import linecad; linecad.reconstruct, linecad.export"

@@ -12,6 +12,7 @@ from linecad.decide.blocks import biconnected_blocks, find_blocks
 from linecad.decide.bodies import agreeing as all_agreeing
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
+from linecad.graph.connectivity import in_no_block
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
 
@@ -162,3 +163,10 @@ def test_what_no_block_holds_depends_on_one_edge(edges):
     for line in net:
         if not any(line in block for block in blocks):
             assert all((line, other) in bridges or (other, line) in bridges for other in net[line])
+
+
+@given(edges_of_a_graph)
+def test_lines_in_no_block_are_found_without_the_blocks(edges):
+    pairs = np.array(sorted(edges), np.int64).reshape(-1, 2)
+    inside = set().union(*biconnected_blocks(pairs))
+    assert in_no_block(10, pairs).tolist() == [line not in inside for line in range(10)]

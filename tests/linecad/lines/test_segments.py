@@ -6,6 +6,7 @@ import pytest
 
 from linecad.geometry import REFERENCE_WIDTH, angles_to, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
+from linecad.lines import segments as segments_module
 from linecad.lines.segments import (
     GROUP_ACROSS,
     detector_scale,
@@ -137,6 +138,15 @@ def test_fragments_of_different_axes_are_never_joined(made, fragments):
     halves = fragments(1.0)
     grouped = group_segments(Segments(halves.ends, [0, 2]), made.camera, made.frame)
     assert sorted(grouped.axis.tolist()) == [0, 2]
+
+
+def test_it_does_not_matter_how_many_fragments_are_compared_at_a_time(made, monkeypatch):
+    labelled = label_segments(made.noisy(0.5).joined(made.noisy(0.3)), made.camera, made.frame)
+    at_once = group_segments(labelled, made.camera, made.frame)
+    monkeypatch.setattr(segments_module, "PAIRS", 1)
+    one_by_one = group_segments(labelled, made.camera, made.frame)
+    assert 0 < len(at_once) < len(labelled)
+    assert one_by_one.ends.tolist() == at_once.ends.tolist()
 
 
 def test_nothing_to_group_gives_nothing(made):
