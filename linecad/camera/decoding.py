@@ -176,7 +176,7 @@ def _to_rgb(image: Image.Image) -> tuple[Pixels, list[str]]:
     if image.has_transparency_data:
         rgba = image.convert("RGBA")
         return _on_white(np.asarray(rgba))
-    return np.array(image.convert("RGB")), []
+    return np.array(image if image.mode == "RGB" else image.convert("RGB")), []
 
 
 def _to_8_bit(values: NDArray[Any]) -> tuple[Pixels, list[str]]:
