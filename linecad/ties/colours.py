@@ -34,7 +34,7 @@ def find_colours(setting: Setting) -> list[Float] | None:
         middle = ends[lines, None, 0] + ALONG[None, :, None] * (ends[lines, 1] - ends[lines, 0])[:, None]
         places = (middle[:, :, None] + steps[None, None, :, None] * across[lines, None, None]).reshape(-1, 2)
         column, row = np.clip(np.rint(places).astype(np.int64), 0, [width - 1, height - 1]).T
-        # Of the photo few pixels are looked at; to convert all of them takes longer than all the rest.
+        # Of the photo few pixels are looked at, so only those are converted.
         seen = cv2.cvtColor(blurred[row, column][:, None], cv2.COLOR_RGB2LAB)[:, 0, 1:].astype(np.float64)
         counts = np.histogram2d(seen[:, 0], seen[:, 1], bins=BINS, range=[(0, 256)] * 2)[0]
         smooth = gaussian_filter(counts, SPREAD)
