@@ -16,6 +16,7 @@ from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Scene
 from linecad.ties.placing import place_lines
+from linecad.ties.setting import Sight
 from solver.options import OnProgress
 
 
@@ -72,7 +73,8 @@ def reconstruct_lines(
     if options.uses_bodies:
         limits = with_annotations(options.solve, annotations)
         with told_in_the_photo(graph, corrected):
-            placed = place_lines(graph, found.camera.width, found.pixels, limits, on_progress, on_stage)
+            sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels)
+            placed = place_lines(graph, sight, limits, on_progress, on_stage)
         solution, probability = placed.solution, placed.probability
     else:
         on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")

@@ -2,7 +2,8 @@
 
 A ratio is of one kind. Where crossings ask for it, it is of kind *bundle*; else, where planes would become one, of kind
 *plane*; else, where levels match, of kind *level*. Planes and levels that match at the ratio of a bundle are then
-features of the bundle. Only planes may repeat a ratio, each pair of planes for itself.
+features of the bundle. Only planes may repeat a ratio, each pair of planes for itself. Kind *ground* ties a body to
+the ground, which counts as one more body, of which the log scale is that of the camera's height above it.
 """
 
 from dataclasses import dataclass
@@ -12,18 +13,19 @@ import numpy as np
 
 from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.colours import find_colours, likeness
+from linecad.ties.feet import MOST_LOG_ODDS, Foot, find_feet
 from linecad.ties.levels import LEAST_MATCHES, MOST, LevelPair, Match, find_levels
 from linecad.ties.planes import SharedPlane, find_shared_planes, is_induced
 from linecad.ties.setting import Setting
 
-Kind = Literal["bundle", "plane", "level"]
+Kind = Literal["bundle", "plane", "level", "ground"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 SAME_RATIO = 0.015  # log ratio within which two pieces of evidence ask for the same
 NEAR, FAR = 100.0, 800.0  # px at the reference width, over which nearness of bodies fades
 NEAR_PLANES, FAR_PLANES = 150.0, 600.0
 GAP_UNIT = 37.5  # px
-MOST_EXCESS, FARTHEST = 8.0, 1.0  # of features that would else run away
+MOST_EXCESS, FARTHEST, MOST_RANK = 8.0, 1.0, 4.0  # of features that would else run away
 
 Features = dict[str, float]
 
@@ -108,7 +110,7 @@ class _Pair:
 
 
 def find_candidates(setting: Setting) -> list[Candidate]:
-    """All candidates between any two bodies, pair by pair."""
+    """All candidates: first between a body and the ground, whose number is the count of bodies, then pair by pair."""
     bundles: dict[tuple[int, int], list[Bundle]] = {}
     planes: dict[tuple[int, int], list[SharedPlane]] = {}
     for bundle in find_bundles(setting):
@@ -116,7 +118,7 @@ def find_candidates(setting: Setting) -> list[Candidate]:
     for plane in find_shared_planes(setting):
         planes.setdefault(plane.bodies, []).append(plane)
     levels, colours = find_levels(setting), find_colours(setting)
-    found: list[Candidate] = []
+    found = [_of_foot(setting, foot) for foot in find_feet(setting)]
     for first in range(setting.bodies.count):
         for second in range(first + 1, setting.bodies.count):
             bodies = (first, second)
@@ -139,6 +141,30 @@ def _of_pair(pair: _Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> l
         if peak.matches >= LEAST_MATCHES and _is_new(peak.log_ratio, taken):
             found.append(pair.of_level(peak))
     return found
+
+
+def _of_foot(setting: Setting, foot: Foot) -> Candidate:
+    plane = foot.wall.plane
+    ends = setting.graph.segments.ends[plane.lines] * setting.scale
+    own: Features = {
+        "clear": _log_odds(foot.probability),
+        "others": min(foot.others, 1.0),
+        "against": foot.against,
+        "unseen": foot.unseen,
+        "share": plane.share,
+        "lines of the wall": float(np.log(len(plane.lines))),
+        "lines of the body": float(np.log(setting.bodies.size[foot.body])),
+        "rank": min(float(plane.rank), MOST_RANK),
+        "wide": float(np.log(np.ptp(ends[..., 0]) / GAP_UNIT + 1)),
+        "other foot": float(foot.probability < foot.against),
+    }
+    return Candidate("ground", (foot.body, setting.bodies.count), -foot.log_height, -1, own)
+
+
+def _log_odds(probability: float) -> float:
+    """Bounded, as no feature may run away."""
+    odds = probability / max(1.0 - probability, 1e-9)
+    return float(np.clip(np.log(max(odds, 1e-9)), -MOST_LOG_ODDS, MOST_LOG_ODDS))
 
 
 def _is_new(log_ratio: float, taken: list[float]) -> bool:

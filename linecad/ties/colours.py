@@ -20,9 +20,9 @@ def find_colours(setting: Setting) -> list[Float] | None:
 
     None without pixels.
     """
-    if setting.pixels is None:
+    if setting.sight.pixels is None:
         return None
-    blurred = cv2.GaussianBlur(setting.pixels, (0, 0), BLUR)
+    blurred = cv2.GaussianBlur(setting.sight.pixels, (0, 0), BLUR)
     height, width = blurred.shape[:2]
     ends = setting.graph.segments.ends
     along = ends[:, 1] - ends[:, 0]

@@ -4,7 +4,6 @@ import time
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.decide.stability import resample
@@ -13,7 +12,7 @@ from linecad.progress import StageReport, silent
 from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import find_candidates
 from linecad.ties.probability import probabilities
-from linecad.ties.setting import Setting
+from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates
 from solver.annotations import check_annotations, read_annotations
 from solver.bodies.search import place
@@ -43,13 +42,12 @@ class Placed:
 
 def place_lines(
     graph: LineGraph,
-    width: int,
-    pixels: NDArray[np.uint8] | None,
+    sight: Sight,
     options: SolveOptions,
     on_progress: OnProgress = None,
     on_stage: StageReport = silent,
 ) -> Placed:
-    """The lines of a graph from a photo `width` px wide, with every body at its most likely scale.
+    """The lines of a graph from a photo, with every body at its most likely scale.
 
     Keeps to the crossings that `options` call real or fake. Raises SolverError or ContradictionError.
     """
@@ -59,12 +57,12 @@ def place_lines(
     if real.any():
         check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
     on_stage("fitting depths, with and without some of the lines")
-    setting = _setting(graph, width, pixels, options, real, fake)
+    setting = _setting(graph, sight, options, real, fake)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
     ties = _with_sure(weigh_candidates(find_candidates(setting), setting.bodies.size), setting, real)
     reference = int(setting.bodies.size.argmax()) if setting.bodies.count else 0
     on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
-    placement = place(ties, max(1, setting.bodies.count), reference, options, on_progress)
+    placement = place(ties, setting.bodies.count + 1, reference, options, on_progress)  # the last one is the ground
     body = setting.bodies.body
     log_depth = setting.log_depth + np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
     log_depth = _kept_to(graph, log_depth, real, ratios)
@@ -87,9 +85,7 @@ def place_lines(
     return Placed(solution, setting, ties, placement, reference, probability)
 
 
-def _setting(
-    graph: LineGraph, width: int, pixels: NDArray[np.uint8] | None, options: SolveOptions, real: Bool, fake: Bool
-) -> Setting:
+def _setting(graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool) -> Setting:
     believed = replace(
         graph, weight=np.where(real, CERTAIN, graph.weight), informative=graph.informative & ~fake
     )  # fmt: skip
@@ -97,7 +93,7 @@ def _setting(
     log_depth = fit.depths()
     fits = resample(believed, lambda present: fit.depths(present=present), options.seed, FITS)
     bodies = find_rigid_bodies(believed, log_depth, fits)
-    return Setting(believed, log_depth, bodies, fits, width, pixels)
+    return Setting(believed, log_depth, bodies, fits, sight)
 
 
 def _with_sure(ties: Ties, setting: Setting, real: Bool) -> Ties:

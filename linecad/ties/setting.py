@@ -18,6 +18,16 @@ LEAST_SEEN = 3  # lines of a body that a fit must have to tell how the body move
 
 
 @dataclass(frozen=True, eq=False)
+class Sight:
+    """The photo that the lines were found in."""
+
+    matrix: Float  # (3, 3) K, px
+    rotation: Float  # (3, 3) camera from world
+    width: int  # px
+    pixels: NDArray[np.uint8] | None  # (H, W, 3) RGB, as straight as the lines; None where there is none to look at
+
+
+@dataclass(frozen=True, eq=False)
 class Setting:
     """The bodies of a photo with their inner depths. Lengths are px at the reference width."""
 
@@ -25,13 +35,12 @@ class Setting:
     log_depth: Float  # (N,) of the fit to all lines, which holds inside each body
     bodies: RigidBodies
     fits: Fits
-    width: int  # px, of the photo
-    pixels: NDArray[np.uint8] | None  # (H, W, 3) RGB; None where there is none to look at
+    sight: Sight
 
     @property
     def scale(self) -> float:
         """From px of the photo to px at the reference width."""
-        return REFERENCE_WIDTH / self.width
+        return REFERENCE_WIDTH / self.sight.width
 
     @cached_property
     def lines(self) -> list[Int]:

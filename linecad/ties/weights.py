@@ -3,13 +3,14 @@
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.ties.candidates import KINDS, Candidate
+from linecad.ties.candidates import Candidate, Kind
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from solver.bodies.ties import Ties
 
 BY_CHANCE = 0.05  # that a ratio which nothing asks for is right within TOLERANCE
 TOLERANCE = 0.02  # log ratio within which a tie holds
 LEAST_WEIGHT = 2.0  # of a tie: weaker ones are so many that some always agree with a wrong place
+REPEATING: tuple[Kind, ...] = ("plane", "level")
 REPEATED = 0.8  # of the weight of planes and levels, which repeat each other more than crossings do
 FULL_SIZE = 30.0  # lines of the smaller body, from which a tie has its full weight: crumbs must not move walls
 
@@ -25,10 +26,11 @@ def weigh_candidates(candidates: list[Candidate], size: Int) -> Ties:
     chance = float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
     gain = np.array([log_odds_of(candidate) for candidate in candidates]) - chance
     kept = np.flatnonzero(gain >= LEAST_WEIGHT).tolist()
-    layers = [(kind, normal) for kind in KINDS if kind != "bundle" for normal in (-1, 0, 1, 2)]
+    layers = [(kind, normal) for kind in REPEATING for normal in (-1, 0, 1, 2)]
     chosen = [candidates[number] for number in kept]
-    smaller = np.array([size[list(candidate.bodies)].min() for candidate in chosen], np.float64)
-    repeated = np.array([1.0 if candidate.kind == "bundle" else REPEATED for candidate in chosen])
+    with_ground = np.append(size, size.sum())  # the ground is no crumb
+    smaller = np.array([with_ground[list(candidate.bodies)].min() for candidate in chosen], np.float64)
+    repeated = np.array([REPEATED if candidate.kind in REPEATING else 1.0 for candidate in chosen])
     weight: Float = gain[kept] * np.minimum(1.0, smaller / FULL_SIZE) * repeated
     return Ties(
         bodies=np.array([candidate.bodies for candidate in chosen]).reshape(-1, 2),
@@ -36,7 +38,7 @@ def weigh_candidates(candidates: list[Candidate], size: Int) -> Ties:
         tolerance=np.full(len(chosen), TOLERANCE),
         weight=weight,
         group=np.array([
-            -1 if candidate.kind == "bundle" else layers.index((candidate.kind, candidate.normal))
+            layers.index((candidate.kind, candidate.normal)) if candidate.kind in REPEATING else -1
             for candidate in chosen
         ]),
     )  # fmt: skip

@@ -17,7 +17,7 @@ from linecad.options import LONG_REACH, Options
 from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.placing import FITS
-from linecad.ties.setting import Setting
+from linecad.ties.setting import Setting, Sight
 from solver.robust import RobustFit
 
 WIDTH = 0.02  # log scale, half of the window whose points give a body its true scale
@@ -71,13 +71,14 @@ def judge(dataset: str, case: Case) -> Judged | None:
     log_depth = fit.depths()
     fits = resample(graph, lambda present: fit.depths(present=present), 0, FITS)
     bodies = find_rigid_bodies(graph, log_depth, fits)
-    setting = Setting(graph, log_depth, bodies, fits, found.camera.width, found.pixels)
+    sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels)
+    setting = Setting(graph, log_depth, bodies, fits, sight)
     candidates = find_candidates(setting)
     on, log_factor = lines_at(setting, found, reference.edges.pixels)
     log_true = np.log(reference.edges.depth)
     scene = f"{dataset}/{case.name}" if case.kind == "made" else dataset
     true_scale = true_scales(setting, on, log_true - log_factor)
-    return Judged(dataset, scene, replace(setting, pixels=None), candidates, on, log_factor, log_true, true_scale)
+    return Judged(dataset, scene, replace(setting, sight=replace(sight, pixels=None)), candidates, on, log_factor, log_true, true_scale)
 
 
 def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, Float]:

@@ -1,0 +1,87 @@
+"""Strips of walls with the row in which the wall truly meets the ground; used by feet.py."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.dataset.truth import NOTHING, Truth
+from linecad.geometry import project
+from linecad.ties.setting import Setting
+from linecad.ties.walls import COLUMNS, ROW, ROWS, Strip, StripDrawer, find_walls
+
+STEPPED = 0.2  # m: the ground is what lies flat and at most so much higher than the lowest of it, as pavements do
+SAME_PLANE = 0.04  # log offset
+SAME_HEIGHT = 0.03  # log
+ASIDE = 2  # rows above and below the foot that are looked at
+LEAST_SEEN = 0.12  # of the columns that must show the foot; with fewer, but some, an example is left out
+UNSEEN = -1.0
+
+
+@dataclass(frozen=True, eq=False)
+class Example:
+    """A strip and what is true of it."""
+
+    scene: str
+    strip: Strip
+    row: float  # of the foot, or UNSEEN
+    is_clear: bool  # hardly seen otherwise
+
+
+def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -> list[Example]:
+    """The walls of all bodies of known scale (B,), NaN where it is not known."""
+    drawer, known = StripDrawer(setting), _Ground(truth)
+    found = []
+    for wall in find_walls(setting):
+        strip = drawer.draw(wall) if np.isfinite(true_scale[wall.body]) else None
+        if strip is not None:
+            row, share = known.foot(strip, setting, float(true_scale[wall.body]))
+            clear = share >= LEAST_SEEN or share < LEAST_SEEN / 3
+            found.append(Example(scene, strip, row if share >= LEAST_SEEN else UNSEEN, clear))
+    return found
+
+
+class _Ground:
+    def __init__(self, truth: Truth) -> None:
+        self._truth = truth
+        self._normal, offset = truth.planes()
+        self._offset = np.abs(offset)
+        flat = np.abs(self._normal[:, 2]) > 0.99
+        height = truth.quads[..., 2].mean(axis=1)
+        self._log_height = np.log(np.maximum(-height, 1e-9))
+        self._is_ground = flat & (height < height[flat].min() + STEPPED)
+
+    def foot(self, strip: Strip, setting: Setting, scale: float) -> tuple[float, float]:
+        """The lowest row at which a share of the columns shows the wall above and the ground below, and that share."""
+        rows = np.arange(ROWS)
+        log_height = strip.log_height(0) + ROW * rows
+        shown = self._shown(strip, setting, log_height)
+        above, below = np.roll(shown, ASIDE, axis=0), np.roll(shown, -ASIDE, axis=0)
+        meets = self._is_wall(above, strip, scale) & self._is_ground[below] & (below != NOTHING)
+        meets &= np.abs(self._log_height[below] - log_height[:, None] - scale) < SAME_HEIGHT
+        meets[:ASIDE] = meets[-ASIDE:] = False
+        share = meets.mean(axis=1)
+        if share.max() == 0:
+            return UNSEEN, 0.0
+        # The rows that match are a few about the foot: their middle, of the lowest ones that are as good as any.
+        lowest = int(np.flatnonzero(share >= 0.7 * share.max())[-1])
+        near = np.arange(max(0, lowest - 2 * ASIDE), lowest + 1)
+        return float(np.average(near, weights=share[near])), float(share[near].max())
+
+    def _is_wall(self, quads: Int, strip: Strip, scale: float) -> Bool:
+        plane = strip.wall.plane
+        apart = np.abs(np.log(np.maximum(self._offset[quads], 1e-9)) - plane.log_offset - scale)
+        wall: Bool = (quads != NOTHING) & (np.abs(self._normal[quads, plane.normal]) > 0.99) & (apart < SAME_PLANE)
+        return wall
+
+    def _shown(self, strip: Strip, setting: Setting, log_height: Float) -> Int:
+        """The quads (ROWS, COLUMNS) that the photo shows where the strip looks at it."""
+        wall, sight = strip.wall, setting.sight
+        points = np.empty((ROWS, COLUMNS, 3))
+        points[..., wall.plane.normal] = wall.offset
+        points[..., 1 - wall.plane.normal] = strip.along
+        points[..., 2] = -np.exp(log_height)[:, None]
+        seen = points @ sight.rotation[2] > 0
+        pixels = project(np.where(seen[..., None], points, sight.rotation[2]), sight.matrix, sight.rotation)
+        quads = self._truth.quad_at(np.where(seen[..., None], pixels, -1.0).reshape(-1, 2)).reshape(ROWS, COLUMNS)
+        return np.asarray(np.where(seen, quads, NOTHING))
