@@ -105,7 +105,9 @@ class StripDrawer:
         layers = np.concatenate([colour, seen[None], fine[None]]).astype(np.float32)
         layers = layers.reshape(5, ROWS, FINER, COLUMNS, FINER).mean(axis=(2, 4))
         lines = self._lines(wall, along, top).reshape(ROWS, FINER, COLUMNS, FINER).max(axis=(1, 3))
-        return Strip(wall, np.concatenate([layers[:4], lines[None], layers[4:]]), top, along.reshape(COLUMNS, FINER).mean(axis=1))
+        return Strip(
+            wall, np.concatenate([layers[:4], lines[None], layers[4:]]), top, along.reshape(COLUMNS, FINER).mean(axis=1)
+        )
 
     def _seen_at(self, wall: Wall, along: Float, height: Float) -> tuple[Float, Float]:
         """Pixels (..., 2) and depths (...) of points of a wall."""

@@ -78,7 +78,16 @@ def judge(dataset: str, case: Case) -> Judged | None:
     log_true = np.log(reference.edges.depth)
     scene = f"{dataset}/{case.name}" if case.kind == "made" else dataset
     true_scale = true_scales(setting, on, log_true - log_factor)
-    return Judged(dataset, scene, replace(setting, sight=replace(sight, pixels=None)), candidates, on, log_factor, log_true, true_scale)
+    return Judged(
+        dataset,
+        scene,
+        replace(setting, sight=replace(sight, pixels=None)),
+        candidates,
+        on,
+        log_factor,
+        log_true,
+        true_scale,
+    )
 
 
 def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, Float]:
