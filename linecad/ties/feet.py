@@ -15,7 +15,7 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.ties.setting import Setting
-from linecad.ties.walls import ROW, ROWS, StripDrawer, Strips, Wall, find_walls
+from linecad.ties.walls import ROWS, StripDrawer, Strips, Wall, find_walls
 
 NETWORK = Path(__file__).with_name("foot.onnx")
 AT_ONCE = 64  # strips
@@ -65,7 +65,7 @@ def foot_probabilities(strips: Strips) -> Float:
 
 
 def peaks(rows: Float) -> list[tuple[float, float]]:
-    """Row and probability of the PEAKS clearest feet among the probabilities of all rows (ROWS,), the clearest first."""
+    """Row and probability of the PEAKS clearest feet, the clearest first, by the probabilities of all rows (ROWS,)."""
     rows, found = rows.copy(), []
     for _ in range(PEAKS):
         sums = np.convolve(rows, np.ones(2 * HALF + 1), "same")

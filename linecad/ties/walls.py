@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
-from linecad.geometry import project, world_rays
+from linecad.geometry import world_rays
 from linecad.ties.planes import BodyPlane, find_planes_of_bodies
-from linecad.ties.setting import Setting, Sight
+from linecad.ties.setting import Setting
 
 ROWS, COLUMNS = 216, 32
 ROW = 0.02  # log height
@@ -80,6 +80,7 @@ class StripDrawer:
         pixels = setting.sight.pixels
         assert pixels is not None
         self._setting, self._sight = setting, setting.sight
+        self._projection = setting.sight.matrix @ setting.sight.rotation
         self._shrunk = min(1.0, WIDEST / pixels.shape[1])
         size = (round(pixels.shape[1] * self._shrunk), round(pixels.shape[0] * self._shrunk))
         self._pixels = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA) if self._shrunk < 1 else pixels
@@ -111,14 +112,14 @@ class StripDrawer:
 
     def _seen_at(self, wall: Wall, along: Float, height: Float) -> tuple[Float, Float]:
         """Pixels (..., 2) and depths (...) of points of a wall."""
-        points = np.empty((*np.broadcast_shapes(along.shape, height.shape), 3))
-        points[..., wall.plane.normal], points[..., 1 - wall.plane.normal], points[..., 2] = wall.offset, along, height
-        depth = points @ self._sight.rotation[2]
-        safe = np.where(depth[..., None] > 0, points, self._sight.rotation[2])
-        return project(safe, self._sight.matrix, self._sight.rotation), depth
+        of_normal, of_along, of_height = self._projection[:, [wall.plane.normal, 1 - wall.plane.normal, 2]].T
+        seen = (wall.offset * of_normal + along[..., None] * of_along) + height[..., None] * of_height
+        depth = seen[..., 2]
+        pixels: Float = seen[..., :2] / np.where(depth > 0, depth, np.inf)[..., None]
+        return pixels, depth
 
     def _columns(self, wall: Wall) -> tuple[Float, Float] | None:
-        """Where the columns are along the wall, evenly spaced along the horizon, and how deep; None for a narrow wall."""
+        """Where columns are along the wall, evenly spaced along the horizon, and how deep; None for a narrow wall."""
         along = np.linspace(*wall.along, 400)
         _, depth = self._seen_at(wall, along, np.zeros(1))
         along = along[depth > MOST_OBLIQUE * np.hypot(wall.offset, along)]

@@ -26,6 +26,7 @@ class Example:
     strip: Strip
     row: float  # of the foot, or UNSEEN
     is_clear: bool  # hardly seen otherwise
+    log_height: float  # true, of the foot; NaN where it is not seen
 
 
 def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -> list[Example]:
@@ -37,7 +38,8 @@ def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -
         if strip is not None:
             row, share = known.foot(strip, setting, float(true_scale[wall.body]))
             clear = share >= LEAST_SEEN or share < LEAST_SEEN / 3
-            found.append(Example(scene, strip, row if share >= LEAST_SEEN else UNSEEN, clear))
+            height = strip.log_height(row) + float(true_scale[wall.body]) if share >= LEAST_SEEN else np.nan
+            found.append(Example(scene, strip, row if share >= LEAST_SEEN else UNSEEN, clear, height))
     return found
 
 

@@ -38,7 +38,8 @@ SURE = 0.9
 # For each row of the ablation the kinds that are left out, and the features that the fit does without.
 WITHOUT: dict[str, tuple[tuple[Kind, ...], tuple[str, ...]]] = {
     "all evidence": ((), ()),
-    "bundles only": (("plane", "level"), ()),
+    "bundles only": (("plane", "level", "ground"), ()),
+    "without the ground": (("ground",), ()),
     "without planes": (("plane",), ("plane of it", "plane beside")),
     "without levels": (("level",), ("levels", "level excess", "level lead", "same eaves")),
     "without colour": ((), ("colour",)),
@@ -137,7 +138,7 @@ def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Pl
         ties = weigh_candidates(candidates, setting.bodies.size)
     body = setting.bodies.body
     reference = int(setting.bodies.size.argmax()) if setting.bodies.count else 0
-    placement = place(ties, max(1, setting.bodies.count), reference, SolveOptions())
+    placement = place(ties, setting.bodies.count + 1, reference, SolveOptions())
     log_depth = setting.log_depth + np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
     known = features(setting, placement, reference, log_depth)
     seen = photo.seen
@@ -174,11 +175,12 @@ def print_ablation(
 
 def _at_true_scales(photo: Judged) -> Float:
     """Log depths (N,); bodies whose scale is not known keep their place beside the largest whose scale is."""
-    body, known = photo.setting.bodies.body, np.isfinite(photo.true_scale)
+    body, true_scale = photo.setting.bodies.body, photo.true_scale[:-1]
+    known = np.isfinite(true_scale)
     if not known.any():
         return photo.setting.log_depth
     largest = int(np.where(known, photo.setting.bodies.size, 0).argmax())
-    shift: Float = np.where(known, photo.true_scale, photo.true_scale[largest])[np.maximum(body, 0)]
+    shift: Float = np.where(known, true_scale, true_scale[largest])[np.maximum(body, 0)]
     return photo.setting.log_depth + np.where(body >= 0, shift, 0.0)
 
 

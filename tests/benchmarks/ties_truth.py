@@ -5,6 +5,7 @@ from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
+from feet_truth import examples_of
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import resample
@@ -22,6 +23,7 @@ from solver.robust import RobustFit
 
 WIDTH = 0.02  # log scale, half of the window whose points give a body its true scale
 LEAST_POINTS, LEAST_AGREEING, AGREEING = 6, 0.6, 0.05
+LEAST_AGREED, AGREED = 3, 0.03  # bodies whose feet are the ground of a real photo; log height
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,7 +37,7 @@ class Judged:
     on: Int  # (P,) the line that shows each point of known depth, NO_LINE for none
     log_factor: Float  # (P,) log depth of the point where its line has log depth 0
     log_true: Float  # (P,)
-    true_scale: Float  # (B,) log, NaN where the points do not tell
+    true_scale: Float  # (B + 1,) log, that of the ground last; NaN where the points do not tell
 
     @cached_property
     def seen(self) -> Int:
@@ -78,6 +80,12 @@ def judge(dataset: str, case: Case) -> Judged | None:
     log_true = np.log(reference.edges.depth)
     scene = f"{dataset}/{case.name}" if case.kind == "made" else dataset
     true_scale = true_scales(setting, on, log_true - log_factor)
+    if reference.truth is not None:
+        examples = examples_of(scene, setting, true_scale, reference.truth)
+        feet = [example.log_height for example in examples if np.isfinite(example.log_height)]
+    else:
+        feet = agreed_feet(candidates, true_scale)
+    true_scale = np.append(true_scale, densest(np.array(feet)) if feet else np.nan)
     return Judged(
         dataset,
         scene,
@@ -113,6 +121,24 @@ def true_scales(setting: Setting, on: Int, log_line_depth: Float) -> Float:
             agreeing = np.abs(own - middle) < AGREEING
             scale[body] = middle if agreeing.mean() >= LEAST_AGREEING else np.nan
     return scale
+
+
+def agreed_feet(candidates: list[Candidate], true_scale: Float) -> list[float]:
+    """True log heights of the feet that most bodies of one photo agree about; none where fewer than three bodies do.
+
+    Nothing else tells where the ground of a real photo is. Feet that are wrong hardly agree.
+    """
+    feet = [candidate for candidate in candidates if candidate.kind == "ground"]
+    known = [candidate for candidate in feet if np.isfinite(true_scale[candidate.bodies[0]])]
+    height = np.array([true_scale[candidate.bodies[0]] - candidate.log_ratio for candidate in known])
+    best: list[float] = []
+    most = LEAST_AGREED - 1
+    for middle in height:
+        near = np.abs(height - middle) < AGREED
+        bodies = len({candidate.bodies[0] for candidate, is_near in zip(known, near, strict=True) if is_near})
+        if bodies > most:
+            best, most = height[near].tolist(), bodies
+    return best
 
 
 def densest(values: Float) -> float:
