@@ -159,7 +159,7 @@ def print_ablation(
     """Print a row for each part of the evidence; the placements with all of it."""
     print("\n| recall / precision at 5 % | " + " | ".join(datasets) + " |\n| --- " + "| --- " * len(datasets) + "|")
     _print_row("the robust fit alone", photos, [photo.score(photo.setting.log_depth) for photo in photos], datasets)
-    at_truth = [photo.score(_at_true_scales(photo)) for photo in photos]
+    at_truth = [photo.score(at_true_scales(photo)) for photo in photos]
     _print_row("bodies at their true scales", photos, at_truth, datasets)
     complete: list[Placed] = []
     scenes = sorted({photo.scene for photo in photos})
@@ -173,7 +173,7 @@ def print_ablation(
     return complete
 
 
-def _at_true_scales(photo: Judged) -> Float:
+def at_true_scales(photo: Judged) -> Float:
     """Log depths (N,); bodies whose scale is not known keep their place beside the largest whose scale is."""
     body, true_scale = photo.setting.bodies.body, photo.true_scale[:-1]
     known = np.isfinite(true_scale)
