@@ -13,7 +13,7 @@ from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.options import LONG_REACH
 from linecad.scene import Camera
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.setting import Setting
+from linecad.ties.setting import Setting, Sight
 
 WIDTH, HEIGHT, FOCAL = 3840, 2880, 3000.0
 CAMERA = Camera(WIDTH, HEIGHT, central_camera(FOCAL, WIDTH, HEIGHT), "file")
@@ -26,6 +26,7 @@ class Town:
     """Parts of lines, each (axis, point, other end), that the camera sees."""
 
     graph: LineGraph
+    sight: Sight  # without pixels
     log_depth: Float  # (N,) true, of the middle of each segment
     part: Int  # (N,)
 
@@ -45,12 +46,16 @@ def wall(normal, place, across, heights):
     return lines
 
 
-def town(*parts, collinear=True, yaw=0.0):
-    """What the camera, turned to the right by `yaw` (rad), sees of parts; every line must be long enough to be seen."""
+def town(*parts, collinear=True, yaw=0.0, pitch=0.0):
+    """What the camera sees of parts; every line must be long enough to be seen.
+
+    The camera is turned to the right by `yaw` and then up by `pitch` (rad).
+    """
     lines = [line for part in parts for line in part]
     axis = np.array([line[0] for line in lines])
     ends = np.array([line[1:] for line in lines], float)
-    rotation = FRONTAL.rotation @ rotation_about(np.array([0.0, 0.0, yaw]))
+    level = FRONTAL.rotation @ rotation_about(np.array([0.0, 0.0, yaw]))
+    rotation = rotation_about(np.array([-pitch, 0.0, 0.0])) @ level
     pixels = project(ends, CAMERA.matrix, rotation)
     assert ends[..., 1].min() > 1
     assert pixels.min() > 0
@@ -62,7 +67,8 @@ def town(*parts, collinear=True, yaw=0.0):
     fixed = np.where(axis == 1, np.where(np.abs(graph.rays[:, 0]) > np.abs(graph.rays[:, 2]), 0, 2), 1)
     at = np.arange(len(lines))
     log_depth = np.log(ends[at, 0, fixed] / graph.rays[at, fixed])
-    return Town(graph, log_depth, np.repeat(np.arange(len(parts)), [len(part) for part in parts]))
+    part = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    return Town(graph, Sight(CAMERA.matrix, rotation, WIDTH, None), log_depth, part)
 
 
 def still(count, group):
@@ -81,7 +87,7 @@ def setting(seen, moved=(), body=None, fits=None, pixels=None):
     if fits is None:
         fits = still(len(body), body + 1)
         fits = replace(fits, depth=np.tile(log_depth, (FITS, 1)))
-    return Setting(seen.graph, log_depth, RigidBodies(body, count), fits, WIDTH, pixels)
+    return Setting(seen.graph, log_depth, RigidBodies(body, count), fits, replace(seen.sight, pixels=pixels))
 
 
 def row(bars, at=(10.0, 10.0), level=False, end=4.0):
