@@ -1,5 +1,6 @@
-"""Walls of grids before a level camera: exact lines, their graph, their true depths, and bodies made of them."""
+"""Walls of grids before a camera: exact lines, their graph, their true depths, bodies made of them, and photos."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,7 +8,7 @@ import pytest
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import Fits
-from linecad.geometry import central_camera, project, rotation_about
+from linecad.geometry import central_camera, project, rotation_about, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.options import LONG_REACH
@@ -71,6 +72,63 @@ def town(*parts, collinear=True, yaw=0.0, pitch=0.0):
     return Town(graph, Sight(CAMERA.matrix, rotation, WIDTH, None), log_depth, part)
 
 
+SKY = (205, 220, 240)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A part of a plane in space, and its colour (..., 3) at points (..., 3) of it."""
+
+    normal: int
+    place: float
+    low: tuple[float, float, float]  # the coordinate `normal` does not count
+    high: tuple[float, float, float]
+    colour: Callable[[Float], Float]
+
+
+def facade(normal, place, across, heights, colour):
+    """The wall between two places across and two heights."""
+    low, high = np.full(3, place), np.full(3, place)
+    low[[1 - normal, 2]], high[[1 - normal, 2]] = (across[0], heights[0]), (across[1], heights[1])
+    return Surface(normal, place, tuple(low), tuple(high), colour)
+
+
+def ground(below, colour):
+    """The ground so far below the camera."""
+    return Surface(2, -below, (-np.inf,) * 3, (np.inf,) * 3, colour)
+
+
+def mottled(colour, amount, seed, cell=0.08):
+    """A colour with grain: cells in space, each a bit lighter or darker."""
+    grain = np.random.default_rng(seed).normal(0, amount, (32, 32, 32, 1))
+
+    def at(points):
+        i, j, k = np.moveaxis(np.floor(points / cell).astype(int) % 32, -1, 0)
+        return np.asarray(colour) + grain[i, j, k]
+
+    return at
+
+
+def paint(sight, surfaces, block=4):
+    """The pixels (H, W, 3) of a camera before surfaces, in squares of `block` px that have one colour."""
+    width, height = sight.width // block, round(sight.width * HEIGHT / WIDTH) // block
+    u, v = np.meshgrid(np.arange(width), np.arange(height))
+    rays = world_rays(np.stack([u, v], axis=-1) * block + (block - 1) / 2, sight.matrix, sight.rotation)
+    seen, nearest = np.empty((height, width, 3)), np.full((height, width), np.inf)
+    seen[:] = SKY
+    for surface in surfaces:
+        with np.errstate(divide="ignore"):
+            depth = surface.place / rays[..., surface.normal]
+        before = (depth > 0) & (depth < nearest)
+        points = rays * np.where(before, depth, 1.0)[..., None]
+        inside = (points >= surface.low) & (points <= surface.high)
+        inside[..., surface.normal] = True
+        shown = before & inside.all(axis=-1)
+        seen[shown], nearest[shown] = surface.colour(points[shown]), depth[shown]
+    small = np.clip(np.rint(seen), 0, 255).astype(np.uint8)
+    return small.repeat(block, axis=0).repeat(block, axis=1)
+
+
 def still(count, group):
     """Fits in which every line is seen and nothing moves."""
     seen = np.ones((FITS, count), bool)
@@ -123,6 +181,30 @@ def build_row():
 @pytest.fixture(scope="session")
 def build_setting():
     return setting
+
+
+@pytest.fixture(scope="session")
+def build_facade():
+    """A wall to paint."""
+    return facade
+
+
+@pytest.fixture(scope="session")
+def build_ground():
+    """The ground to paint."""
+    return ground
+
+
+@pytest.fixture(scope="session")
+def build_grain():
+    """A colour with grain."""
+    return mottled
+
+
+@pytest.fixture(scope="session")
+def paint_photo():
+    """What a camera sees of walls and the ground."""
+    return paint
 
 
 @pytest.fixture(scope="session")
