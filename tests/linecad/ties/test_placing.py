@@ -1,5 +1,6 @@
 """The stage as a whole, on exact made walls: their scales are found, and annotations are kept to."""
 
+from collections import defaultdict
 from dataclasses import replace
 from itertools import combinations
 
@@ -7,6 +8,7 @@ import numpy as np
 import pytest
 
 import linecad.ties.placing
+import linecad.ties.weights
 from linecad.errors import ContradictionError, SolverError
 from linecad.ties.candidates import find_candidates
 from linecad.ties.placing import FITS, place_lines
@@ -216,6 +218,37 @@ def test_the_seed_is_that_of_the_options(street, usual):
     other = placed(street, seed=5)
     assert (other.setting.fits.present != usual.setting.fits.present).any()
     assert abs(off(street, other)) < PLACED
+
+
+@pytest.fixture(scope="module")
+def lane(build_town, build_wall, build_facade, build_ground, build_grain, paint_photo):
+    """Two brick walls on a pale pavement, across and along the way, and nothing else that tells how they stand."""
+    heights, others = np.array([-0.9, -0.2, 0.8, 1.5, 2.4]), np.array([-0.77, 0.13, 1.02, 1.67])
+    front = build_wall(1, 9.0, np.arange(-3.5, 0.0, 0.4), heights)
+    seen = build_town(front, build_wall(0, 2.5, np.arange(9.0, 15.0, 0.6), others), yaw=0.05, pitch=0.03)
+    brick = build_grain((150, 80, 60), 9, 1)
+    surfaces = [
+        build_facade(1, 9.0, (-4.0, 0.0), (-1.6, 3.0), brick),
+        build_facade(0, 2.5, (8.5, 15.0), (-1.6, 3.0), brick),
+        build_ground(1.6, build_grain((140, 140, 135), 14, 3)),
+    ]
+    return replace(seen, sight=replace(seen.sight, pixels=paint_photo(seen.sight, surfaces)))
+
+
+def test_bodies_that_nothing_else_ties_are_put_on_one_ground(lane, monkeypatch):
+    # What the network is sure of counts, however the table is fitted.
+    sure = defaultdict(float, clear=1.0)
+    monkeypatch.setattr(linecad.ties.weights, "LOG_ODDS", {**linecad.ties.weights.LOG_ODDS, "ground": sure})
+    monkeypatch.setattr(linecad.ties.weights, "AT_ONCE", {**linecad.ties.weights.AT_ONCE, "ground": 0.0})
+    blind = place_lines(lane.graph, replace(lane.sight, pixels=None), SolveOptions())
+    assert (blind.setting.bodies.count, len(blind.ties)) == (2, 0)
+    assert abs(off(lane, blind)) > 0.1
+    found = placed(lane)
+    assert {tuple(pair) for pair in found.ties.bodies.tolist()} == {(0, 2), (1, 2)}
+    assert abs(off(lane, found)) < 0.03
+    assert found.solution.status == "optimal"
+    too_large = found.solution.log_depth[0] - lane.log_depth[0]
+    assert found.placement.log_scale[2] - too_large == pytest.approx(np.log(1.6), abs=0.03), "the camera is so high"
 
 
 def test_a_real_crossing_outweighs_all_other_ties(street):
