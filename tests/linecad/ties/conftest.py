@@ -27,7 +27,7 @@ class Town:
     """Parts of lines, each (axis, point, other end), that the camera sees."""
 
     graph: LineGraph
-    sight: Sight  # without pixels
+    sight: Sight  # without pixels, unless it is painted
     log_depth: Float  # (N,) true, of the middle of each segment
     part: Int  # (N,)
 
@@ -129,6 +129,32 @@ def paint(sight, surfaces, block=4):
     return small.repeat(block, axis=0).repeat(block, axis=1)
 
 
+CAMERA_HEIGHT = 1.6  # m above the pavement of `lane`
+
+
+def lane():
+    """Two brick walls with windows on a pale pavement, across and along the way; nothing else tells how they stand."""
+    brick, pane = mottled((150, 80, 60), 9, 1), np.array([40, 45, 55])
+
+    def windowed(start, axis):
+        def colour(points):
+            along, height = (points[..., axis] - start) % 1.6, (points[..., 2] + CAMERA_HEIGHT) % 1.7
+            is_pane = (along > 0.5) & (along < 1.2) & (height > 0.7) & (height < 1.4)
+            return np.where(is_pane[..., None], pane, brick(points))
+
+        return colour
+
+    first = wall(1, 9.0, np.arange(-3.5, 0.0, 0.4), np.array([-0.9, -0.2, 0.8, 1.5, 2.4]))
+    second = wall(0, 2.5, np.arange(9.0, 15.0, 0.6), np.array([-0.77, 0.13, 1.02, 1.67]))
+    seen = town(first, second, yaw=0.05, pitch=0.03)
+    surfaces = [
+        facade(1, 9.0, (-4.0, 0.0), (-CAMERA_HEIGHT, 3.0), windowed(-4.0, 0)),
+        facade(0, 2.5, (8.5, 15.0), (-CAMERA_HEIGHT, 3.0), windowed(8.5, 1)),
+        ground(CAMERA_HEIGHT, mottled((140, 140, 135), 14, 3)),
+    ]
+    return replace(seen, sight=replace(seen.sight, pixels=paint(seen.sight, surfaces)))
+
+
 def still(count, group):
     """Fits in which every line is seen and nothing moves."""
     seen = np.ones((FITS, count), bool)
@@ -196,9 +222,9 @@ def build_ground():
 
 
 @pytest.fixture(scope="session")
-def build_grain():
-    """A colour with grain."""
-    return mottled
+def brick_lane():
+    """Two walls on one pavement, with pixels, and how high the camera stands above it (m)."""
+    return lane(), CAMERA_HEIGHT
 
 
 @pytest.fixture(scope="session")

@@ -24,7 +24,6 @@ from linecad.ties.feet import (
 from linecad.ties.walls import COLUMNS, ROW, ROWS, Strip, StripDrawer, find_walls
 
 MOST_BYTES = 1_000_000  # of the network
-BELOW = 1.6  # m from the camera down to the ground
 FOUND = 0.03  # log height
 
 
@@ -154,52 +153,38 @@ def test_two_runs_of_the_network_give_the_same_numbers():
 
 
 @pytest.fixture(scope="module")
-def house(build_town, build_wall, build_facade, build_ground, build_grain, paint_photo, build_setting):
-    """A house of two brick walls with windows beside a pale pavement: one across, and one along the way."""
-    brick, dark = build_grain((150, 80, 60), 9, 1), np.array([40, 45, 55])
-
-    def windowed(start, axis):
-        def colour(points):
-            along, height = (points[..., axis] - start) % 1.6, (points[..., 2] + BELOW) % 1.7
-            pane = (along > 0.5) & (along < 1.2) & (height > 0.7) & (height < 1.4)
-            return np.where(pane[..., None], dark, brick(points))
-
-        return colour
-
-    heights = np.array([0.7, 1.4, 2.4, 3.1, 4.0]) - BELOW
-    parts = (
-        build_wall(1, 9.0, np.arange(-3.5, 0.0, 0.8), heights),
-        build_wall(0, 2.5, np.arange(7.0, 13.0, 0.8), heights),
-    )
-    surfaces = [
-        build_facade(1, 9.0, (-4.0, 0.0), (-BELOW, 3.0), windowed(-4.0, 0)),
-        build_facade(0, 2.5, (6.5, 13.0), (-BELOW, 3.0), windowed(6.5, 1)),
-        build_ground(BELOW, build_grain((140, 140, 135), 14, 3)),
-    ]
+def house(brick_lane, build_setting):
+    """Two walls on one pavement, as two bodies moved by so much or as one."""
+    seen, _ = brick_lane
 
     def look(moved=(0.0, 0.0), is_one=False):
-        seen = build_town(*parts, yaw=0.05, pitch=0.03)
         body = np.zeros_like(seen.part) if is_one else seen.part
-        return build_setting(seen, moved[: body.max() + 1], body, pixels=paint_photo(seen.sight, surfaces))
+        return build_setting(seen, moved[: body.max() + 1], body, pixels=seen.sight.pixels)
 
     return look
 
 
+@pytest.fixture(scope="module")
+def below(brick_lane):
+    """Log height of the pavement below the camera."""
+    return np.log(brick_lane[1])
+
+
 @pytest.mark.parametrize("moved", [(0.0, 0.0), (0.7, -0.4)])
-def test_the_feet_of_two_walls_are_found_at_the_scales_of_their_bodies(house, moved):
+def test_the_feet_of_two_walls_are_found_at_the_scales_of_their_bodies(house, below, moved):
     found = find_feet(house(moved))
     first = [next(foot for foot in found if foot.body == body) for body in range(2)]
     for foot, by in zip(first, moved, strict=True):
-        assert foot.log_height == pytest.approx(np.log(BELOW) + by, abs=FOUND)
+        assert foot.log_height == pytest.approx(below + by, abs=FOUND)
         assert foot.probability > 0.5
         assert foot.others == 0.0, "each body has one wall"
         assert foot.probability + foot.unseen <= 1 + 1e-9
     assert [foot.wall.plane.normal for foot in first] == [1, 0]
 
 
-def test_walls_of_one_body_that_agree_have_one_foot(house):
+def test_walls_of_one_body_that_agree_have_one_foot(house, below):
     found = find_feet(house((0.3,), is_one=True))
-    assert found[0].log_height == pytest.approx(np.log(BELOW) + 0.3, abs=FOUND)
+    assert found[0].log_height == pytest.approx(below + 0.3, abs=FOUND)
     assert found[0].others > 0.3
     assert [foot.body for foot in found] == [0] * len(found)
     assert all(abs(foot.log_height - found[0].log_height) >= SAME for foot in found[1:])

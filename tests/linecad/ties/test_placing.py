@@ -220,22 +220,8 @@ def test_the_seed_is_that_of_the_options(street, usual):
     assert abs(off(street, other)) < PLACED
 
 
-@pytest.fixture(scope="module")
-def lane(build_town, build_wall, build_facade, build_ground, build_grain, paint_photo):
-    """Two brick walls on a pale pavement, across and along the way, and nothing else that tells how they stand."""
-    heights, others = np.array([-0.9, -0.2, 0.8, 1.5, 2.4]), np.array([-0.77, 0.13, 1.02, 1.67])
-    front = build_wall(1, 9.0, np.arange(-3.5, 0.0, 0.4), heights)
-    seen = build_town(front, build_wall(0, 2.5, np.arange(9.0, 15.0, 0.6), others), yaw=0.05, pitch=0.03)
-    brick = build_grain((150, 80, 60), 9, 1)
-    surfaces = [
-        build_facade(1, 9.0, (-4.0, 0.0), (-1.6, 3.0), brick),
-        build_facade(0, 2.5, (8.5, 15.0), (-1.6, 3.0), brick),
-        build_ground(1.6, build_grain((140, 140, 135), 14, 3)),
-    ]
-    return replace(seen, sight=replace(seen.sight, pixels=paint_photo(seen.sight, surfaces)))
-
-
-def test_bodies_that_nothing_else_ties_are_put_on_one_ground(lane, monkeypatch):
+def test_bodies_that_nothing_else_ties_are_put_on_one_ground(brick_lane, monkeypatch):
+    lane, height = brick_lane
     # What the network is sure of counts, however the table is fitted.
     sure = defaultdict(float, clear=1.0)
     monkeypatch.setattr(linecad.ties.weights, "LOG_ODDS", {**linecad.ties.weights.LOG_ODDS, "ground": sure})
@@ -248,7 +234,7 @@ def test_bodies_that_nothing_else_ties_are_put_on_one_ground(lane, monkeypatch):
     assert abs(off(lane, found)) < 0.03
     assert found.solution.status == "optimal"
     too_large = found.solution.log_depth[0] - lane.log_depth[0]
-    assert found.placement.log_scale[2] - too_large == pytest.approx(np.log(1.6), abs=0.03), "the camera is so high"
+    assert found.placement.log_scale[2] - too_large == pytest.approx(np.log(height), abs=0.03), "the camera is so high"
 
 
 def test_a_real_crossing_outweighs_all_other_ties(street):
