@@ -12,7 +12,7 @@ from linecad.decide.stability import resample
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.depth import NO_LINE, depths_of, nearest_lines, score
-from linecad.evaluation.references import open_case
+from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.options import LONG_REACH, Options
 from linecad.ties.bodies import find_rigid_bodies
@@ -58,7 +58,19 @@ class Judged:
         return result.recall_5, result.precision_5
 
 
-def judge(dataset: str, case: Case) -> Judged | None:
+@dataclass(frozen=True, eq=False)
+class Seen:
+    """A photo with its bodies, and the points whose depth is known."""
+
+    setting: Setting
+    reference: Reference
+    on: Int  # (P,) as in Judged
+    log_factor: Float  # (P,)
+    log_true: Float  # (P,)
+    true_scale: Float  # (B,) log, NaN where the points do not tell
+
+
+def look_at(case: Case) -> Seen | None:
     """The photo of a case; None where it has no lines in space, or its truth no depths."""
     photo, reference = open_case(case)
     if reference.edges is None:
@@ -75,26 +87,37 @@ def judge(dataset: str, case: Case) -> Judged | None:
     bodies = find_rigid_bodies(graph, log_depth, fits)
     sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels)
     setting = Setting(graph, log_depth, bodies, fits, sight)
-    candidates = find_candidates(setting)
     on, log_factor = lines_at(setting, found, reference.edges.pixels)
     log_true = np.log(reference.edges.depth)
-    scene = f"{dataset}/{case.name}" if case.kind == "made" else dataset
-    true_scale = true_scales(setting, on, log_true - log_factor)
-    if reference.truth is not None:
-        examples = examples_of(scene, setting, true_scale, reference.truth)
+    return Seen(setting, reference, on, log_factor, log_true, true_scales(setting, on, log_true - log_factor))
+
+
+def scene_of(dataset: str, case: Case) -> str:
+    """What is left out at a time: a made scene, or a real place with all its photos."""
+    return f"{dataset}/{case.name}" if case.kind == "made" else dataset
+
+
+def judge(dataset: str, case: Case) -> Judged | None:
+    """The photo of a case with its candidates; None where `look_at` sees nothing."""
+    seen = look_at(case)
+    if seen is None:
+        return None
+    setting, scene = seen.setting, scene_of(dataset, case)
+    candidates = find_candidates(setting)
+    if seen.reference.truth is not None:
+        examples = examples_of(scene, setting, seen.true_scale, seen.reference.truth)
         feet = [example.log_height for example in examples if np.isfinite(example.log_height)]
     else:
-        feet = agreed_feet(candidates, true_scale)
-    true_scale = np.append(true_scale, densest(np.array(feet)) if feet else np.nan)
+        feet = agreed_feet(candidates, seen.true_scale)
     return Judged(
         dataset,
         scene,
-        replace(setting, sight=replace(sight, pixels=None)),
+        replace(setting, sight=replace(setting.sight, pixels=None)),
         candidates,
-        on,
-        log_factor,
-        log_true,
-        true_scale,
+        seen.on,
+        seen.log_factor,
+        seen.log_true,
+        np.append(seen.true_scale, densest(np.array(feet)) if feet else np.nan),
     )
 
 

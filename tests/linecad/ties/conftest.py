@@ -1,5 +1,6 @@
-"""Walls of grids before a level camera: exact lines, their graph, their true depths, and bodies made of them."""
+"""Walls of grids before a camera: exact lines, their graph, their true depths, bodies made of them, and photos."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -7,13 +8,13 @@ import pytest
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import Fits
-from linecad.geometry import central_camera, project, rotation_about
+from linecad.geometry import central_camera, project, rotation_about, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.options import LONG_REACH
 from linecad.scene import Camera
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.setting import Setting
+from linecad.ties.setting import Setting, Sight
 
 WIDTH, HEIGHT, FOCAL = 3840, 2880, 3000.0
 CAMERA = Camera(WIDTH, HEIGHT, central_camera(FOCAL, WIDTH, HEIGHT), "file")
@@ -26,6 +27,7 @@ class Town:
     """Parts of lines, each (axis, point, other end), that the camera sees."""
 
     graph: LineGraph
+    sight: Sight  # without pixels, unless it is painted
     log_depth: Float  # (N,) true, of the middle of each segment
     part: Int  # (N,)
 
@@ -45,12 +47,16 @@ def wall(normal, place, across, heights):
     return lines
 
 
-def town(*parts, collinear=True, yaw=0.0):
-    """What the camera, turned to the right by `yaw` (rad), sees of parts; every line must be long enough to be seen."""
+def town(*parts, collinear=True, yaw=0.0, pitch=0.0):
+    """What the camera sees of parts; every line must be long enough to be seen.
+
+    The camera is turned to the right by `yaw` and then up by `pitch` (rad).
+    """
     lines = [line for part in parts for line in part]
     axis = np.array([line[0] for line in lines])
     ends = np.array([line[1:] for line in lines], float)
-    rotation = FRONTAL.rotation @ rotation_about(np.array([0.0, 0.0, yaw]))
+    level = FRONTAL.rotation @ rotation_about(np.array([0.0, 0.0, yaw]))
+    rotation = rotation_about(np.array([-pitch, 0.0, 0.0])) @ level
     pixels = project(ends, CAMERA.matrix, rotation)
     assert ends[..., 1].min() > 1
     assert pixels.min() > 0
@@ -62,7 +68,91 @@ def town(*parts, collinear=True, yaw=0.0):
     fixed = np.where(axis == 1, np.where(np.abs(graph.rays[:, 0]) > np.abs(graph.rays[:, 2]), 0, 2), 1)
     at = np.arange(len(lines))
     log_depth = np.log(ends[at, 0, fixed] / graph.rays[at, fixed])
-    return Town(graph, log_depth, np.repeat(np.arange(len(parts)), [len(part) for part in parts]))
+    part = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    return Town(graph, Sight(CAMERA.matrix, rotation, WIDTH, None), log_depth, part)
+
+
+SKY = (205, 220, 240)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A part of a plane in space, and its colour (..., 3) at points (..., 3) of it."""
+
+    normal: int
+    place: float
+    low: tuple[float, float, float]  # the coordinate `normal` does not count
+    high: tuple[float, float, float]
+    colour: Callable[[Float], Float]
+
+
+def facade(normal, place, across, heights, colour):
+    """The wall between two places across and two heights."""
+    low, high = np.full(3, place), np.full(3, place)
+    low[[1 - normal, 2]], high[[1 - normal, 2]] = (across[0], heights[0]), (across[1], heights[1])
+    return Surface(normal, place, tuple(low), tuple(high), colour)
+
+
+def ground(below, colour):
+    """The ground so far below the camera."""
+    return Surface(2, -below, (-np.inf,) * 3, (np.inf,) * 3, colour)
+
+
+def mottled(colour, amount, seed, cell=0.08):
+    """A colour with grain: cells in space, each a bit lighter or darker."""
+    grain = np.random.default_rng(seed).normal(0, amount, (32, 32, 32, 1))
+
+    def at(points):
+        i, j, k = np.moveaxis(np.floor(points / cell).astype(int) % 32, -1, 0)
+        return np.asarray(colour) + grain[i, j, k]
+
+    return at
+
+
+def paint(sight, surfaces, block=4):
+    """The pixels (H, W, 3) of a camera before surfaces, in squares of `block` px that have one colour."""
+    width, height = sight.width // block, round(sight.width * HEIGHT / WIDTH) // block
+    u, v = np.meshgrid(np.arange(width), np.arange(height))
+    rays = world_rays(np.stack([u, v], axis=-1) * block + (block - 1) / 2, sight.matrix, sight.rotation)
+    seen, nearest = np.empty((height, width, 3)), np.full((height, width), np.inf)
+    seen[:] = SKY
+    for surface in surfaces:
+        with np.errstate(divide="ignore"):
+            depth = surface.place / rays[..., surface.normal]
+        before = (depth > 0) & (depth < nearest)
+        points = rays * np.where(before, depth, 1.0)[..., None]
+        inside = (points >= surface.low) & (points <= surface.high)
+        inside[..., surface.normal] = True
+        shown = before & inside.all(axis=-1)
+        seen[shown], nearest[shown] = surface.colour(points[shown]), depth[shown]
+    small = np.clip(np.rint(seen), 0, 255).astype(np.uint8)
+    return small.repeat(block, axis=0).repeat(block, axis=1)
+
+
+CAMERA_HEIGHT = 1.6  # m above the pavement of `lane`
+
+
+def lane():
+    """Two brick walls with windows on a pale pavement, across and along the way; nothing else tells how they stand."""
+    brick, pane = mottled((150, 80, 60), 9, 1), np.array([40, 45, 55])
+
+    def windowed(start, axis):
+        def colour(points):
+            along, height = (points[..., axis] - start) % 1.6, (points[..., 2] + CAMERA_HEIGHT) % 1.7
+            is_pane = (along > 0.5) & (along < 1.2) & (height > 0.7) & (height < 1.4)
+            return np.where(is_pane[..., None], pane, brick(points))
+
+        return colour
+
+    first = wall(1, 9.0, np.arange(-3.5, 0.0, 0.4), np.array([-0.9, -0.2, 0.8, 1.5, 2.4]))
+    second = wall(0, 2.5, np.arange(9.0, 15.0, 0.6), np.array([-0.77, 0.13, 1.02, 1.67]))
+    seen = town(first, second, yaw=0.05, pitch=0.03)
+    surfaces = [
+        facade(1, 9.0, (-4.0, 0.0), (-CAMERA_HEIGHT, 3.0), windowed(-4.0, 0)),
+        facade(0, 2.5, (8.5, 15.0), (-CAMERA_HEIGHT, 3.0), windowed(8.5, 1)),
+        ground(CAMERA_HEIGHT, mottled((140, 140, 135), 14, 3)),
+    ]
+    return replace(seen, sight=replace(seen.sight, pixels=paint(seen.sight, surfaces)))
 
 
 def still(count, group):
@@ -81,7 +171,7 @@ def setting(seen, moved=(), body=None, fits=None, pixels=None):
     if fits is None:
         fits = still(len(body), body + 1)
         fits = replace(fits, depth=np.tile(log_depth, (FITS, 1)))
-    return Setting(seen.graph, log_depth, RigidBodies(body, count), fits, WIDTH, pixels)
+    return Setting(seen.graph, log_depth, RigidBodies(body, count), fits, replace(seen.sight, pixels=pixels))
 
 
 def row(bars, at=(10.0, 10.0), level=False, end=4.0):
@@ -117,6 +207,30 @@ def build_row():
 @pytest.fixture(scope="session")
 def build_setting():
     return setting
+
+
+@pytest.fixture(scope="session")
+def build_facade():
+    """A wall to paint."""
+    return facade
+
+
+@pytest.fixture(scope="session")
+def build_ground():
+    """The ground to paint."""
+    return ground
+
+
+@pytest.fixture(scope="session")
+def brick_lane():
+    """Two walls on one pavement, with pixels, and how high the camera stands above it (m)."""
+    return lane(), CAMERA_HEIGHT
+
+
+@pytest.fixture(scope="session")
+def paint_photo():
+    """What a camera sees of walls and the ground."""
+    return paint
 
 
 @pytest.fixture(scope="session")

@@ -1,5 +1,6 @@
 """Bundles: the ratio of scales that crossings of two bodies ask for, and what is counted of them."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -10,15 +11,16 @@ from hypothesis import strategies as st
 from linecad.line_graph import Segments
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.bundles import MOST, WIDTH, find_bundles
-from linecad.ties.setting import Setting
+from linecad.ties.setting import Setting, Sight
 
 LINES = 6  # of each body of `two`
+SIGHT = Sight(np.eye(3), np.eye(3), 3840, None)
 
 
 def two(graph, width=3840):
     """Two bodies of LINES lines each."""
     body = np.repeat([0, 1], LINES)
-    return Setting(graph, np.zeros(2 * LINES), RigidBodies(body, 2), None, width, None)
+    return Setting(graph, np.zeros(2 * LINES), RigidBodies(body, 2), None, replace(SIGHT, width=width))
 
 
 def across(*pairs):
@@ -46,7 +48,7 @@ def test_the_ratio_makes_the_crossings_hold(build_town, build_row, build_setting
 @pytest.mark.parametrize(("body", "log_ratio"), [((0, 1), 0.2 - 0.5 + 0.1), ((1, 0), -0.2 + 0.5 - 0.1)])
 def test_a_ratio_has_the_sign_of_the_smaller_body(build_links, body, log_ratio):
     graph = build_links(2, [(0, 1)], log_ratio=np.array([0.2]))
-    (bundle,) = find_bundles(Setting(graph, np.array([0.5, 0.1]), RigidBodies(np.array(body), 2), None, 3840, None))
+    (bundle,) = find_bundles(Setting(graph, np.array([0.5, 0.1]), RigidBodies(np.array(body), 2), None, SIGHT))
     assert bundle.log_ratio == pytest.approx(log_ratio)
 
 
@@ -76,7 +78,7 @@ def test_no_two_bodies_have_more_bundles_than_a_few(build_links):
 
 def test_crossings_within_a_body_or_of_no_body_tell_nothing(build_links):
     graph = build_links(4, [(0, 1), (0, 2), (0, 3)])
-    setting = Setting(graph, np.zeros(4), RigidBodies(np.array([0, 0, 1, -1]), 2), None, 3840, None)
+    setting = Setting(graph, np.zeros(4), RigidBodies(np.array([0, 0, 1, -1]), 2), None, SIGHT)
     assert [bundle.edges.tolist() for bundle in find_bundles(setting)] == [[1]]
 
 
@@ -88,7 +90,7 @@ def test_crossings_that_cannot_tell_are_in_no_bundle(build_links, field):
 
 def test_bundles_of_all_pairs(build_links):
     graph = build_links(6, [(0, 2), (0, 4), (1, 5), (3, 5)])
-    setting = Setting(graph, np.zeros(6), RigidBodies(np.array([2, 2, 0, 0, 1, 1]), 3), None, 3840, None)
+    setting = Setting(graph, np.zeros(6), RigidBodies(np.array([2, 2, 0, 0, 1, 1]), 3), None, SIGHT)
     found = find_bundles(setting)
     assert [(bundle.bodies, bundle.edges.tolist()) for bundle in found] == [
         ((0, 1), [3]),

@@ -12,13 +12,16 @@ from linecad.ties.candidates import (
     GAP_UNIT,
     KINDS,
     MOST_EXCESS,
+    MOST_RANK,
     SAME_RATIO,
     find_candidates,
 )
 from linecad.ties.colours import TYPICAL
+from linecad.ties.feet import MOST_LOG_ODDS, Foot
 from linecad.ties.levels import MOST
 from linecad.ties.planes import INDUCED, SharedPlane
 from linecad.ties.table import AT_ONCE, LOG_ODDS
+from linecad.ties.walls import find_walls
 
 GAP = 2.0 * 3000 / 10  # px between the walls of a row
 
@@ -47,8 +50,16 @@ def of_kind(candidates, kind):
     return [candidate for candidate in candidates if candidate.kind == kind]
 
 
-def scenes(row, stepped, build_setting):
+@pytest.fixture(scope="module")
+def grounded(brick_lane, build_setting):
+    """Two walls on one pavement; their bodies are 0.3 and -0.2 too large."""
+    seen, _ = brick_lane
+    return build_setting(seen, moved=(0.3, -0.2), pixels=seen.sight.pixels)
+
+
+def scenes(row, stepped, grounded, build_setting):
     return [
+        grounded,
         build_setting(row(1), moved=(0.3, -0.2)),
         build_setting(row(0), moved=(0.3, -0.2)),
         build_setting(row(3, at=(10.0, 11.0))),
@@ -115,18 +126,22 @@ def test_levels_at_the_ratio_of_a_plane_are_its_feature(row, build_setting):
     assert plane.features["level excess"] == MOST_EXCESS
 
 
-def test_kinds_give_way_to_those_before_them(row, stepped, build_setting):
+def test_kinds_give_way_to_those_before_them(row, stepped, grounded, build_setting):
     """A plane or a level at the ratio of a bundle, and a level at that of a plane, are no candidates of their own."""
-    for setting in scenes(row, stepped, build_setting):
+    for setting in scenes(row, stepped, grounded, build_setting):
         found = find_candidates(setting)
         for one in found:
             for other in found:
-                if one.bodies == other.bodies and KINDS.index(one.kind) < KINDS.index(other.kind):
+                if (
+                    "ground" not in (one.kind, other.kind)
+                    and one.bodies == other.bodies
+                    and KINDS.index(one.kind) < KINDS.index(other.kind)
+                ):
                     assert abs(one.log_ratio - other.log_ratio) >= SAME_RATIO
 
 
-def test_every_feature_has_log_odds_and_is_finite(row, stepped, build_setting):
-    found = [one for setting in scenes(row, stepped, build_setting) for one in find_candidates(setting)]
+def test_every_feature_has_log_odds_and_is_finite(row, stepped, grounded, build_setting):
+    found = [one for setting in scenes(row, stepped, grounded, build_setting) for one in find_candidates(setting)]
     assert {candidate.kind for candidate in found} == set(KINDS) == set(AT_ONCE) == set(LOG_ODDS)
     for candidate in found:
         assert list(candidate.features) == list(LOG_ODDS[candidate.kind])
@@ -204,3 +219,76 @@ def test_support_comes_from_the_fits(row, build_setting):
 def test_one_body_has_no_candidates(row, build_setting):
     seen = row(0)
     assert find_candidates(build_setting(seen, body=np.zeros_like(seen.part))) == []
+
+
+def test_feet_tie_bodies_to_the_ground_which_is_one_more_body(grounded, brick_lane):
+    found = of_kind(find_candidates(grounded), "ground")
+    first = [next(one for one in found if one.bodies[0] == body) for body in range(2)]
+    below = np.log(brick_lane[1])
+    assert [one.bodies for one in first] == [(0, 2), (1, 2)]
+    # The scale of the ground is the log of the camera's height above it: what a body must grow by, less that.
+    assert [one.log_ratio for one in first] == pytest.approx([-below - 0.3, -below + 0.2], abs=0.03)
+    assert {one.normal for one in found} == {-1}
+
+
+def test_ties_to_the_ground_come_first(row, build_setting, monkeypatch):
+    setting = build_setting(row(2))
+    feet = [Foot(wall.body, 0.5, 0.9, wall, 0.0, 0.0, 0.0) for wall in find_walls(setting)]
+    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: feet)
+    found = find_candidates(setting)
+    assert [(one.kind, one.bodies) for one in found] == [("ground", (0, 2)), ("ground", (1, 2)), ("bundle", (0, 1))]
+
+
+def test_without_pixels_nothing_stands_on_the_ground(grounded):
+    blind = replace(grounded, sight=replace(grounded.sight, pixels=None))
+    assert of_kind(find_candidates(blind), "ground") == []
+
+
+def test_one_body_may_stand_on_the_ground(grounded):
+    alone = replace(grounded, bodies=replace(grounded.bodies, body=np.zeros_like(grounded.bodies.body), count=1))
+    assert {one.bodies for one in find_candidates(alone)} == {(0, 1)}
+
+
+@pytest.fixture
+def features_of_foot(grounded, monkeypatch):
+    """The features of the candidate that a foot of the front wall makes, with what is known of it."""
+
+    def features(rank=1, **known):
+        wall = next(wall for wall in find_walls(grounded) if wall.body == 0)
+        wall = replace(wall, plane=replace(wall.plane, rank=rank, share=0.75))
+        usual = {"body": 0, "log_height": 0.5, "probability": 0.5, "others": 0.0, "against": 0.1, "unseen": 0.2}
+        foot = Foot(wall=wall, **{**usual, **known})
+        monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
+        (found,) = of_kind(find_candidates(grounded), "ground")
+        assert (found.bodies, found.log_ratio) == ((0, 2), -0.5)
+        return found.features
+
+    return features
+
+
+def test_features_of_a_foot(features_of_foot):
+    known = features_of_foot(probability=0.8, others=0.6, against=0.3, unseen=0.05)
+    expected = {
+        "clear": np.log(4.0),
+        "others": 0.6,
+        "against": 0.3,
+        "unseen": 0.05,
+        "share": 0.75,
+        "lines of the wall": np.log(14),
+        "lines of the body": np.log(14),
+        "rank": 1.0,
+        "other foot": 0.0,
+    }
+    assert {name: known[name] for name in expected} == pytest.approx(expected)
+    assert known["wide"] == pytest.approx(np.log(3.2 * 3000 / 9.0 / GAP_UNIT + 1), abs=0.05), "the camera is turned"
+
+
+@pytest.mark.parametrize(("against", "is_other"), [(0.49, 0.0), (0.51, 1.0)])
+def test_a_foot_that_another_is_clearer_than_is_said_to_be_so(features_of_foot, against, is_other):
+    assert features_of_foot(against=against)["other foot"] == is_other
+
+
+@pytest.mark.parametrize(("probability", "clear"), [(0.0, -MOST_LOG_ODDS), (1.0, MOST_LOG_ODDS), (0.5, 0.0)])
+def test_no_feature_of_a_foot_runs_away(features_of_foot, probability, clear):
+    known = features_of_foot(rank=50, probability=probability, others=7.0)
+    assert (known["clear"], known["others"], known["rank"]) == (pytest.approx(clear), 1.0, MOST_RANK)

@@ -23,8 +23,12 @@ def painted(left, right):
     return np.concatenate(halves, axis=1)
 
 
+def looking_at(setting, pixels, **more):
+    return replace(setting, sight=replace(setting.sight, pixels=pixels), **more)
+
+
 def like(setting, left, right):
-    colours = find_colours(replace(setting, pixels=painted(left, right)))
+    colours = find_colours(looking_at(setting, painted(left, right)))
     return likeness(colours, 0, 1)
 
 
@@ -47,7 +51,7 @@ def test_walls_of_one_grey_in_sun_and_shade_are_alike(walls):
 
 
 def test_shares_of_colours_sum_to_one(walls):
-    for colours in find_colours(replace(walls, pixels=painted(RED, BLUE))):
+    for colours in find_colours(looking_at(walls, painted(RED, BLUE))):
         assert colours.shape == (BINS, BINS)
         assert colours.sum() == pytest.approx(1)
         assert colours.min() >= 0
@@ -76,6 +80,6 @@ def test_walls_are_looked_at_beside_their_lines(walls, row, width):
         left, right = sorted(u + side * far)
         pixels[v : w + 1, int(left) - 4 : int(right) + 5] = RED
     alone = replace(walls.bodies, body=np.where(np.arange(len(row.part)) == 0, 0, 1))
-    seen = replace(walls, bodies=alone, pixels=pixels, width=width)
-    (found, _), (red, _) = find_colours(seen), find_colours(replace(seen, pixels=painted(RED, RED)))
+    seen = looking_at(replace(walls, sight=replace(walls.sight, width=width)), pixels, bodies=alone)
+    (found, _), (red, _) = find_colours(seen), find_colours(looking_at(seen, painted(RED, RED)))
     assert np.minimum(found, red).sum() > 0.9

@@ -1,23 +1,25 @@
 """The stage as a whole, on exact made walls: their scales are found, and annotations are kept to."""
 
+from collections import defaultdict
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
 import pytest
 
 import linecad.ties.placing
+import linecad.ties.weights
 from linecad.errors import ContradictionError, SolverError
 from linecad.ties.candidates import find_candidates
 from linecad.ties.placing import FITS, place_lines
 from solver.options import SolveOptions
 
-WIDTH = 3840  # px
 NEAR, FAR = 9.5, 12.0
 PLACED = 0.005  # log depth: half the width of a peak of levels
 
 
 def placed(seen, **more):
-    return place_lines(seen.graph, WIDTH, None, SolveOptions(**more))
+    return place_lines(seen.graph, seen.sight, SolveOptions(**more))
 
 
 def off(seen, found):
@@ -166,12 +168,13 @@ def test_two_runs_give_the_same_bytes(street, usual):
 
 def test_colours_speak_for_walls_and_against_them(facade):
     """Two walls of one plane are one house if they have one colour."""
-    alike = np.full((2880, WIDTH, 3), (150, 120, 100), np.uint8)
+    alike = np.full((2880, 3840, 3), (150, 120, 100), np.uint8)
     different = alike.copy()
     different[:, 1728:] = (60, 90, 190)
-    weights = [
-        place_lines(facade.graph, WIDTH, pixels, SolveOptions()).ties.weight.sum() for pixels in (alike, different)
-    ]
+    weights = []
+    for pixels in (alike, different):
+        ties = place_lines(facade.graph, replace(facade.sight, pixels=pixels), SolveOptions()).ties
+        weights.append(ties.weight[(ties.bodies < 2).all(axis=1)].sum())
     assert weights[0] > weights[1]
 
 
@@ -187,7 +190,7 @@ def test_lines_that_are_too_few_for_a_body_keep_the_fit(build_town, build_wall):
 
 
 def test_a_graph_without_lines_is_placed(facade):
-    found = place_lines(facade.graph.subset(np.zeros(0, int)), WIDTH, None, SolveOptions())
+    found = place_lines(facade.graph.subset(np.zeros(0, int)), facade.sight, SolveOptions())
     assert (len(found.solution.log_depth), len(found.probability), found.solution.objective) == (0, 0, 0.0)
 
 
@@ -203,7 +206,7 @@ def test_lines_of_no_body_keep_the_fit(build_town, build_row, build_wall):
 
 def test_the_way_is_told(street):
     stages, reports = [], []
-    place_lines(street.graph, WIDTH, None, SolveOptions(), reports.append, stages.append)
+    place_lines(street.graph, street.sight, SolveOptions(), reports.append, stages.append)
     assert stages[0].startswith("fitting depths")
     assert stages[1:] == ["finding what ties 2 bodies", f"placing 2 bodies by {len(placed(street).ties)} ties"]
     assert reports
@@ -215,6 +218,23 @@ def test_the_seed_is_that_of_the_options(street, usual):
     other = placed(street, seed=5)
     assert (other.setting.fits.present != usual.setting.fits.present).any()
     assert abs(off(street, other)) < PLACED
+
+
+def test_bodies_that_nothing_else_ties_are_put_on_one_ground(brick_lane, monkeypatch):
+    lane, height = brick_lane
+    # What the network is sure of counts, however the table is fitted.
+    sure = defaultdict(float, clear=1.0)
+    monkeypatch.setattr(linecad.ties.weights, "LOG_ODDS", {**linecad.ties.weights.LOG_ODDS, "ground": sure})
+    monkeypatch.setattr(linecad.ties.weights, "AT_ONCE", {**linecad.ties.weights.AT_ONCE, "ground": 0.0})
+    blind = place_lines(lane.graph, replace(lane.sight, pixels=None), SolveOptions())
+    assert (blind.setting.bodies.count, len(blind.ties)) == (2, 0)
+    assert abs(off(lane, blind)) > 0.1
+    found = placed(lane)
+    assert {tuple(pair) for pair in found.ties.bodies.tolist()} == {(0, 2), (1, 2)}
+    assert abs(off(lane, found)) < 0.03
+    assert found.solution.status == "optimal"
+    too_large = found.solution.log_depth[0] - lane.log_depth[0]
+    assert found.placement.log_scale[2] - too_large == pytest.approx(np.log(height), abs=0.03), "the camera is so high"
 
 
 def test_a_real_crossing_outweighs_all_other_ties(street):

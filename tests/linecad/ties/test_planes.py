@@ -49,7 +49,8 @@ def test_the_ratio_of_walls_at_two_depths_puts_them_into_one_plane(build_town, b
 
 def test_distances_are_px_at_the_reference_width(build_town, build_row, build_setting):
     setting = build_setting(build_town(*build_row(0)))
-    (wide,), (narrow,) = find_shared_planes(setting), find_shared_planes(replace(setting, width=1920))
+    half = replace(setting, sight=replace(setting.sight, width=1920))
+    (wide,), (narrow,) = find_shared_planes(setting), find_shared_planes(half)
     assert narrow.distance == pytest.approx(2 * wide.distance)
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from linecad.decide.stability import SAME_DEPTH, Fits
 from linecad.line_graph import Segments
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.setting import LEAST_SEEN, STEPS, Setting, densest_groups, sample
+from linecad.ties.setting import LEAST_SEEN, STEPS, Setting, Sight, densest_groups, sample
 
 BODY = np.array([0, 1, 1, -1, 0, 0, 1])
 FITS = 10
@@ -20,7 +20,7 @@ FITS = 10
 def looked_at(build_links):
     """Two bodies of three lines each in ten fits that connect all and move nothing."""
     fits = Fits(np.ones((FITS, 7), bool), np.zeros((FITS, 7)), np.zeros((FITS, 7), np.int64))
-    return Setting(build_links(7, []), np.zeros(7), RigidBodies(BODY, 2), fits, 3840, None)
+    return Setting(build_links(7, []), np.zeros(7), RigidBodies(BODY, 2), fits, Sight(np.eye(3), np.eye(3), 3840, None))
 
 
 def test_each_body_knows_its_lines(looked_at):
@@ -37,7 +37,8 @@ def test_points_lie_evenly_from_end_to_end():
 def test_distances_are_px_at_the_reference_width(looked_at, width):
     ends = np.array([[[0.0, 100.0 * line], [90.0, 100.0 * line]] for line in range(7)])
     ends[5] = [[120.0, 230.0], [210.0, 230.0]]  # next to lines 2 and 3, of which 3 is of no body
-    seen = replace(looked_at, graph=replace(looked_at.graph, segments=Segments(ends, np.zeros(7, int))), width=width)
+    graph = replace(looked_at.graph, segments=Segments(ends, np.zeros(7, int)))
+    seen = replace(looked_at, graph=graph, sight=replace(looked_at.sight, width=width))
     expected = np.hypot(30.0, 30.0) * 3840 / width
     assert seen.distance(0, 1) == seen.distance(1, 0) == pytest.approx(expected)
 

@@ -48,7 +48,7 @@ def test_weak_candidates_are_no_ties():
 @pytest.mark.parametrize("kind", KINDS)
 def test_planes_and_levels_are_worth_less_since_they_repeat_each_other(kind):
     (weight,) = weigh_candidates([worth(5.0, kind)], LARGE).weight
-    assert weight == pytest.approx(5.0 if kind == "bundle" else 5.0 * REPEATED)
+    assert weight == pytest.approx(5.0 * REPEATED if kind in ("plane", "level") else 5.0)
 
 
 @pytest.mark.parametrize(("lines", "share"), [(6, 6 / FULL_SIZE), (15, 0.5), (30, 1.0), (300, 1.0)])
@@ -56,6 +56,14 @@ def test_small_bodies_move_little(lines, share):
     assert FULL_SIZE == 30
     for size in ((lines, 400), (400, lines)):
         assert weigh_candidates([worth(5.0)], np.array(size)).weight.tolist() == pytest.approx([5.0 * share])
+
+
+@pytest.mark.parametrize(("lines", "share"), [(15, 0.5), (30, 1.0)])
+def test_a_tie_to_the_ground_counts_by_the_size_of_its_body(lines, share):
+    """The ground has no lines, and is no crumb."""
+    ties = weigh_candidates([worth(5.0, bodies=(0, 1))], np.array([lines]))
+    assert ties.weight.tolist() == pytest.approx([5.0 * share])
+    assert ties.bodies.tolist() == [[0, 1]]
 
 
 def test_a_weak_tie_of_small_bodies_stays_one():
