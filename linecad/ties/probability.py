@@ -10,17 +10,17 @@ from solver.bodies.ties import Placement
 
 LARGEST_MARGIN = 12.0
 # Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
-AT_ONCE = -10.9674
+AT_ONCE = -9.1498
 LOG_ODDS: dict[str, float] = {
-    "of the reference": 2.2115,
-    "margin": 0.0029,
-    "root of margin": 0.6204,
-    "lines of the body": 0.0915,
-    "share of the reference": 3.5381,
-    "together": 1.9351,
-    "agreement of all": 2.5574,
-    "agreement of the line": 1.6336,
-    "bodies": 0.7789,
+    "of the reference": 1.7129,
+    "margin": -0.0016,
+    "root of margin": 0.3756,
+    "lines of the body": 0.1241,
+    "share of the reference": 4.0237,
+    "together": 2.6635,
+    "agreement of all": 0.3608,
+    "agreement of the line": 1.5377,
+    "bodies": 0.6847,
 }
 
 
