@@ -10,17 +10,17 @@ from solver.bodies.ties import Placement
 
 LARGEST_MARGIN = 12.0
 # Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
-AT_ONCE = -9.1498
+AT_ONCE = -7.3537
 LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.7129,
-    "margin": -0.0016,
-    "root of margin": 0.3756,
-    "lines of the body": 0.1241,
-    "share of the reference": 4.0237,
-    "together": 2.6635,
-    "agreement of all": 0.3608,
-    "agreement of the line": 1.5377,
-    "bodies": 0.6847,
+    "of the reference": 1.8709,
+    "margin": -0.1237,
+    "root of margin": 1.0562,
+    "lines of the body": -0.0418,
+    "share of the reference": 2.9845,
+    "together": 2.4843,
+    "agreement of all": -0.8356,
+    "agreement of the line": 1.6449,
+    "bodies": 0.5871,
 }
 
 

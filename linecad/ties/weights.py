@@ -9,7 +9,7 @@ from solver.bodies.ties import Ties
 
 BY_CHANCE = 0.05  # that a ratio which nothing asks for is right within TOLERANCE
 TOLERANCE = 0.02  # log ratio within which a tie holds
-LEAST_WEIGHT = 1.5  # of a tie: weaker ones are so many that some always agree with a wrong place
+LEAST_WEIGHT = 2.0  # of a tie: weaker ones are so many that some always agree with a wrong place
 REPEATING: tuple[Kind, ...] = ("plane", "level")
 REPEATED = 0.6  # of the weight of planes and levels, which repeat each other more than crossings do
 FULL_SIZE = 30.0  # lines of the smaller body, from which a tie has its full weight: crumbs must not move walls
