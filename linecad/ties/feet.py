@@ -12,6 +12,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from scipy.special import softmax
 
 from linecad.arrays import Float
 from linecad.ties.setting import Setting
@@ -59,8 +60,7 @@ def find_feet(setting: Setting) -> list[Foot]:
 def foot_probabilities(strips: Strips) -> Float:
     """(W, ROWS + 1) for W strips: that the foot is in each row, and, last, that it is not seen."""
     log_odds = np.concatenate([_run(strips[start : start + AT_ONCE]) for start in range(0, len(strips), AT_ONCE)])
-    power = np.exp(log_odds - log_odds.max(axis=1, keepdims=True))
-    shares: Float = power / power.sum(axis=1, keepdims=True)
+    shares: Float = softmax(log_odds, axis=1)
     return shares
 
 

@@ -94,7 +94,7 @@ class StripDrawer:
         width, focal = self._sight.width, self._sight.matrix[0, 0]
         top = float(np.log(TOP * width * np.median(depth) / focal))
         log_height = top + ROW / FINER * np.arange(ROWS * FINER)
-        pixels, depth = self._seen_at(wall, along[None], -np.exp(log_height)[:, None])
+        pixels, depth = self.seen_at(wall, along[None], -np.exp(log_height)[:, None])
         height, width = self._pixels.shape[:2]
         at = pixels * self._shrunk
         seen = (depth > 0) & ((at > BORDER) & (at < np.array([width, height]) - 1 - BORDER)).all(axis=2)
@@ -110,8 +110,8 @@ class StripDrawer:
             wall, np.concatenate([layers[:4], lines[None], layers[4:]]), top, along.reshape(COLUMNS, FINER).mean(axis=1)
         )
 
-    def _seen_at(self, wall: Wall, along: Float, height: Float) -> tuple[Float, Float]:
-        """Pixels (..., 2) and depths (...) of points of a wall."""
+    def seen_at(self, wall: Wall, along: Float, height: Float) -> tuple[Float, Float]:
+        """Pixels (..., 2) of the photo and depths (...) of points of a wall; (0, 0) for those behind the camera."""
         of_normal, of_along, of_height = self._projection[:, [wall.plane.normal, 1 - wall.plane.normal, 2]].T
         seen = (wall.offset * of_normal + along[..., None] * of_along) + height[..., None] * of_height
         depth = seen[..., 2]
@@ -121,16 +121,16 @@ class StripDrawer:
     def _columns(self, wall: Wall) -> tuple[Float, Float] | None:
         """Where columns are along the wall, evenly spaced along the horizon, and how deep; None for a narrow wall."""
         along = np.linspace(*wall.along, 400)
-        _, depth = self._seen_at(wall, along, np.zeros(1))
+        _, depth = self.seen_at(wall, along, np.zeros(1))
         along = along[depth > MOST_OBLIQUE * np.hypot(wall.offset, along)]
         if len(along) < 10:
             return None
-        pixels, _ = self._seen_at(wall, along, np.zeros(1))
+        pixels, _ = self.seen_at(wall, along, np.zeros(1))
         far = np.r_[0.0, np.cumsum(np.linalg.norm(np.diff(pixels, axis=0), axis=1))]
         if far[-1] < LEAST_WIDTH * self._sight.width:
             return None
         along = np.interp(np.linspace(0, far[-1], COLUMNS * FINER), far, along)
-        return along, self._seen_at(wall, along, np.zeros(1))[1]
+        return along, self.seen_at(wall, along, np.zeros(1))[1]
 
     def _colours(self, at: Float, seen: Bool) -> Float:
         """Lab (3, R, C) of pixels (R, C, 2) of the shrunk photo, less its median and over its spread; 0 if not seen."""

@@ -6,7 +6,6 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
-from linecad.geometry import project
 from linecad.ties.setting import Setting
 from linecad.ties.walls import COLUMNS, ROW, ROWS, Strip, StripDrawer, find_walls
 
@@ -36,7 +35,7 @@ def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -
     for wall in find_walls(setting):
         strip = drawer.draw(wall) if np.isfinite(true_scale[wall.body]) else None
         if strip is not None:
-            row, share = known.foot(strip, setting, float(true_scale[wall.body]))
+            row, share = known.foot(strip, drawer, float(true_scale[wall.body]))
             clear = share >= LEAST_SEEN or share < LEAST_SEEN / 3
             height = strip.log_height(row) + float(true_scale[wall.body]) if share >= LEAST_SEEN else np.nan
             found.append(Example(scene, strip, row if share >= LEAST_SEEN else UNSEEN, clear, height))
@@ -53,11 +52,11 @@ class _Ground:
         self._log_height = np.log(np.maximum(-height, 1e-9))
         self._is_ground = flat & (height < height[flat].min() + STEPPED)
 
-    def foot(self, strip: Strip, setting: Setting, scale: float) -> tuple[float, float]:
+    def foot(self, strip: Strip, drawer: StripDrawer, scale: float) -> tuple[float, float]:
         """The lowest row at which a share of the columns shows the wall above and the ground below, and that share."""
         rows = np.arange(ROWS)
         log_height = strip.log_height(0) + ROW * rows
-        shown = self._shown(strip, setting, log_height)
+        shown = self._shown(strip, drawer, log_height)
         above, below = np.roll(shown, ASIDE, axis=0), np.roll(shown, -ASIDE, axis=0)
         meets = self._is_wall(above, strip, scale) & self._is_ground[below] & (below != NOTHING)
         meets &= np.abs(self._log_height[below] - log_height[:, None] - scale) < SAME_HEIGHT
@@ -76,14 +75,8 @@ class _Ground:
         wall: Bool = (quads != NOTHING) & (np.abs(self._normal[quads, plane.normal]) > 0.99) & (apart < SAME_PLANE)
         return wall
 
-    def _shown(self, strip: Strip, setting: Setting, log_height: Float) -> Int:
+    def _shown(self, strip: Strip, drawer: StripDrawer, log_height: Float) -> Int:
         """The quads (ROWS, COLUMNS) that the photo shows where the strip looks at it."""
-        wall, sight = strip.wall, setting.sight
-        points = np.empty((ROWS, COLUMNS, 3))
-        points[..., wall.plane.normal] = wall.offset
-        points[..., 1 - wall.plane.normal] = strip.along
-        points[..., 2] = -np.exp(log_height)[:, None]
-        seen = points @ sight.rotation[2] > 0
-        pixels = project(np.where(seen[..., None], points, sight.rotation[2]), sight.matrix, sight.rotation)
-        quads = self._truth.quad_at(np.where(seen[..., None], pixels, -1.0).reshape(-1, 2)).reshape(ROWS, COLUMNS)
-        return np.asarray(np.where(seen, quads, NOTHING))
+        pixels, depth = drawer.seen_at(strip.wall, strip.along[None], -np.exp(log_height)[:, None])
+        quads = self._truth.quad_at(pixels.reshape(-1, 2)).reshape(ROWS, COLUMNS)
+        return np.asarray(np.where(depth > 0, quads, NOTHING))

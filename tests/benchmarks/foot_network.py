@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from feet_truth import UNSEEN
 from torch import Tensor, nn
 from torch.nn import functional
 
@@ -13,7 +14,6 @@ from linecad.ties.walls import COLUMNS, ROWS, Strips
 
 LAYERS = 6
 SHIFT = 30  # rows
-UNSEEN = -1.0
 BATCH, RATE, DECAY = 24, 4e-3, 1e-3
 BLURRED = 0.75  # rows: how far from the foot a row still counts
 

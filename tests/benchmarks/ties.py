@@ -23,10 +23,11 @@ import linecad.ties.table
 import linecad.ties.weights
 from linecad.arrays import Float, Int
 from linecad.evaluation.datasets import find_dataset
-from linecad.ties.candidates import KINDS, Kind
+from linecad.ties.candidates import KINDS, Candidate, Kind
 from linecad.ties.probability import features
 from linecad.ties.weights import weigh_candidates
 from solver.bodies.search import place
+from solver.bodies.ties import Placement
 from solver.options import SolveOptions
 
 RIGHT = 0.03  # log ratio of a candidate
@@ -120,6 +121,16 @@ def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
     return {"AT_ONCE": {kind: fitted.at_once for kind, fitted in fits.items()}, "LOG_ODDS": slopes}
 
 
+def place_bodies(photo: Judged, candidates: list[Candidate]) -> tuple[Placement, int, Float]:
+    """The placement by some candidates, the body that others are placed relative to, and the log depths (N,)."""
+    setting = photo.setting
+    body, size = setting.bodies.body, setting.bodies.size
+    reference = int(size.argmax()) if setting.bodies.count else 0
+    placement = place(weigh_candidates(candidates, size), setting.bodies.count + 1, reference, SolveOptions())
+    moved = np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
+    return placement, reference, setting.log_depth + moved
+
+
 @dataclass(frozen=True, eq=False)
 class Placed:
     """A photo with its bodies in their places."""
@@ -135,11 +146,8 @@ def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Pl
     setting = photo.setting
     candidates = [candidate for candidate in photo.candidates if candidate.kind not in kinds]
     with mock.patch.multiple(linecad.ties.weights, **table):
-        ties = weigh_candidates(candidates, setting.bodies.size)
+        placement, reference, log_depth = place_bodies(photo, candidates)
     body = setting.bodies.body
-    reference = int(setting.bodies.size.argmax()) if setting.bodies.count else 0
-    placement = place(ties, setting.bodies.count + 1, reference, SolveOptions())
-    log_depth = setting.log_depth + np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
     known = features(setting, placement, reference, log_depth)
     seen = photo.seen
     line = photo.on[seen]

@@ -13,18 +13,14 @@ from pathlib import Path
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from ties import at_true_scales
+from ties import RIGHT_DEPTH, at_true_scales, place_bodies
 from ties_truth import Judged, densest, judge
 
 from linecad.arrays import Float
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.references import open_case
-from linecad.ties.weights import weigh_candidates
-from solver.bodies.search import place
-from solver.options import SolveOptions
 
 WIDTH = 800  # px
-RIGHT = 0.05
 COLOURS = {"right": (64, 140, 13), "wrong": (26, 26, 217), "unknown": (160, 97, 18)}  # BGR
 
 
@@ -43,11 +39,7 @@ def see(folder: Path, case: Case) -> Seen | None:
     photo = judge(folder.name, case)
     if photo is None:
         return None
-    bodies = photo.setting.bodies
-    ties = weigh_candidates(photo.candidates, bodies.size)
-    reference = int(bodies.size.argmax()) if bodies.count else 0
-    scale = place(ties, bodies.count + 1, reference, SolveOptions()).log_scale
-    log_depth = photo.setting.log_depth + np.where(bodies.body >= 0, scale[np.maximum(bodies.body, 0)], 0.0)
+    _, reference, log_depth = place_bodies(photo, photo.candidates)
     true = photo.score(at_true_scales(photo))
     return Seen(case.name, photo.score(log_depth), true, _picture(case, photo, log_depth, reference))
 
@@ -62,7 +54,7 @@ def _picture(case: Case, photo: Judged, log_depth: Float, reference: int) -> NDA
     own = photo.setting.bodies.body[line] == reference
     error = error - densest(error[own]) if own.any() else error
     for number, ends in enumerate(photo.setting.graph.segments.ends):
-        of_line = np.abs(np.expm1(error[line == number])) < RIGHT
+        of_line = np.abs(np.expm1(error[line == number])) < RIGHT_DEPTH
         kind = "unknown" if len(of_line) == 0 else "right" if of_line.mean() > 0.5 else "wrong"
         first, second = np.rint(ends * shrunk).astype(int).tolist()
         cv2.line(picture, first, second, COLOURS[kind], 1, cv2.LINE_AA)
