@@ -69,9 +69,7 @@ def _read_array(stream: IO[bytes], size: int, where: str) -> NDArray[Any]:
     shape, kind, is_fortran = header
     needed = math.prod(shape) * kind.itemsize
     if needed > MOST_BYTES:
-        raise DepthMapError(
-            f"{where} would take {needed / 1e9:.1f} GB, far more than a depth map; save the depth alone"
-        )
+        raise DepthMapError(f"{where} would take over {MOST_BYTES / 1e9:.1f} GB, too much for depth; save that alone")
     if needed > size:
         raise DepthMapError(f"{where} is cut off: {size:,} of {needed:,} bytes are there; copy it again")
     data = stream.read(needed)

@@ -1,6 +1,6 @@
 """Depth in a portable float map: rows of single-precision numbers from the bottom up.
 
-Format: http://paulbourke.net/dataformats/hdr/ ("PFM"). A negative scale stands for little-endian numbers.
+Format: `Pf`, width, height and scale in text, then the numbers; a negative scale says that they are little-endian.
 """
 
 import re

@@ -37,18 +37,18 @@ def map_to_photo(depth: DepthMap, photo: Photo, is_of_undistorted: bool = False)
     else:
         x_taken, y_taken = places_taken(photo.undistortion)
         inside = (x_taken >= -0.5) & (x_taken < photo.width - 0.5) & (y_taken >= -0.5) & (y_taken < photo.height - 0.5)
-        row = _index(y_taken, photo.height, depth.height)
-        column = _index(x_taken, photo.width, depth.width)
-        valid = depth.valid[row, column] & inside
-        values = np.where(valid, depth.values[row, column], np.float32(0))
-        normals = None if depth.normals is None else depth.normals[row, column] * inside[..., None]
+        flat = _index(y_taken, photo.height, depth.height) * depth.width
+        flat += _index(x_taken, photo.width, depth.width)
+        values = depth.values.ravel().take(flat) * inside
+        valid = values > 0
+        normals = None if depth.normals is None else depth.normals.reshape(-1, 3)[flat] * inside[..., None]
     return DepthMap(depth.name, values, valid, depth.kind, _matrix_in_photo(depth, photo), normals)
 
 
 def _index(place: NDArray[Any], length: int, own: int) -> Int:
     """Which of `own` pixels along a side of the map the places along a side of `length` px lie in, the nearest."""
-    index: Int = np.floor((place + 0.5) * (own / length)).astype(np.intp)
-    return np.clip(index, 0, own - 1)
+    scale = own / length
+    return np.clip(place * scale + 0.5 * scale, 0, own - 1).astype(np.int64)
 
 
 def _check_upright(depth: DepthMap, photo: Photo) -> None:

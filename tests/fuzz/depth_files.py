@@ -2,6 +2,7 @@
 
 import io
 import struct
+import tempfile
 import zipfile
 from pathlib import Path
 
@@ -157,3 +158,33 @@ def heic_bytes(photo, depth=None, message=b""):
 
     offset = len(start) + len(meta(0)) + 8
     return start + meta(offset) + box(b"mdat", *(data for _, data in coded))
+
+
+def depth_seeds():
+    """One small map of each kind that is read."""
+    y, x = np.mgrid[:16, :24]
+    depth = (3 + x * 0.1 + y * 0.01).astype(np.float32)
+    points = points_of(depth, 20.0, (11.5, 7.5)).astype(np.float32)
+    matrix = np.array([[20.0, 0, 11.5], [0, 20, 7.5], [0, 0, 1]])
+    normal = np.tile(np.float32([0, 0, -1]), (16, 24, 1))
+    yield npz_bytes(depth=depth)
+    yield npz_bytes(False, depth=depth, points=points, normal=normal, mask=depth > 0, intrinsics=matrix)
+    yield npz_bytes(False, depth=depth[None], conf=depth[None], intrinsics=matrix[None])
+    yield npz_bytes(False, points=points)
+    yield npz_bytes(False, predicted_depth=depth.astype(np.float16), focallength_px=np.array(20.0))
+    yield npy_bytes(depth)
+    yield npy_bytes(points)
+    yield npy_bytes(np.asfortranarray(depth.astype(">f8")))
+    yield pfm_bytes(depth)
+    yield pfm_bytes(depth, 1.0)
+    yield picture_bytes((depth * 256).astype(np.uint16))
+    yield picture_bytes((depth * 30).astype(np.uint8))
+    yield picture_bytes(normal.astype(np.uint8))
+    yield picture_bytes(depth, "TIFF")
+    yield picture_bytes((depth * 256).astype(np.uint16), "TIFF", compression="tiff_lzw")
+    with tempfile.TemporaryDirectory() as name:
+        yield exr_bytes(Path(name), Y=depth)
+        yield exr_bytes(Path(name), R=points[..., 0], G=points[..., 1], B=points[..., 2])
+    photo, steps = np.full((64, 64, 3), 90, np.uint8), np.tile(np.arange(64, dtype=np.uint8), (64, 1))
+    yield heic_bytes(photo, steps, representation(0, z_near=Z_NEAR, z_far=Z_FAR))
+    yield heic_bytes(photo)
