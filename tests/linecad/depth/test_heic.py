@@ -53,3 +53,11 @@ def test_a_photo_without_depth_says_what_to_do(refuse):
 def test_cut_off_files(refuse, share):
     data = heic_bytes(PHOTO, np.random.default_rng(0).integers(0, 255, (64, 64)).astype(np.uint8))
     assert refuse(data[: int(share * len(data))])
+
+
+def test_a_depth_image_that_claims_100_gigabytes(refuse):
+    size = (64).to_bytes(4, "big") * 2
+    data = heic_bytes(PHOTO, STEPS)
+    assert data.count(size) == 1
+    claimed = (200_000).to_bytes(4, "big") + (125_000).to_bytes(4, "big")
+    assert refuse(data.replace(size, claimed))
