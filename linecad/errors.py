@@ -5,6 +5,7 @@ LinecadError
 │   ├── PhotoError     not an image, truncated, too large, too small
 │   ├── CameraError    a calibration that is malformed or of another size
 │   ├── SceneFileError a scene file that does not say what its format promises
+│   ├── DepthMapError  not a depth map, damaged, too coarse or too large
 │   ├── DatasetError   a made dataset that is damaged or was begun with other options
 │   └── CorrectionsFileError a corrections file that is malformed or belongs to another photo
 ├── OptionError        an option that does not exist, or a value that it does not take
@@ -39,6 +40,10 @@ class CameraError(InputError):
 
 class SceneFileError(InputError):
     """The scene file breaks the promises of docs/reference/scene-file.md."""
+
+
+class DepthMapError(InputError):
+    """The file holds no depth that linecad can measure in, or does not belong to the photo."""
 
 
 class DatasetError(InputError):

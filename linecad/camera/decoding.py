@@ -51,7 +51,7 @@ def decode_image(path: Path) -> Decoded:
             raise PhotoError(f"{path} does not exist; check the name of the photo")
         if not path.is_file():
             raise PhotoError(f"{path} is {'a folder' if path.is_dir() else 'not a file'}; give one photo")
-        with path.open("rb") as file, _quiet_pillow():
+        with path.open("rb") as file, quiet_pillow():
             return _decode(file, path)
     except MemoryError as error:
         raise PhotoError(f"{path} does not fit into memory; scale it down first") from error
@@ -112,7 +112,7 @@ def _decode(file: BinaryIO, path: Path) -> Decoded:
 
 
 @contextmanager
-def _quiet_pillow() -> Iterator[None]:
+def quiet_pillow() -> Iterator[None]:
     """Pillow with our limit on pixels instead of its own, and without warnings about odd metadata."""
     before = Image.MAX_IMAGE_PIXELS
     Image.MAX_IMAGE_PIXELS = PIXEL_LIMIT // 2  # Pillow warns above its limit and raises above twice as many

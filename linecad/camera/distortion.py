@@ -65,7 +65,8 @@ def straighten(photo: Photo) -> Photo:
         matrix = camera.matrix.copy()
         matrix[:2, 2] = bend.center
         camera = replace(camera, matrix=matrix)
-    return replace(photo, pixels=pixels, camera=camera, notes=(*photo.notes, note), bend=bend)
+    notes = (*photo.notes, note)
+    return replace(photo, pixels=pixels, camera=camera, notes=notes, bend=bend, undistortion=calibration)
 
 
 def find_bend(photo: Photo) -> Bend | None:

@@ -116,12 +116,19 @@ def undistort_photo(pixels: NDArray[np.uint8], calibration: Calibration) -> tupl
         )
         place = np.asarray(column[:, 0], np.float64)
         return resample_rows(pixels, place), float(((place < -0.5) | (place > height - 0.5)).mean())
-    map_x, map_y = cv2.initUndistortRectifyMap(
-        calibration.matrix, coefficients, None, calibration.square_matrix, (width, height), cv2.CV_32FC1
-    )
+    map_x, map_y = places_taken(calibration)
     straight = cv2.remap(pixels, map_x, map_y, cv2.INTER_LANCZOS4, borderMode=cv2.BORDER_REPLICATE)
     outside = (map_x < -0.5) | (map_x > width - 0.5) | (map_y < -0.5) | (map_y > height - 0.5)
     return np.asarray(straight, np.uint8), float(outside.mean())
+
+
+def places_taken(calibration: Calibration) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Where every pixel of the undistorted photo lay in the photo as taken: x and y (H, W), px."""
+    size = (calibration.width, calibration.height)
+    x, y = cv2.initUndistortRectifyMap(
+        calibration.matrix, np.array(calibration.distortion), None, calibration.square_matrix, size, cv2.CV_32FC1
+    )
+    return np.asarray(x, np.float32), np.asarray(y, np.float32)
 
 
 def distort_points(points: Float, matrix: Float, distortion: tuple[float, ...], new_matrix: Float) -> Float:

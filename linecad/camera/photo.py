@@ -45,6 +45,7 @@ class Photo:
     crop: Crop = "unknown"  # whether parts were cut off since the photo was taken, so that its middle moved
     bend: Bend | None = None  # the distortion that was taken out because the photo's own lines showed it
     is_fisheye: bool = False  # its own lines showed more distortion than one coefficient can take out
+    undistortion: Calibration | None = None  # by which its pixels were moved (`places_taken`); None: they were not
 
     def __post_init__(self) -> None:
         if self.pixels.dtype != np.uint8 or self.pixels.ndim != 3 or self.pixels.shape[2] != 3:
@@ -178,4 +179,5 @@ def _calibrated(name: str, decoded: Decoded, calibration: Calibration, camera_na
         calibration.distortion,
         not calibration.has_square_pixels,
     )
-    return Photo(name, pixels, camera, tuple(notes))
+    undistortion = None if calibration.is_pinhole else calibration
+    return Photo(name, pixels, camera, tuple(notes), undistortion=undistortion)

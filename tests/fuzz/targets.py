@@ -13,13 +13,16 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from depth_files import depth_seeds
 from PIL import Image
 
 from linecad.batch.job import Figures, Outcome
 from linecad.batch.record import Row, parse_row, row_line
 from linecad.camera.intrinsics import read_calibration
-from linecad.camera.photo import read_photo
+from linecad.camera.photo import Photo, read_photo
 from linecad.corrections.file import corrections_from_json, corrections_to_json
+from linecad.depth.read import read_depth_map
+from linecad.depth.to_photo import map_to_photo
 from linecad.errors import InputError
 from linecad.io.scene_file import scene_from_json, scene_to_json
 
@@ -94,6 +97,23 @@ def read_corrections_bytes(data: bytes, _folder: Path) -> None:
         return
     text = corrections_to_json(corrections)
     assert corrections_to_json(corrections_from_json(text)) == text
+
+
+def read_depth_bytes(data: bytes, folder: Path) -> None:
+    """A depth map of any kind, laid onto a photo of another size."""
+    path = folder / "map"
+    path.write_bytes(data)
+    refused = ""
+    try:
+        depth = read_depth_map(path)
+        onto = map_to_photo(depth, Photo("photo", np.zeros((48, SIDE, 3), np.uint8), None))
+    except InputError as error:
+        refused = str(error)
+    assert len(refused.splitlines()) <= 1
+    if refused:
+        return
+    assert depth.valid.any()
+    assert (onto.width, onto.height) == (SIDE, 48)
 
 
 def read_fspy_bytes(data: bytes, folder: Path) -> None:
@@ -282,6 +302,7 @@ TARGETS = {
     "fspy": Target(read_fspy_bytes, False, fspy_seeds, 2048),
     "fspystate": Target(read_fspy_state, True, fspy_states, 2048),
     "record": Target(read_record_bytes, True, record_seeds, 4096),
+    "depth": Target(read_depth_bytes, False, depth_seeds, 32768),
     "image": Target(read_image_bytes, False, image_seeds, 32768),
 }
 

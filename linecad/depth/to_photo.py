@@ -1,0 +1,73 @@
+"""A depth map laid onto the pixels of a photo, whatever its own size and shape.
+
+A map shows the whole photo: each of its sides counts from 0 to 1 along the photo's, x and y apart, as the networks
+that work in squares have it. Every pixel of the photo takes its numbers from the one of the map that it lies in: a
+mean across a jump of depth would stand where nothing is.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from linecad.arrays import Float, Int
+from linecad.camera.intrinsics import places_taken
+from linecad.camera.photo import Photo
+from linecad.depth.depth_map import DepthMap
+from linecad.errors import DepthMapError
+
+SAME_SHAPE = 0.02  # share by which the ratios of two sides may differ through rounding and multiples of 14 px
+OTHER_SHAPE = 0.1  # from which share on they do not
+
+
+def map_to_photo(depth: DepthMap, photo: Photo, is_of_undistorted: bool = False) -> DepthMap:
+    """The depth of each pixel of the photo, as it was straightened; no depth where that shows nothing of the map.
+
+    The map is of the photo as taken, upright, unless `is_of_undistorted`: then it is of the photo as linecad
+    straightened it. Depths themselves stay: they do not hang on where in the photo a point is seen. `intrinsics`
+    become those of the photo's size. Raises DepthMapError where the map lies on its side.
+    """
+    _check_upright(depth, photo)
+    if photo.undistortion is None or is_of_undistorted:
+        y = np.arange(photo.height)
+        x = np.arange(photo.width)
+        chosen = np.ix_(_index(y, photo.height, depth.height), _index(x, photo.width, depth.width))
+        values, valid = depth.values[chosen], depth.valid[chosen]
+        normals = None if depth.normals is None else depth.normals[chosen]
+    else:
+        x_taken, y_taken = places_taken(photo.undistortion)
+        inside = (x_taken >= -0.5) & (x_taken < photo.width - 0.5) & (y_taken >= -0.5) & (y_taken < photo.height - 0.5)
+        flat = _index(y_taken, photo.height, depth.height) * depth.width
+        flat += _index(x_taken, photo.width, depth.width)
+        values = depth.values.ravel().take(flat) * inside
+        valid = values > 0
+        normals = None if depth.normals is None else depth.normals.reshape(-1, 3)[flat] * inside[..., None]
+    return DepthMap(depth.name, values, valid, depth.kind, _matrix_in_photo(depth, photo), normals)
+
+
+def _index(place: NDArray[Any], length: int, own: int) -> Int:
+    """Which of `own` pixels along a side of the map the places along a side of `length` px lie in, the nearest."""
+    scale = own / length
+    return np.clip(place * scale + 0.5 * scale, 0, own - 1).astype(np.int64)
+
+
+def _check_upright(depth: DepthMap, photo: Photo) -> None:
+    """Raise DepthMapError where a map has the shape of the photo on its side."""
+    own, photos = depth.width / depth.height, photo.width / photo.height
+    is_turned = abs(own * photos - 1) < SAME_SHAPE
+    if is_turned and abs(own / photos - 1) > OTHER_SHAPE:
+        raise DepthMapError(
+            f"{depth.name} has {depth.width} x {depth.height} px, {photo.name} {photo.width} x {photo.height}: one of "
+            "them lies on its side; turn the photo upright for the network"
+        )
+
+
+def _matrix_in_photo(depth: DepthMap, photo: Photo) -> Float | None:
+    """The map's K in px of a photo."""
+    if depth.intrinsics is None:
+        return None
+    scale = np.array([photo.width / depth.width, photo.height / depth.height])
+    matrix = depth.intrinsics.copy()
+    matrix[:2] *= scale[:, None]
+    matrix[:2, 2] += (scale - 1) / 2  # pixels are counted by their middles
+    return matrix
