@@ -8,6 +8,7 @@ from linecad.corrections.edits import Corrections
 from linecad.corrections.lengths import measured
 from linecad.decide.annotations import annotate, solve_annotated, told_in_the_photo, with_annotations
 from linecad.decide.decision import Decision, decide
+from linecad.depth.depth_map import DepthMap
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Solution
 from linecad.model.build import View, build_scene, find_components
@@ -38,18 +39,22 @@ def reconstruct(
     on_progress: OnProgress = None,
     on_stage: StageReport = silent,
     corrections: Corrections | None = None,
+    depth: DepthMap | None = None,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene. Raises ReconstructionError when it shows too little.
 
     With `corrections`, lines and crossings are as a person annotated them; a ContradictionError where that cannot all
-    be true, a note where it names what is not there.
+    be true, a note where it names what is not there. With `depth`, a map on the photo's pixels
+    (`linecad.depth.to_photo`), bodies that crossings leave free stand where the map has them; a DepthMapError where
+    its kind cannot be told.
     """
     found = find_lines(photo, on_stage, options.faint, None if corrections is None else corrections.frame)
     if corrections is None:
-        return reconstruct_lines(photo.name, found, options, on_progress, on_stage).scene
+        return reconstruct_lines(photo.name, found, options, on_progress, on_stage, depth=depth).scene
     found = found.grouped(options)
     corrected = correct(found.segments, found.camera, found.frame, corrections)
-    return measured(reconstruct_lines(photo.name, found, options, on_progress, on_stage, corrected).scene, corrected)
+    made = reconstruct_lines(photo.name, found, options, on_progress, on_stage, corrected, depth)
+    return measured(made.scene, corrected)
 
 
 def reconstruct_lines(
@@ -59,6 +64,7 @@ def reconstruct_lines(
     on_progress: OnProgress = None,
     on_stage: StageReport = silent,
     corrected: CorrectedLines | None = None,
+    depth: DepthMap | None = None,
 ) -> Reconstruction:
     """The scene of the lines that were found in a photo of that name, or of the same after all edits (`corrected`).
 
@@ -73,7 +79,7 @@ def reconstruct_lines(
     if options.uses_bodies:
         limits = with_annotations(options.solve, annotations)
         with told_in_the_photo(graph, corrected):
-            sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels)
+            sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels, depth)
             placed = place_lines(graph, sight, limits, on_progress, on_stage)
         solution, probability = placed.solution, placed.probability
     else:

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 
 from linecad.arrays import Bool, Float, Int
 from linecad.decide.stability import SAME_DEPTH, Fits
+from linecad.depth.depth_map import DepthMap
 from linecad.geometry import REFERENCE_WIDTH
 from linecad.line_graph import LineGraph
 from linecad.ties.bodies import RigidBodies
@@ -25,6 +26,7 @@ class Sight:
     rotation: Float  # (3, 3) camera from world
     width: int  # px
     pixels: NDArray[np.uint8] | None  # (H, W, 3) RGB, as straight as the lines; None where there is none to look at
+    depth: DepthMap | None = None  # of the photo, on the same pixels
 
 
 @dataclass(frozen=True, eq=False)
