@@ -1,13 +1,15 @@
 """What all tests share: the photographs for measuring, permissions that bind root too, and no skips in CI."""
 
 import ctypes
+import importlib
 import os
 import signal
 import sys
-from collections.abc import Generator, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
 import pytest
 from hypothesis import HealthCheck, settings
 
@@ -63,6 +65,34 @@ def photographs() -> Path:
     if not folder.is_dir():
         pytest.fail(f"{DATA} is {name}, which is not a folder")
     return folder
+
+
+@pytest.fixture(scope="session")
+def sample_depth_map(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """A function that simulates a depth map of a sample photo, `street` by the name, in a second: its file."""
+    from linecad.dataset.depth_maps import MapKind, corrupted_depth, map_arrays, map_pixels
+    from linecad.dataset.store import write_depth_map
+    from linecad.dataset.truth import NOTHING
+    from linecad.dataset.walls import walls_of_quads
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(Path(__file__).resolve().parents[1] / "samples")
+        make_samples, raycaster = (importlib.import_module(name) for name in ("make_samples", "raycaster"))
+
+    def simulate(name: str, width: float = 0.012, seed: int = 1, kind: MapKind = "z") -> Path:
+        sample = make_samples.SAMPLES[name]
+        view, faces = make_samples.view_of(sample, make_samples.WIDTH), sample.build().faces
+        rows, columns = map_pixels(view.height, view.width)
+        pixels = np.stack(np.meshgrid(columns, rows), axis=-1).astype(float)
+        _, depth, index = raycaster.see(faces, view, pixels)
+        corners = np.array([face.corners() for face in faces])
+        walls = np.append(walls_of_quads(corners, np.zeros(len(faces), int)), NOTHING)[index]
+        found = corrupted_depth(depth, walls, width, np.random.default_rng(seed), kind)
+        path = tmp_path_factory.mktemp("depth") / f"{name}.depth.npz"
+        write_depth_map(map_arrays(found, kind, view.matrix, view.width, view.height), path)
+        return path
+
+    return simulate
 
 
 class CapabilityHeader(ctypes.Structure):

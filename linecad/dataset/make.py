@@ -12,11 +12,23 @@ import numpy as np
 from numpy.random import Generator
 
 from linecad.dataset.choice import MOST_TRIES, judge
+from linecad.dataset.depth_maps import NARROWEST, WIDEST, MapKind, draw_depth_map
 from linecad.dataset.light import Light, draw_light
 from linecad.dataset.modelling import Model
 from linecad.dataset.rasteriser import rasterise, visible_pieces
 from linecad.dataset.scenes import draw_scene, scene_kind
-from linecad.dataset.store import LARGEST_SEED, LIST, TRUTH, DatasetList, read_list, write_list, write_scene_folder
+from linecad.dataset.store import (
+    DEPTH_MAP,
+    LARGEST_SEED,
+    LIST,
+    TRUTH,
+    DatasetList,
+    read_list,
+    read_truth,
+    write_depth_map,
+    write_list,
+    write_scene_folder,
+)
 from linecad.dataset.textures import Image
 from linecad.dataset.truth import Truth
 from linecad.dataset.view import View
@@ -42,6 +54,8 @@ class DatasetOptions:
     width: int = 3840  # px
     height: int = 2160  # px
     samples: int = DEFAULT_SAMPLES  # a pixel
+    depth_maps: float | None = None  # width of the errors of simulated depth maps, in log depth; None: no maps
+    depth_kind: MapKind = "z"  # of these maps
 
     def __post_init__(self) -> None:
         for value, low, high, what in (
@@ -53,6 +67,9 @@ class DatasetOptions:
         ):
             if not low <= value <= high:
                 raise LinecadError(f"{what}: {value} was asked for, {low} to {high} are possible")
+        if self.depth_maps is not None and not NARROWEST <= self.depth_maps <= WIDEST:
+            asked, least, most = (f"{100 * width:.4g}" for width in (self.depth_maps, NARROWEST, WIDEST))
+            raise LinecadError(f"the errors of depth maps: {asked} % was asked for, {least} to {most} % are possible")
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +140,10 @@ def _make_missing(folder: Path, options: DatasetOptions, render: ModuleType, on_
     names = [scene_name(index) for index in range(options.scenes)]
     missing = [index for index, name in enumerate(names) if name not in made]
     on_stage(f"{len(missing)} of {options.scenes} scenes to make; Mitsuba computes with {render.choose_variant()}")
+    for index, name in enumerate(names):
+        if name in made and options.depth_maps is not None:
+            on_stage(f"{name}: depth map")
+            _write_depth_map(folder, index, read_truth(folder / name), options)
     for index in missing:
         begun = f"{names[index]}, {index + 1} of {options.scenes}"
         on_stage(f"{begun}: drawing and measuring")
@@ -137,9 +158,18 @@ def _make_missing(folder: Path, options: DatasetOptions, render: ModuleType, on_
             lambda done, begun=begun: on_stage(f"{begun}: rendered {done} of {options.samples} samples a pixel"),
         )
         write_scene_folder(folder, truth, _photo_writer(radiance, options.samples, np.random.default_rng(seed)))
+        _write_depth_map(folder, index, truth, options)
         made = made | {names[index]}
         _write_list(folder, options, made)
     return Made(len(missing), options.scenes - len(missing))
+
+
+def _write_depth_map(folder: Path, index: int, truth: Truth, options: DatasetOptions) -> None:
+    """Write the depth map of scene `index`, which is there, where maps are asked for. Raises OutputError."""
+    if options.depth_maps is not None:
+        rng = np.random.default_rng([options.seed, index, 0, 3])  # no other seed of a scene ends in 3
+        arrays = draw_depth_map(truth, options.depth_maps, options.depth_kind, rng)
+        write_depth_map(arrays, folder / truth.name / DEPTH_MAP)
 
 
 def _renderer() -> ModuleType:

@@ -8,7 +8,7 @@ a point of it shows a quad in whose plane the point lies.
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.dataset.truth import NOTHING
+from linecad.dataset.truth import NOTHING, planes_of
 
 NEAR = 0.05  # m, camera depth of the near plane
 SAMPLE = 1.0  # px between the points of an edge that are tested
@@ -153,9 +153,7 @@ def _projected(camera: Float, matrix: Float, width: int, height: int) -> tuple[F
 
 def _plane_table(quads: Float) -> Float:
     """Normals and offsets (Q + 1, 4) of the quads; the last row, for the sky, is no plane."""
-    normal = np.cross(quads[:, 1] - quads[:, 0], quads[:, 3] - quads[:, 0])
-    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-    offset = (normal * quads[:, 0]).sum(axis=1)
+    normal, offset = planes_of(quads)
     return np.vstack([np.column_stack([normal, offset]), [np.nan] * 4])
 
 

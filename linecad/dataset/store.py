@@ -26,6 +26,7 @@ LIST = "dataset.json"
 PHOTO = "photo.jpg"
 CAMERA = "camera.json"
 TRUTH = "truth.npz"
+DEPTH_MAP = "photo.depth.npz"  # by the photo's name, as `linecad batch` looks for it
 FORMAT = "linecad-dataset"
 VERSION = 1
 LARGEST_SIDE = 16384  # px
@@ -140,7 +141,13 @@ def write_truth(truth: Truth, folder: Path) -> None:
         "piece_edge": truth.piece_edge,
         "ids": truth.ids,
     }
-    write_atomically(folder / TRUTH, lambda path: _write_arrays(path, real, whole))
+    arrays = real | {name: numbers.astype(np.int32) for name, numbers in whole.items()}
+    write_atomically(folder / TRUTH, lambda path: _write_arrays(path, arrays))
+
+
+def write_depth_map(arrays: dict[str, NDArray[Any]], path: Path) -> None:
+    """Write an .npz in the place of what was there; the same arrays give the same bytes. Raises OutputError."""
+    write_atomically(path, lambda unfinished: _write_arrays(unfinished, arrays))
 
 
 def read_truth(folder: Path) -> Truth:
@@ -222,8 +229,7 @@ def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
             raise ValueError(f"{name} cannot be inverted")
 
 
-def _write_arrays(path: Path, real: dict[str, Float], whole: dict[str, Int]) -> None:
-    arrays: dict[str, Any] = {**real, **{name: numbers.astype(np.int32) for name, numbers in whole.items()}}
+def _write_arrays(path: Path, arrays: dict[str, Any]) -> None:
     with path.open("wb") as stream:
         np.savez_compressed(stream, **arrays)
 

@@ -32,9 +32,7 @@ class Truth:
 
     def planes(self) -> tuple[Float, Float]:
         """Unit normals (Q, 3) and offsets (Q,), m, of the quads: normal . P = offset."""
-        normal = np.cross(self.quads[:, 1] - self.quads[:, 0], self.quads[:, 3] - self.quads[:, 0])
-        normal /= np.linalg.norm(normal, axis=1, keepdims=True)
-        return normal, (normal * self.quads[:, 0]).sum(axis=1)
+        return planes_of(self.quads)
 
     def rays(self, pixels: Float) -> Float:
         """World rays (N, 3) of camera depth 1 through pixels (N, 2)."""
@@ -62,3 +60,10 @@ class Truth:
         row, column = np.mgrid[: self.height, : self.width]
         pixels = np.column_stack([column.ravel(), row.ravel()]).astype(np.float64)
         return self.quad_depth(pixels, self.ids.ravel()).reshape(self.height, self.width)
+
+
+def planes_of(quads: Float) -> tuple[Float, Float]:
+    """Unit normals (Q, 3) and offsets (Q,), m, of quads (Q, 4, 3): normal . P = offset."""
+    normal = np.cross(quads[:, 1] - quads[:, 0], quads[:, 3] - quads[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    return normal, (normal * quads[:, 0]).sum(axis=1)

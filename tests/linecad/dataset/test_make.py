@@ -2,7 +2,9 @@
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,12 +13,14 @@ from linecad.camera.photo import read_photo
 from linecad.cli.main import main
 from linecad.dataset.choice import judge
 from linecad.dataset.make import LOCK, DatasetOptions, draw_draft, make_dataset, measure, scene_name
-from linecad.dataset.store import LIST, PHOTO, read_list, read_truth
+from linecad.dataset.store import DEPTH_MAP, LIST, PHOTO, TRUTH, read_list, read_truth
 from linecad.dataset.truth import NOTHING
+from linecad.depth.read import read_depth_map
 from linecad.errors import DatasetError, LinecadError, OutputError
 from linecad.io.locks import alone
 
 OPTIONS = DatasetOptions(scenes=2, seed=3, width=320, height=180, samples=2)
+WITH_MAPS = replace(OPTIONS, depth_maps=0.012)
 
 
 def silent(_text: str) -> None:
@@ -27,6 +31,20 @@ def silent(_text: str) -> None:
 def dataset(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("made") / "set"
     assert make_dataset(folder, OPTIONS, silent).new == 2
+    return folder
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    """The files of a dataset by their places in it."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.fixture(scope="module")
+def with_maps(dataset: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The dataset, to which a second run added depth maps."""
+    folder = tmp_path_factory.mktemp("maps") / "set"
+    shutil.copytree(dataset, folder)
+    assert make_dataset(folder, WITH_MAPS, silent).kept == 2
     return folder
 
 
@@ -57,17 +75,38 @@ def test_another_seed_gives_another_scene() -> None:
     assert draw_draft(3, 9).model.quads(np.zeros(3)).shape != draw_draft(4, 9).model.quads(np.zeros(3)).shape
 
 
-def test_a_run_goes_on_where_another_one_was_killed(dataset: Path, tmp_path: Path) -> None:
+def test_a_run_goes_on_where_another_one_was_killed(with_maps: Path, tmp_path: Path) -> None:
     folder = tmp_path / "set"
-    shutil.copytree(dataset, folder)
+    shutil.copytree(with_maps, folder)
     shutil.rmtree(folder / "street-0001")
     (folder / ".linecad-street-0001").mkdir()  # what was begun
     before = (folder / "street-0000" / PHOTO).stat().st_mtime_ns
-    made = make_dataset(folder, OPTIONS, silent)
+    made = make_dataset(folder, WITH_MAPS, silent)
     assert (made.new, made.kept) == (1, 1)
     assert (folder / "street-0000" / PHOTO).stat().st_mtime_ns == before
     assert sorted(path.name for path in folder.iterdir()) == [LIST, "street-0000", "street-0001"]
-    np.testing.assert_array_equal(read_truth(folder / "street-0001").ids, read_truth(dataset / "street-0001").ids)
+    # A scene that is made gets the map that it would get if it were there.
+    for name in (TRUTH, DEPTH_MAP):
+        assert (folder / "street-0001" / name).read_bytes() == (with_maps / "street-0001" / name).read_bytes()
+
+
+def test_depth_maps_come_beside_photos_and_change_nothing_else(dataset: Path, with_maps: Path) -> None:
+    found = contents(with_maps)
+    maps = [found.pop(f"{name}/{DEPTH_MAP}") for name in ("street-0000", "street-0001")]
+    assert found == contents(dataset)
+    assert maps[0] != maps[1]
+    assert read_depth_map(with_maps / "street-0000" / DEPTH_MAP).values.shape == (180, 320)
+
+
+@pytest.mark.parametrize("other", [{"depth_maps": 0.035}, {"depth_kind": "affine-inverse"}])
+def test_maps_of_another_width_or_kind_take_the_place_of_those_before(
+    with_maps: Path, tmp_path: Path, other: dict[str, Any]
+) -> None:
+    folder = tmp_path / "set"
+    shutil.copytree(with_maps, folder)
+    make_dataset(folder, replace(WITH_MAPS, **other), silent)
+    for name in ("street-0000", "street-0001"):
+        assert (folder / name / DEPTH_MAP).read_bytes() != (with_maps / name / DEPTH_MAP).read_bytes()
 
 
 def test_a_second_run_in_the_folder_is_refused(dataset: Path) -> None:
