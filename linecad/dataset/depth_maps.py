@@ -1,7 +1,7 @@
 """Simulated depth maps: true depth with the errors of a network that saw one photo.
 
 Errors are one Cauchy draw per wall in log depth, a smooth warp, edges that bleed, a sky at one far value, a wrong scale
-and, in maps of disparity, a shift. Networks differ from truth by Cauchy widths of 1 % (rooms) to 3.5 % (streets).
+and, in maps of disparity, a shift. The best networks have Cauchy widths of 1 % (rooms) to 3.5 % (streets).
 """
 
 from typing import Any, Literal
@@ -128,5 +128,4 @@ def _bled(inverse: Float, walls: Int, is_known: Bool, ramp: float) -> Float:
     is_one = cv2.dilate(labels, window) == cv2.erode(labels, window)
     # Cut off by the border of the map or by what is not known, a window has its middle elsewhere: planes would bend.
     is_cut = cv2.erode(known, window, borderType=cv2.BORDER_CONSTANT, borderValue=0.0) == 0
-    keep = is_one & (is_cut | (walls == NOTHING))
-    return np.where(is_known, np.where(keep, inverse, mean), np.nan)
+    return np.where(is_known, np.where(is_one & is_cut, inverse, mean), np.nan)

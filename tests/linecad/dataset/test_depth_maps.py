@@ -7,6 +7,7 @@ from linecad.arrays import Float, Int
 from linecad.dataset.depth_maps import (
     LARGEST_SCALE,
     LONGEST_SIDE,
+    SKY,
     MapKind,
     corrupted_depth,
     draw_depth_map,
@@ -23,6 +24,7 @@ from linecad.depth.read import read_depth_map
 
 TILE = 24  # px; far wider than edges bleed
 REACH = 10  # px, the widest ramp
+KINDS_OF_MAPS: tuple[MapKind, MapKind] = ("z", "affine-inverse")
 
 
 def quilt(count: int) -> tuple[Float, Int]:
@@ -92,6 +94,16 @@ def test_the_scale_is_off_by_up_to_two() -> None:
     assert 1.7 < max(scales) < LARGEST_SCALE * 1.1
 
 
+def test_the_sky_is_one_value_beyond_the_walls() -> None:
+    depth, walls = street()
+    z, disparity = (corrupted_depth(depth, walls, 0.01, np.random.default_rng(8), kind) for kind in KINDS_OF_MAPS)
+    far_from_walls = np.s_[: 40 - REACH]
+    assert np.unique(z[far_from_walls]).tolist() == [z.max()]
+    assert z.max() == pytest.approx(SKY * z[40 + REACH :].max(), rel=0.02)
+    assert not disparity[far_from_walls].any()
+    assert (disparity[walls != NOTHING] > 0).all()
+
+
 def test_edges_are_ramps_of_three_to_ten_pixels() -> None:
     depth, walls = street(sky=0)
     widths = []
@@ -148,9 +160,9 @@ def test_disparity_is_inverse_depth_with_a_shift_either_way() -> None:
     middle = np.s_[TILE // 2 :: TILE, TILE // 2 :: TILE]
     shares = []
     for seed in range(30):
-        found, same = (
+        same, found = (
             corrupted_depth(depth, walls, 0.01, np.random.default_rng(seed), kind).astype(float)
-            for kind in ("affine-inverse", "z")
+            for kind in KINDS_OF_MAPS
         )
         assert (found > 0).all()
         # The map of z with the same errors tells what the inverse is before the shift.
