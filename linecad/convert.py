@@ -12,6 +12,8 @@ from linecad.camera.intrinsics import read_calibration
 from linecad.camera.photo import Photo
 from linecad.confidence import keep_probable
 from linecad.corrections.file import check_belongs, read_corrections
+from linecad.depth.for_photo import check_depth_options, open_depth_map
+from linecad.depth.read import check_depth_file
 from linecad.model.scale import Known, set_scale
 from linecad.options import Options
 from linecad.outputs import write_outputs
@@ -31,9 +33,18 @@ class Conversion:
     values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as linecad.outputs reads them
     corrections: Path | None = None  # a person's, of this one photo
     confidence: float | None = None  # 0 to 1; lines whose depth is right with a smaller probability are left out
+    depth: Path | None = None  # a depth map of this one photo
 
-    def checked(self) -> Self:
-        """This conversion, once its files are known to be readable. Raises CameraError or CorrectionsFileError."""
+    def checked(self, maps_come: bool = False) -> Self:
+        """This conversion, once its files are known to be readable and its options to go together.
+
+        `maps_come` says that photos get depth maps of their own, each in place of `depth`. Raises CameraError,
+        CorrectionsFileError, DepthMapError where the first bytes of the map tell that it is none, or OptionError where
+        what is said of a map has no use.
+        """
+        check_depth_options(self.options, maps_come or self.depth is not None)
+        if self.depth is not None:
+            check_depth_file(self.depth)
         if self.camera is not None:
             read_calibration(self.camera)
         if self.corrections is not None:
@@ -47,14 +58,19 @@ class Conversion:
     def reconstruct(self, photo: Photo, on_progress: OnProgress = None, on_stage: StageReport = silent) -> Scene:
         """The scene of the photo.
 
-        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, ScaleError for
-        a length that the scene does not hold, or ConfidenceError where no line is as sure as was asked for.
+        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, DepthMapError
+        for a depth map that cannot be used, ScaleError for a length that the scene does not hold, or ConfidenceError
+        where no line is as sure as was asked for.
         """
         corrections = None
         if self.corrections is not None:
             corrections = read_corrections(self.corrections)
             check_belongs(corrections, str(self.corrections), photo.width, photo.height)
-        scene = linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections)
+        depth = None
+        if self.depth is not None:
+            on_stage("reading the depth map")
+            depth = open_depth_map(self.depth, photo, self.options)
+        scene = linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections, depth)
         if self.known is not None:
             scene = set_scale(scene, self.known)  # first, because the known line itself may be left out
         return scene if self.confidence is None else keep_probable(scene, self.confidence)
@@ -76,18 +92,21 @@ def reconstruct(
     focal: float | None = None,
     options: Options = Options(),
     corrections: Path | str | None = None,
+    depth: Path | str | None = None,
 ) -> Scene:
     """The lines, planes and boundaries of a photo's scene.
 
     The camera comes from the calibration in the file `camera`, else from `focal` (px), else from EXIF and the photo's
-    vanishing points; `corrections` is a file that `linecad edit` wrote. Raises PhotoError, CameraError or
-    CorrectionsFileError for a file that cannot be used, ReconstructionError where the photo shows too little, and
-    SolverError: all of them a LinecadError, in one line.
+    vanishing points; `corrections` is a file that `linecad edit` wrote, `depth` a depth map of the photo, as
+    networks and phones write them. Raises PhotoError, CameraError, CorrectionsFileError or DepthMapError for a file
+    that cannot be used, OptionError for options that do not go together, ReconstructionError where the photo shows too
+    little, and SolverError: all of them a LinecadError, in one line.
     """
     conversion = Conversion(
         None if camera is None else Path(camera),
         focal,
         options,
         corrections=None if corrections is None else Path(corrections),
+        depth=None if depth is None else Path(depth),
     ).checked()
     return conversion.reconstruct(conversion.read(Path(photo)))

@@ -6,7 +6,7 @@ table SWITCHES lists them, `linecad options` prints it.
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, Literal, get_args
 
 from linecad.errors import OptionError
@@ -21,12 +21,18 @@ from solver.options import (
 
 Weights = Literal["odds", "junctions", "ones"]
 Joins = Literal["stable", "biconnected", "all"]
+# What a depth map measures: along the optical axis, along the ray of its pixel, 1 / z but for its scale, or but for
+# scale and shift.
+DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]
 WEIGHTS: tuple[Weights, ...] = get_args(Weights)
 JOINS: tuple[Joins, ...] = get_args(Joins)
+DEPTH_KINDS: tuple[DepthKind, ...] = get_args(DepthKind)
 PROGRAMS: tuple[Program, ...] = get_args(Program)
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing
 LARGEST_EXTENSION = 500.0  # px at 3840 px width; the number of crossings grows with its square
+LARGEST_VIEW = 999_999
+SMALLEST_FACTOR = 1e-12  # units a step
 LONGEST_VALUE = 40  # characters of a value that a message repeats
 
 
@@ -64,6 +70,12 @@ class Options:
     # Place rigid bodies as wholes; None: unless something is asked for that only programs over crossings know.
     over_bodies: bool | None = None
     faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
+    # How a depth map that is given with the photo is read (linecad.depth); they mean nothing without one.
+    depth_kind: DepthKind | None = None  # None: as the file tells, else the one that makes walls flat
+    depth_array: str | None = None  # which array of an .npz; None: found by its name
+    depth_view: int | None = None  # which photo, from 0, where a file holds the depth of several; None: it holds one
+    depth_factor: float | None = None  # of 16-bit pictures, units a step; None: 1/256
+    depth_undistorted: bool = False  # the map is of the photo as linecad straightened it, not of the file
     solve: SolveOptions = field(default_factory=SolveOptions)
 
     @property
@@ -85,6 +97,12 @@ class Options:
             real=(), fake=(),
         )  # fmt: skip
         return chosen == _USUAL and (self.joins, self.weights, self.reach, self.collinear) == (None,) * 4
+
+    @property
+    def depth_keys(self) -> tuple[str, ...]:
+        """The options about a depth map that were chosen, by key."""
+        own = (each for each in fields(self) if each.name.startswith("depth_"))
+        return tuple(each.name.replace("_", "-") for each in own if getattr(self, each.name) != each.default)
 
     @property
     def program(self) -> Program:
@@ -176,6 +194,12 @@ def _whole(most: int, least: int = 0) -> Callable[[str], int]:
     return read
 
 
+def _name(text: str) -> str:
+    if not text or not text.isprintable():
+        raise ValueError
+    return text
+
+
 def _families(text: str) -> frozenset[str]:
     names = frozenset(name for name in text.lower().split(",") if name)
     if not names <= set(FAMILIES):
@@ -220,6 +244,16 @@ SWITCHES: tuple[Switch, ...] = (
     Switch("faint", "off", "on or off", "look a second time, for segments that the grain hides: more depths, and more "
            "wrong ones", _switched),
     Switch("largest-component", "off", "on or off", "only the largest connected group of lines", _switched),
+    Switch("depth-kind", "as the file tells", _listed(DEPTH_KINDS), "what the depth map measures: along the optical "
+           "axis, along the ray of a pixel, 1 / z but for its scale, or but for scale and shift; where the file does "
+           "not tell, the one that makes walls flat", _word(DEPTH_KINDS)),
+    Switch("depth-array", "found by its name", "a name", "which array of an .npz holds the depth", _name),
+    Switch("depth-view", "none", f"a whole number from 0 to {LARGEST_VIEW}",
+           "which photo, where the depth map holds those of several", _whole(LARGEST_VIEW)),
+    Switch("depth-factor", "1/256", f"a number above 0, at most {_ANY:.0f}",
+           "of a depth map in a 16-bit picture, units a step", _number(SMALLEST_FACTOR, _ANY)),
+    Switch("depth-undistorted", "off", "on or off", "the depth map is of the photo as linecad straightened it",
+           _switched),
 )  # fmt: skip
 _BY_KEY = {switch.key: switch for switch in SWITCHES}
 

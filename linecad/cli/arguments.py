@@ -47,6 +47,20 @@ def add_camera(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_depth(parser: argparse.ArgumentParser) -> None:
+    """A depth map of the one photo."""
+    parser.add_argument(
+        "--depth", type=Path, metavar="FILE", help="depth map of the photo, by a network or a phone (.npz, .exr, ...)"
+    )
+
+
+def add_depth_maps(parser: argparse.ArgumentParser) -> None:
+    """Depth maps of many photos."""
+    parser.add_argument(
+        "--depth-maps", action="store_true", help="use depth maps that lie beside the photos (photo.depth.npz, ...)"
+    )
+
+
 def add_reconstruction(parser: argparse.ArgumentParser, options: str) -> None:
     """How a photo is reconstructed; `options` says whose keys --option takes."""
     parser.add_argument(

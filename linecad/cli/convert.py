@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from linecad.cli.arguments import (
     add_camera,
     add_confidence,
+    add_depth,
     add_loudness,
     add_outputs,
     add_reconstruction,
@@ -38,6 +39,7 @@ def add_to(commands: "Commands") -> None:
     command.add_argument(
         "--corrections", type=Path, metavar="FILE", help="annotations of lines and crossings, made with linecad edit"
     )
+    add_depth(command)
     add_scale(command)
     add_confidence(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
@@ -49,11 +51,11 @@ def run(parsed: argparse.Namespace) -> int:
     """Convert one photo."""
     check_some(parsed.output)
     options, values = options_of(parsed, parsed.output)
-    check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections])
+    check_outputs(parsed.output, [parsed.photo, parsed.camera, parsed.corrections, parsed.depth])
     from linecad.convert import Conversion
 
     conversion = Conversion(
-        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence
+        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence, parsed.depth
     ).checked()
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the photo")

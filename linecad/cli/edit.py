@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linecad.cli.arguments import add_camera, add_loudness, add_reconstruction, reconstruction_of
+from linecad.cli.arguments import add_camera, add_depth, add_loudness, add_reconstruction, reconstruction_of
 from linecad.cli.checks import check_outputs
 from linecad.cli.former import add_former
 from linecad.cli.progress import ProgressDisplay
@@ -40,6 +40,7 @@ def add_to(commands: "Commands") -> None:
     command.add_argument("--no-browser", action="store_true", help="only print the address")
     command.add_argument("--photo", type=Path, metavar="PHOTO", help="the photo of a scene file (else looked for)")
     add_camera(command)
+    add_depth(command)
     add_reconstruction(command, "any other option of the reconstruction")
     add_loudness(command)
     add_former(command)
@@ -49,15 +50,17 @@ def run(parsed: argparse.Namespace) -> int:
     """Serve the page."""
     options = reconstruction_of(parsed, parsed.option)
     from linecad.corrections.file import SUFFIX
+    from linecad.depth.for_photo import check_depth_options
     from linecad.editing.labelling import check_labels
     from linecad.editing.run import EditOptions, edit
 
+    check_depth_options(options, parsed.depth is not None)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the photo")
         photo, path = _photo_to_edit(parsed)
         output = parsed.output or path.with_name(path.name + SUFFIX)
         outputs = [output, *([parsed.labels] if parsed.labels else [])]
-        check_outputs(outputs, [parsed.input, path, parsed.camera])
+        check_outputs(outputs, [parsed.input, path, parsed.camera, parsed.depth])
         if parsed.labels:
             check_labels(parsed.labels, path, parsed.camera)
 
@@ -70,7 +73,8 @@ def run(parsed: argparse.Namespace) -> int:
                 webbrowser.open(address)
 
         with contextlib.suppress(KeyboardInterrupt):  # the way to end it
-            edit(photo, EditOptions(output, parsed.port, options, parsed.labels, parsed.camera), ready, show.stage)
+            chosen = EditOptions(output, parsed.port, options, parsed.labels, parsed.camera, parsed.depth)
+            edit(photo, chosen, ready, show.stage)
     return 0
 
 

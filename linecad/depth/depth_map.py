@@ -6,16 +6,16 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, get_args
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, freeze
 from linecad.errors import DepthMapError
+from linecad.options import DEPTH_KINDS, DepthKind
 
-Kind = Literal["z", "distance", "inverse", "affine-inverse"]
-KINDS: tuple[Kind, ...] = get_args(Kind)
+Kind: TypeAlias = DepthKind
 Single = NDArray[np.float32]
 
 SMALLEST_SIDE = 16  # px; the coarsest networks write 256
@@ -44,8 +44,8 @@ class DepthMap:
         freeze(self, "values", np.float32, (None, None))
         shape = self.values.shape
         freeze(self, "valid", np.bool_, shape)
-        if self.kind is not None and self.kind not in KINDS:
-            raise ValueError(f"DepthMap.kind is {self.kind}, expected None or one of {', '.join(KINDS)}")
+        if self.kind is not None and self.kind not in DEPTH_KINDS:
+            raise ValueError(f"DepthMap.kind is {self.kind}, expected None or one of {', '.join(DEPTH_KINDS)}")
         if ((self.values > 0) != self.valid).any() or (self.values < 0).any():
             raise ValueError("DepthMap.values are not above 0 where valid and 0 elsewhere")
         if self.intrinsics is not None:

@@ -1,4 +1,4 @@
-"""Camera matrices that stand beside depth, and the one that points in space themselves tell."""
+"""Camera matrices that stand beside depth, the one that points in space tell, and how they agree with the camera."""
 
 import math
 from typing import Any
@@ -7,8 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float
+from linecad.depth.depth_map import DepthMap
 from linecad.geometry import central_camera
+from linecad.scene import Camera
 
+OTHER_FOCAL = 0.05  # share of the camera's focal length by which that of a map may differ without a note
 PINHOLE_MISFIT = 0.01  # of the width, px; points that lie further off the pixels' rays come from another camera
 FEWEST_POINTS = 100
 MOST_POINTS = 20_000  # of the points, evenly taken: enough for four numbers
@@ -67,3 +70,19 @@ def _line(slope: Float, pixel: NDArray[np.int64]) -> tuple[float, float] | None:
         return None
     focal = float(spread @ (pixel - pixel.mean())) / variance
     return (focal, float(pixel.mean() - focal * slope.mean())) if 0 < focal < np.inf else None
+
+
+def note_on_intrinsics(depth: DepthMap, camera: Camera) -> tuple[str, ...]:
+    """A note where a map on the photo's pixels was made with another focal length than the camera's, else none."""
+    if depth.intrinsics is None:
+        return ()
+    # Of a map that was stretched to the photo, the two may differ a little.
+    focal = math.sqrt(depth.intrinsics[0, 0] * depth.intrinsics[1, 1])
+    off = focal / camera.focal - 1
+    if abs(off) <= OTHER_FOCAL:
+        return ()
+    return (
+        f"the depth map was made with a focal length of {focal:.0f} px, {abs(off):.0%} "
+        f"{'more' if off > 0 else 'less'} than the camera's {camera.focal:.0f} px; hand that to the network, or give "
+        "--focal",
+    )

@@ -1,7 +1,8 @@
 """A depth map read from any of the files that networks and phones write, told apart by their first bytes."""
 
+import contextlib
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -37,13 +38,35 @@ def read_depth_map(path: Path, reading: Reading | None = None) -> DepthMap:
     Raises DepthMapError where the file cannot be read, is damaged, or holds no depth that linecad could measure in.
     """
     path = Path(path)
-    try:
+    with _in_one_line(path):
         content = _reader(path)(path, reading or Reading())
         height, width = content.values.shape
         check_size(width, height, path)
         content = _with_files_beside(content, path)
         values, valid = valid_depths(content.values, content.mask)
         normals = None if content.normals is None else unit_normals(content.normals)
+    if not valid.any():
+        raise DepthMapError(f"{path} holds no depth: all its values are 0, negative or not finite; make it again")
+    return DepthMap(path.name, values, valid, content.kind, content.intrinsics, normals)
+
+
+def check_depth_file(path: Path) -> None:
+    """Raise DepthMapError where the size and the first bytes of a file tell that `read_depth_map` will refuse it."""
+    with _in_one_line(path):
+        _reader(path)
+
+
+def files_of_map(path: Path) -> list[Path]:
+    """The files that are read for a map: itself, and what MoGe writes beside it, where that is there."""
+    beside = [path.with_name(name) for name in (NORMAL_PICTURE, ANGLES)] if path.stem in STEMS_OF_A_FOLDER else []
+    return [path, *(file for file in beside if file.is_file())]
+
+
+@contextlib.contextmanager
+def _in_one_line(path: Path) -> Iterator[None]:
+    """Whatever the parsing of a file trips over becomes a DepthMapError."""
+    try:
+        yield
     except DepthMapError:
         raise
     except ImportError as error:
@@ -59,9 +82,6 @@ def read_depth_map(path: Path, reading: Reading | None = None) -> DepthMap:
             raise DepthMapError(f"{path} cannot be read ({error.strerror}); check its permissions") from error
         reason = " ".join(str(error).split()) or type(error).__name__
         raise DepthMapError(f"{path} is damaged or incomplete ({reason}); copy it again, or save it again") from error
-    if not valid.any():
-        raise DepthMapError(f"{path} holds no depth: all its values are 0, negative or not finite; make it again")
-    return DepthMap(path.name, values, valid, content.kind, content.intrinsics, normals)
 
 
 def _reader(path: Path) -> Reader:

@@ -10,6 +10,7 @@ from types import FrameType
 from linecad.camera.photo import Photo
 from linecad.corrections.edits import Corrections
 from linecad.corrections.file import check_belongs, read_corrections, write_corrections
+from linecad.depth.for_photo import open_depth_map
 from linecad.editing.guard import HOST, new_token
 from linecad.editing.labelling import camera_of_labels, labels_to_json
 from linecad.editing.saving import Saver
@@ -38,14 +39,15 @@ class EditOptions:
     reconstruct: Options = field(default_factory=Options)
     labels: Path | None = None  # written on every change, beside the photo
     camera_file: Path | None = None  # the photo's calibration, which the labels name
+    depth: Path | None = None  # a depth map of the photo, which every solve is given
 
 
 def edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], on_stage: Callable[[str], None]) -> None:
     """Serve the page until Ctrl-C; `on_ready` is told its address, which holds the token.
 
     Raises EditorError when it cannot be served, OutputError when the corrections cannot be saved, LinecadError when
-    another page writes the same file, and CorrectionsFileError or ReconstructionError for a file or a photo that
-    cannot be used.
+    another page writes the same file, and CorrectionsFileError, DepthMapError or ReconstructionError for a file or a
+    photo that cannot be used.
     """
     check_output(options.corrections)
     with contextlib.ExitStack() as stack:
@@ -66,6 +68,10 @@ def _edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], o
     if options.corrections.exists():
         corrections = read_corrections(options.corrections)
         check_belongs(corrections, str(options.corrections), photo.width, photo.height)
+    depth = None
+    if options.depth is not None:
+        on_stage("reading the depth map")
+        depth = open_depth_map(options.depth, photo, options.reconstruct)
     listener = listen(options.port)
     try:
         on_stage("finding segments")
@@ -81,7 +87,7 @@ def _edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], o
 
         saver = Saver(write)
         session = Session(photo, raw, options.reconstruct, corrections, saver.save)
-        solving = SolvingProcess(photo, options.reconstruct, session.hear, session.take)
+        solving = SolvingProcess(photo, options.reconstruct, session.hear, session.take, depth)
         try:
             token, port = new_token(), listener.getsockname()[1]
             app = Editor(session, solving, saver, camera).app(token, port)

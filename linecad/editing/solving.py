@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from linecad.camera.photo import Photo
 from linecad.corrections.apply import CorrectedLines
+from linecad.depth.depth_map import DepthMap
 from linecad.errors import ContradictionError, LinecadError
 from linecad.finding import FoundLines
 from linecad.options import Options
@@ -75,9 +76,10 @@ class SolvingProcess:
         options: Options,
         on_step: Callable[[Step], None],
         on_answer: Callable[[Answer], None],
+        depth: DepthMap | None = None,
     ) -> None:
-        """The callbacks run in a thread of this object."""
-        self._photo, self._options = photo, options
+        """The callbacks run in a thread of this object; `depth` is a map on the photo's pixels."""
+        self._photo, self._options, self._depth = photo, options, depth
         self._on_step, self._on_answer = on_step, on_answer
         self._lock = threading.Lock()
         self._running: Task | None = None  # what the process works on
@@ -120,7 +122,7 @@ class SolvingProcess:
         process = _CONTEXT.Process(target=work, args=(theirs, self._asked), name="linecad solver", daemon=True)
         process.start()
         theirs.close()
-        ours.send((self._photo, self._options))
+        ours.send((self._photo, self._options, self._depth))
         threading.Thread(target=self._listen, args=(ours,), name="answers of the solver", daemon=True).start()
         return process, ours
 
@@ -172,11 +174,11 @@ def work(pipe: Connection, asked: "Synchronized[int]") -> None:
         os.setsid()
     signal.signal(signal.SIGINT, _pass)  # between searches; a search has a handler of its own
     with contextlib.suppress(EOFError, OSError):
-        photo, options = pipe.recv()
+        photo, options, depth = pipe.recv()
         _warm()
         while True:
             task = pipe.recv()
-            pipe.send(_solve(task, photo, options, pipe, asked))
+            pipe.send(_solve(task, photo, options, depth, pipe, asked))
 
 
 def _pass(_number: int, _frame: FrameType | None) -> None:
@@ -189,20 +191,24 @@ def _warm() -> None:
         importlib.import_module(name)
 
 
-def _solve(task: Task, photo: Photo, options: Options, pipe: Connection, asked: "Synchronized[int]") -> Answer:
+def _solve(
+    task: Task, photo: Photo, options: Options, depth: DepthMap | None, pipe: Connection, asked: "Synchronized[int]"
+) -> Answer:
     def tell(at: Progress) -> None:
         pipe.send(Step(task.number, at))
         if asked.value == task.number:
             signal.raise_signal(signal.SIGINT)
 
-    return solve_task(task, photo, options, tell)
+    return solve_task(task, photo, options, tell, depth)
 
 
-def solve_task(task: Task, photo: Photo, options: Options, tell: Callable[[Progress], None]) -> Answer:
-    """The answer to a task, in this process."""
+def solve_task(
+    task: Task, photo: Photo, options: Options, tell: Callable[[Progress], None], depth: DepthMap | None = None
+) -> Answer:
+    """The answer to a task, in this process; `depth` is a map on the photo's pixels."""
     try:
         found = replace(task.found, pixels=photo.pixels)
-        made = reconstruct_lines(photo.name, found, options, tell, corrected=task.corrected)
+        made = reconstruct_lines(photo.name, found, options, tell, corrected=task.corrected, depth=depth)
     except ContradictionError as error:
         return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings)
     except LinecadError as error:
