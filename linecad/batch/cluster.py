@@ -60,8 +60,9 @@ class ClusterExecutor:
         """Send a job to the scheduler."""
         try:
             parcel = None if self._shared_files else _packed(job)
-        except OSError as error:  # the photo went after its hash was taken
-            gone = Outcome("failed", f"{job.photo} cannot be read: {error.strerror}; check its permissions")
+        except OSError as error:  # a file went after its hash was taken
+            name = error.filename or job.photo
+            gone = Outcome("failed", f"{name} cannot be read: {error.strerror}; check its permissions")
             self._answers.put((ticket, gone))
             return
         with dask.config.set(LARGE_TASKS):
@@ -130,7 +131,9 @@ class ClusterExecutor:
 
 def _packed(job: Job) -> remote.Parcel:
     camera = job.conversion.camera
-    return remote.Parcel(job.photo.read_bytes(), None if camera is None else camera.read_bytes())
+    photo, *maps = job.inputs
+    depth = {file.name: file.read_bytes() for file in maps}
+    return remote.Parcel(photo.read_bytes(), None if camera is None else camera.read_bytes(), depth)
 
 
 def _unpack(job: Job, files: dict[str, bytes]) -> None:

@@ -7,6 +7,7 @@ from typing import Literal, Protocol, get_args
 from exporters.beside import Beside
 from exporters.formats import FORMATS
 from linecad.convert import Conversion
+from linecad.depth.read import files_of_map
 from linecad.scene import Quality
 
 # done; failed: an error, or a fault of linecad; time limit, memory limit: of the photo; killed: its process died.
@@ -33,8 +34,15 @@ class Job:
     name: str  # without suffix, of the files made of it
     folder: Path  # where they go
     suffixes: tuple[str, ...]
-    conversion: Conversion
+    conversion: Conversion  # with the photo's own depth map, if it has one
     limits: Limits
+    options: str  # hash of everything else that decides what is made of it (linecad.batch.record.options_hash)
+
+    @property
+    def inputs(self) -> list[Path]:
+        """The files of this one photo that are read."""
+        depth = self.conversion.depth
+        return [self.photo, *([] if depth is None else files_of_map(depth))]
 
     @property
     def outputs(self) -> list[Path]:

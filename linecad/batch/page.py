@@ -54,6 +54,8 @@ def _article(folder: Path, row: Row) -> Iterator[str]:
         shown = "the photo, and its lines" if outcome.figures else "the photo"
         yield f'<img src="data:image/jpeg;base64,{picture}" alt="{shown}" loading="lazy">'
     yield f"<h2>{escape(Path(row.photo).name)}</h2>"
+    if row.depth:
+        yield f'<p class="quiet">depth map: {escape(_short(row.depth, row.photo))}</p>'
     if outcome.figures:
         yield f"<p>{escape(figures_text(outcome.figures))}</p>"
     if outcome.error:
@@ -63,6 +65,12 @@ def _article(folder: Path, row: Row) -> Iterator[str]:
     if files:
         yield f"<p>{_links(files)}</p>"
     yield "</article>"
+
+
+def _short(depth: str, photo: str) -> str:
+    """A map's name as seen from the folder of its photo."""
+    path, folder = Path(depth), Path(photo).parent
+    return str(path.relative_to(folder) if path.is_relative_to(folder) else path)
 
 
 def figures_text(figures: Figures) -> str:

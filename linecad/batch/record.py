@@ -15,6 +15,7 @@ from typing import Self, cast
 from linecad import __version__
 from linecad.batch.job import STATUSES, Figures, Outcome, Status
 from linecad.convert import Conversion
+from linecad.depth.read import files_of_map
 from linecad.errors import InputError, OutputError
 from linecad.io.strict_json import JsonError, Node, parse
 from linecad.scene import QUALITIES, Quality
@@ -34,14 +35,21 @@ class Row:
     name: str  # of the made files, without suffix
     outcome: Outcome
     finished: str = ""  # UTC, ISO 8601
+    depth: str = ""  # absolute path of the photo's depth map; empty where it had none
 
 
 def options_hash(conversion: Conversion, suffixes: tuple[str, ...]) -> str:
     """64 hexadecimal digits that change with anything that decides what is made of a photo; InputError, OSError.
 
-    Files, such as the calibration, count by what is in them.
+    Files, such as the calibration, count by what is in them; a depth map with what lies beside it and is read with it.
     """
-    document = {"linecad": __version__, "suffixes": sorted(suffixes), "conversion": _plain(conversion)}
+    beside = [] if conversion.depth is None else files_of_map(conversion.depth)[1:]
+    document = {
+        "linecad": __version__,
+        "suffixes": sorted(suffixes),
+        "conversion": _plain(conversion),
+        "beside": {file.name: _plain(file) for file in beside},
+    }
     return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()
 
 
@@ -52,7 +60,8 @@ def _plain(value: object) -> object:
         return {"": type(value).__name__, **members}  # two kinds of value may have the same members
     if isinstance(value, Path):
         try:
-            return hashlib.sha256(value.read_bytes()).hexdigest()
+            with value.open("rb") as file:  # a depth map may be large
+                return hashlib.file_digest(file, "sha256").hexdigest()
         except OSError as error:
             raise InputError(f"{value} cannot be read: {error.strerror}; check the name") from error
     if isinstance(value, dict):
@@ -130,6 +139,7 @@ def row_line(row: Row) -> bytes:
     figures = None if outcome.figures is None else dataclasses.asdict(outcome.figures)
     document = {
         "photo": row.photo,
+        "depth": row.depth,
         "sha256": row.sha256,
         "options": row.options,
         "name": row.name,
@@ -158,6 +168,7 @@ def parse_row(line: bytes) -> Row | None:
             _figures(top) if top.get("lines") is not None else None,
             _files(top["files"]),
         )
+        depth = top.get("depth")
         row = Row(
             photo=top["photo"].text(),
             sha256=top["sha256"].text(),
@@ -165,6 +176,7 @@ def parse_row(line: bytes) -> Row | None:
             name=top["name"].text(),
             outcome=outcome,
             finished=top["finished"].text(),
+            depth="" if depth is None else depth.text(),
         )
     except (JsonError, UnicodeDecodeError):
         return None

@@ -20,6 +20,7 @@ class Parcel:
 
     photo: bytes
     camera: bytes | None
+    depth: dict[str, bytes]  # by name, the depth map and the files beside it that are read with it
 
 
 def version() -> str:
@@ -39,8 +40,8 @@ def work(job: Job, parcel: Parcel | None, version_asked: str) -> tuple[Outcome, 
 
 def _unpacked(job: Job, parcel: Parcel, folder: Path) -> tuple[Outcome, dict[str, bytes]]:
     photo = folder / "photo" / job.photo.name  # scenes and pictures name the photo
-    output = folder / "made"
-    for place in (photo.parent, output / THUMBNAILS):
+    output, maps = folder / "made", folder / "depth"
+    for place in (photo.parent, output / THUMBNAILS, maps):
         place.mkdir(parents=True)
     photo.write_bytes(parcel.photo)
     conversion = job.conversion
@@ -48,6 +49,10 @@ def _unpacked(job: Job, parcel: Parcel, folder: Path) -> tuple[Outcome, dict[str
         camera = folder / "camera.json"
         camera.write_bytes(parcel.camera)
         conversion = replace(conversion, camera=camera)
+    if conversion.depth is not None:
+        for file, data in parcel.depth.items():
+            (maps / file).write_bytes(data)
+        conversion = replace(conversion, depth=maps / conversion.depth.name)
     outcome = _do(replace(job, photo=photo, folder=output, conversion=conversion))
     files = {file: (output / file).read_bytes() for file in outcome.files}
     return outcome, files

@@ -3,8 +3,8 @@
 import contextlib
 import time
 from collections import deque
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -16,6 +16,7 @@ from linecad.batch.page import write_page
 from linecad.batch.record import NAME, Record, Row, options_hash, settled
 from linecad.batch.work import photo_hash
 from linecad.convert import Conversion
+from linecad.depth.read import check_depth_file
 from linecad.errors import LinecadError, OutputError
 from linecad.io.files import remove_unfinished
 
@@ -32,6 +33,7 @@ class Plan:
     suffixes: tuple[str, ...]
     conversion: Conversion
     limits: Limits
+    maps: Mapping[Path, Path] = field(default_factory=dict)  # the depth map of each photo that has one
 
 
 @dataclass
@@ -138,7 +140,9 @@ class _Run:
         try:
             job = self._job(photo)
         except LinecadError as error:
-            self._row(Row(str(photo), "", self.options, self.names[photo], Outcome("failed", str(error))))
+            failed = Outcome("failed", str(error))
+            depth = str(self.plan.maps.get(photo, ""))
+            self._row(Row(str(photo), "", self.options, self.names[photo], failed, depth=depth))
             return
         earlier = self._settled(job)
         if earlier is not None:
@@ -152,22 +156,30 @@ class _Run:
 
     def _job(self, photo: Path) -> Job:
         plan = self.plan
-        job = Job(photo, photo_hash(photo), self.names[photo], plan.folder, plan.suffixes, plan.conversion, plan.limits)
+        conversion, options = plan.conversion, self.options
+        if photo in plan.maps:
+            check_depth_file(plan.maps[photo])  # first, for what is far too large is not even hashed
+            conversion = replace(conversion, depth=plan.maps[photo])
+            options = options_hash(conversion, plan.suffixes)
+        sha256, name = photo_hash(photo), self.names[photo]
+        job = Job(photo, sha256, name, plan.folder, plan.suffixes, conversion, plan.limits, options)
         for path in job.places:
             if path.is_symlink():
                 raise OutputError(f"{path} is a link, and the file would go elsewhere; remove it")
-            if path.exists() and path.samefile(photo):
-                raise OutputError(f"{path} is the photo itself and would be lost; choose another folder")
+            for given in job.inputs:
+                if path.exists() and path.samefile(given):
+                    what = "the photo itself" if given == photo else "the depth map"
+                    raise OutputError(f"{path} is {what} and would be lost; choose another folder")
         return job
 
     def _settled(self, job: Job) -> Row | None:
         """The row that says that this job is done: the photo's own, or that of the same photo before it was moved."""
         own = self.rows.get(str(job.photo))
         for row in [own] if own is not None else self.by_content.get(job.sha256, []):
-            is_same = row.sha256 == job.sha256 and row.options == self.options
+            is_same = row.sha256 == job.sha256 and row.options == job.options
             was_moved = row is not own and not Path(row.photo).exists()
             if is_same and (row is own or was_moved) and settled(row, self.plan.folder):
-                return replace(row, photo=str(job.photo))
+                return replace(row, photo=str(job.photo), depth=_depth(job))
         return None
 
     def _end(self, ticket: int, outcome: Outcome) -> None:
@@ -177,7 +189,7 @@ class _Run:
             if self.losses[job.photo] <= LARGEST_LOSSES:
                 self.waiting.appendleft(job.photo)
                 return
-        self._row(Row(str(job.photo), job.sha256, self.options, job.name, outcome))
+        self._row(Row(str(job.photo), job.sha256, job.options, job.name, outcome, depth=_depth(job)))
 
     def _row(self, row: Row) -> None:
         row = replace(row, finished=datetime.now(UTC).isoformat(timespec="seconds"))
@@ -192,3 +204,8 @@ class _Run:
     def _report(self, row: Row | None) -> None:
         self.progress.running = len(self.running)
         self.on_row(self.progress, row)
+
+
+def _depth(job: Job) -> str:
+    """The depth map of a job as its row tells it."""
+    return str(job.conversion.depth or "")

@@ -10,6 +10,7 @@ from linecad.batch.local import LocalExecutor
 from linecad.batch.resources import need_mb, usual_limits, usual_workers
 from linecad.batch.run import OnRow, Plan, Result, run_batch
 from linecad.convert import Conversion
+from linecad.depth.beside import find_maps, photos_alone
 from linecad.errors import LinecadError, OutputError
 
 CLUSTER_MEMORY = 2.0  # times what a photo needs is what it may take on machines that we cannot look into
@@ -27,18 +28,28 @@ class Means:
 
 
 def make_plan(
-    given: Iterable[str], folder: Path, suffixes: tuple[str, ...], conversion: Conversion, means: Means
+    given: Iterable[str],
+    folder: Path,
+    suffixes: tuple[str, ...],
+    conversion: Conversion,
+    means: Means,
+    depth_maps: bool = False,
 ) -> tuple[Plan, int]:
     """The plan of a batch, and its number of workers (0 on a cluster). Makes the output folder.
 
-    Raises LinecadError where a name finds no photo, or camera, folder or means cannot be used.
+    With `depth_maps`, photos are given the maps that lie beside them, and maps are no photos. Raises LinecadError where
+    a name finds no photo, no photo has such a map, or camera, folder, options or means cannot be used.
     """
     if means.shared_files and means.scheduler is None:
         raise LinecadError("--shared-files says what a cluster sees; name the cluster with --scheduler")
     if means.workers is not None and means.scheduler is not None:
         raise LinecadError("--workers is for this machine; a cluster has the workers that were started in it")
-    conversion = conversion.checked()
+    conversion = conversion.checked(maps_come=depth_maps)
     photos = tuple(find_photos(given, folder))
+    maps: dict[Path, Path] = {}
+    if depth_maps:
+        photos = tuple(photos_alone(photos))
+        maps = find_maps(photos)
     _make_folder(folder)
     if means.scheduler is not None:
         workers, memory = 0, round(CLUSTER_MEMORY * need_mb(photos))
@@ -48,7 +59,7 @@ def make_plan(
         usual = usual_limits(photos, workers, conversion.options.solve.seconds)
         memory = usual.memory_mb
     limits = Limits(means.photo_limit_s or usual.seconds, means.memory_limit_mb or memory)
-    return Plan(photos, folder.resolve(), suffixes, conversion, limits), workers
+    return Plan(photos, folder.resolve(), suffixes, conversion, limits, maps), workers
 
 
 def run_plan(plan: Plan, workers: int, means: Means, on_row: OnRow) -> Result:

@@ -6,9 +6,10 @@ import traceback
 from pathlib import Path
 
 from linecad.batch.job import Figures, Job, Outcome
+from linecad.batch.record import options_hash
 from linecad.batch.thumbnail import write_thumbnail
 from linecad.camera.photo import Photo
-from linecad.errors import LinecadError, PhotoError
+from linecad.errors import InputError, LinecadError, PhotoError
 from linecad.scene import Scene
 
 OUT_OF_MEMORY = ("std::bad_alloc", "Insufficient memory")  # as OpenCV says it, from C++ and from its own allocator
@@ -40,6 +41,9 @@ def photo_hash(path: Path) -> str:
 def _do(job: Job) -> Outcome:
     if photo_hash(job.photo) != job.sha256:
         raise PhotoError(f"{job.photo} was changed while the batch was running; run it again")
+    if options_hash(job.conversion, job.suffixes) != job.options:
+        given = [str(path) for path in (job.conversion.camera, job.conversion.depth) if path is not None]
+        raise InputError(f"{' or '.join(given)} was changed while the batch was running; run it again")
     photo = job.conversion.read(job.photo)
     try:
         scene = job.conversion.reconstruct(photo, None, lambda _stage: None)

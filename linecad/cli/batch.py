@@ -9,6 +9,7 @@ from linecad.cli.arguments import (
     add_camera,
     add_camera_height,
     add_confidence,
+    add_depth_maps,
     add_loudness,
     add_reconstruction,
     count,
@@ -41,6 +42,7 @@ def add_to(commands: "Commands") -> None:
     )  # fmt: skip
     _add_means(command)
     add_camera(command)
+    add_depth_maps(command)
     add_camera_height(command)
     add_confidence(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
@@ -73,10 +75,11 @@ def run(parsed: argparse.Namespace) -> int:
     means = Means(parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit)
     options, values = options_of(parsed, [Path(f"photo{suffix}") for suffix in parsed.format])
     conversion = Conversion(parsed.camera, parsed.focal, options, parsed.known, values, confidence=parsed.confidence)
-    plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means)
+    plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means, parsed.depth_maps)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"
-        show.stage(f"{len(plan.photos)} photos {where}, at most {plan.limits.memory_mb} MiB each")
+        mapped = f", {len(plan.maps)} of them with a depth map," if plan.maps else ""
+        show.stage(f"{len(plan.photos)} photos{mapped} {where}, at most {plan.limits.memory_mb} MiB each")
         began = time.monotonic()
 
         def on_row(progress: "Progress", row: "Row | None") -> None:

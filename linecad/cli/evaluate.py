@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linecad.cli.arguments import add_loudness, add_reconstruction, count, reconstruction_of
+from linecad.cli.arguments import add_depth_maps, add_loudness, add_reconstruction, count, reconstruction_of
 from linecad.cli.checks import check_kept, check_outputs
 from linecad.cli.former import OBJECTIVE, add_former
 from linecad.cli.progress import ProgressDisplay
@@ -42,6 +42,7 @@ def add_to(commands: "Commands") -> None:
         "--ablation", action=argparse.BooleanOptionalAction, default=True,
         help="solve every row of table 1 (on), or only the default settings",
     )  # fmt: skip
+    add_depth_maps(command)
     add_reconstruction(command, "any other option of the reconstruction")
     add_loudness(command)
     add_former(command, OBJECTIVE)
@@ -51,6 +52,7 @@ def run(parsed: argparse.Namespace) -> int:
     """Measure the photos of a dataset."""
     outputs = [path for path in (parsed.json, parsed.markdown, parsed.report) if path is not None]
     check_outputs(outputs, [])
+    from linecad.depth.for_photo import check_depth_options
     from linecad.evaluation.datasets import find_dataset
     from linecad.evaluation.methods import Settings
     from linecad.evaluation.run import evaluate
@@ -61,7 +63,10 @@ def run(parsed: argparse.Namespace) -> int:
         reconstruction=reconstruction_of(parsed, parsed.option),
         pictures=parsed.report is not None,
     )
+    check_depth_options(settings.reconstruction, parsed.depth_maps)
     dataset = find_dataset(parsed.dataset)
+    if parsed.depth_maps:
+        dataset = dataset.with_depth_maps()
     check_kept(outputs, [file for case in dataset.cases for file in case.files])
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage(f"measuring {len(dataset.cases[: parsed.limit])} photos of {dataset.name}")

@@ -1,7 +1,9 @@
 """Which depth map belongs to a photo, by its name beside it: the names that people, and networks, give to them."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
+
+from linecad.errors import DepthMapError
 
 SUFFIXES = (".npz", ".npy", ".exr", ".pfm", ".png", ".tif", ".tiff")
 # In this order, the first that is there: what was named for this purpose, what Depth Anything 2 names so, MoGe's folder
@@ -9,6 +11,17 @@ SUFFIXES = (".npz", ".npy", ".exr", ".pfm", ".png", ".tif", ".tiff")
 NAMED = tuple(f"{{stem}}{mark}{suffix}" for mark in (".depth", "_depth") for suffix in SUFFIXES)
 NAMES = (*NAMED, "{stem}_raw_depth_meter.npy", "{stem}/depth.exr", "{stem}.npz")
 FOLDER_MARK = "depth.exr"  # what tells that a folder is one that MoGe made of a photo
+
+
+def find_maps(photos: Sequence[Path]) -> dict[Path, Path]:
+    """The depth maps beside photos, by photo. Raises DepthMapError where none of them has one."""
+    found = {photo: path for photo in photos if (path := find_map(photo)) is not None}
+    if photos and not found:
+        name = photos[0].with_name(NAMES[0].format(stem=photos[0].stem))
+        raise DepthMapError(
+            f"no photo has a depth map beside it; name them like {name} (docs/guide/depth-maps.md has all names)"
+        )
+    return found
 
 
 def find_map(photo: Path) -> Path | None:

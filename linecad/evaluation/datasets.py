@@ -1,11 +1,13 @@
 """Which photos a dataset folder holds, and of which of the known formats it is (docs/reference/evaluation.md)."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 from linecad.dataset.store import LIST, PHOTO, read_list
+from linecad.depth.beside import find_maps
+from linecad.depth.read import files_of_map
 from linecad.errors import DatasetError
 from linecad.io import strict_json as strictjson
 from linecad.io.strict_json import JsonError, Node
@@ -33,11 +35,13 @@ class Case:
     photo: Path
     truth: Path  # a file, or the folder of a made photo or of one of York Urban
     camera: Path | None = None  # a camera file beside the truth, whose pixels are then those of the undistorted photo
+    depth: Path | None = None  # a depth map beside the photo, to be measured with
 
     @property
     def files(self) -> list[Path]:
         """Everything that is read."""
-        return [path for path in (self.photo, self.truth, self.camera) if path is not None]
+        maps = [] if self.depth is None else files_of_map(self.depth)
+        return [path for path in (self.photo, self.truth, self.camera, *maps) if path is not None]
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,11 @@ class Dataset:
 
     name: str
     cases: tuple[Case, ...]
+
+    def with_depth_maps(self) -> Self:
+        """With the depth maps that lie beside the photos. Raises DepthMapError where there is not one."""
+        maps = find_maps([case.photo for case in self.cases])
+        return replace(self, cases=tuple(replace(case, depth=maps.get(case.photo)) for case in self.cases))
 
 
 def find_dataset(folder: Path) -> Dataset:

@@ -64,6 +64,9 @@ def summary(results: Sequence[PhotoResult]) -> str:
     """One or more sentences on what was measured and what failed."""
     failed = [result for result in results if result.error is not None]
     text = f"{len(results) - len(failed)} photos measured; in brackets the 95 % interval of a bootstrap over photos."
+    maps = sum(result.depth_map is not None for result in results)
+    if maps:
+        text += f" {maps} of them with a depth map, which table 1 does not use."
     for result in failed:
         text += f" {result.name} failed: {result.error}."
     return text

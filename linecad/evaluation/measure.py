@@ -9,6 +9,8 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.camera.photo import Photo
+from linecad.depth.depth_map import DepthMap
+from linecad.depth.for_photo import open_depth_map
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
@@ -81,6 +83,7 @@ class PhotoResult:
     whole: WholeResult | None = None
     picture: Picture | None = None
     places: str | None = None  # SVG of the gallery
+    depth_map: str | None = None  # name of the file that the default settings were given; None: they had no map
 
     def document(self) -> dict[str, Any]:
         """The record as JSON, without the pictures."""
@@ -93,13 +96,19 @@ def measure_photo(case: Case, settings: Settings) -> PhotoResult:
     """Measure one photo; a photo that cannot be used or reconstructed gives a result with the error."""
     try:
         photo, reference = open_case(case)
-        return measure(case.name, photo, reference, settings)
+        depth = None if case.depth is None else open_depth_map(case.depth, photo, settings.reconstruction)
+        return measure(case.name, photo, reference, settings, depth)
     except LinecadError as error:
         return PhotoResult(case.name, str(error))
 
 
-def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -> PhotoResult:
-    """Measure a photo against its reference. Raises ReconstructionError or SolverError."""
+def measure(
+    name: str, photo: Photo, reference: Reference, settings: Settings, depth: DepthMap | None = None
+) -> PhotoResult:
+    """Measure a photo, with a depth map on its pixels or without, against its reference.
+
+    Raises ReconstructionError or SolverError.
+    """
     found = find_lines(photo, faint=settings.reconstruction.faint)
     statistics: GraphStatistics | None = None
     methods: dict[Formulation, dict[str, Run]] = {}
@@ -115,14 +124,15 @@ def measure(name: str, photo: Photo, reference: Reference, settings: Settings) -
                 }
                 for formulation in settings.formulations
             }
-    whole, picture, places = _whole(photo, found, reference, settings)
-    return PhotoResult(name, None, statistics, methods, whole, picture, places)
+    whole, picture, places = _whole(photo, found, reference, settings, depth)
+    used = None if depth is None else depth.name
+    return PhotoResult(name, None, statistics, methods, whole, picture, places, used)
 
 
 def _whole(
-    photo: Photo, found: FoundLines, reference: Reference, settings: Settings
+    photo: Photo, found: FoundLines, reference: Reference, settings: Settings, depth_map: DepthMap | None
 ) -> tuple[WholeResult, Picture | None, str | None]:
-    made = reconstruct_lines(photo.name, found, settings.reconstruction)
+    made = reconstruct_lines(photo.name, found, settings.reconstruction, depth=depth_map)
     graph, solution, scene = made.graph, made.solution, made.scene
     label = reference.label(graph, found.camera, found.frame.rotation)
     length = float(made.whole.segments.length.sum())

@@ -1,5 +1,6 @@
 """`linecad convert`: what it refuses, in one line, and what it never leaves behind."""
 
+import io
 import json
 import os
 import shutil
@@ -21,6 +22,7 @@ import linecad.pipeline
 from linecad.cli.main import main
 from linecad.corrections.edits import Corrections
 from linecad.corrections.file import write_corrections
+from linecad.errors import ReconstructionError
 from linecad.io.scene_file import read_scene
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -245,3 +247,60 @@ def test_a_bad_confidence_is_refused_before_the_photo_is_looked_for(fails):
         "convert", "none.jpg", "-o", "a.json", "--confidence", "2", code=2
     )
     assert "'x' is not a number from 0 to 1" in fails("batch", "none.jpg", "-o", "out", "--confidence", "x", code=2)
+
+
+class Loader:
+    """What a pickle would run."""
+
+    def __reduce__(self):
+        return (Path("ran").touch, ())
+
+
+def npz_of(array):
+    stream = io.BytesIO()
+    np.savez_compressed(stream, depth=array)
+    return stream.getvalue()
+
+
+def npy_of(array):
+    stream = io.BytesIO()
+    np.save(stream, array, allow_pickle=True)
+    return stream.getvalue()
+
+
+DEPTHS = np.random.default_rng(0).uniform(1, 9, (60, 90)).astype(np.float32)
+BAD_MAPS = {
+    "missing": (lambda: None, "does not exist"),
+    "empty": (lambda: b"", "is empty"),
+    "text": (lambda: b"no depth, just words", "is not a depth map that linecad can read"),
+    "truncated": (lambda: npz_of(DEPTHS)[:5000], "is damaged or incomplete"),
+    "pickled": (lambda: npy_of(np.array([[Loader()] * 20] * 20, object)), "map.npz"),
+    "on its side": (lambda: npz_of(DEPTHS.reshape(90, 60)), "lies on its side"),
+}
+
+
+@pytest.mark.parametrize("name", BAD_MAPS)
+def test_files_that_are_no_depth_map(fails, folder, name):
+    content, words = BAD_MAPS[name]
+    if content() is not None:
+        (folder / "map.npz").write_bytes(content())
+    said = fails("convert", ROOM, "--depth", "map.npz", "-o", "a.json", "-o", "a.step")
+    assert "map.npz" in said
+    assert words in said
+    assert not (folder / "ran").exists()
+
+
+def test_the_map_itself_is_not_overwritten(fails, folder):
+    (folder / "map.png").write_bytes(b"1")
+    assert "is an input too" in fails("convert", ROOM, "--depth", "map.png", "-o", "map.png")
+
+
+def test_a_map_reaches_the_program(fails, folder, monkeypatch):
+    np.savez(folder / "map.npz", depth=DEPTHS)
+
+    def look(_graph, sight, *_):
+        raise ReconstructionError(f"seen {sight.depth.values.shape} {sight.depth.kind} {sight.depth.values.max()}")
+
+    monkeypatch.setattr(linecad.pipeline, "place_lines", look)
+    arguments = ["convert", ROOM, "--depth", "map.npz", "--option", "depth-kind=distance", "-o", "a.json"]
+    assert f"seen (1067, 1600) distance {DEPTHS.max()}" in fails(*arguments)

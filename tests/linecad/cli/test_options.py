@@ -21,6 +21,12 @@ BAD = [
     ("mu-boundary=1e300", "option mu-boundary is '1e300', expected a number from 0 to 1000000"),
     ("extension=1e9", "option extension is '1e9', expected px from 1 to 500"),
     ("joins=3", "option joins is '3', expected stable, biconnected or all"),
+    ("depth-kind=deep", "option depth-kind is 'deep', expected z, distance, inverse or affine-inverse"),
+    ("depth-view=-1", "option depth-view is '-1', expected a whole number from 0 to 999999"),
+    ("depth-factor=0", "option depth-factor is '0', expected a number above 0, at most 1000000"),
+    ("depth-array=", "option depth-array is '', expected a name"),
+    ("depth-undistorted=yes", "option depth-undistorted is 'yes', expected on or off"),
+    ("depth-kind=z", "option depth-kind tells of a depth map, and none is given"),
     ("nothing=1", "`linecad options` lists them all"),
     ("extension", "KEY=VALUE"),
 ]
@@ -37,6 +43,19 @@ BAD = [
 @pytest.mark.parametrize(("text", "words"), BAD, ids=[text for text, _ in BAD])
 def test_a_bad_option_is_refused_before_the_photo_is_looked_for(fails, command, text, words):
     assert words in fails(*command, "--option", text)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ["convert", "none.jpg", "-o", "a.json", "--depth", "none.npz"], ["edit", "none.jpg", "--depth", "none.npz"],
+        ["batch", "none.jpg", "-o", "out", "--depth-maps"], ["evaluate", "none", "--depth-maps"],
+    ],
+    ids=lambda command: command[0],
+)  # fmt: skip
+@pytest.mark.parametrize("other", [["--fast"], ["--option", "formulation=gain"], ["--option", "formulation=paper"]])
+def test_a_map_for_a_program_that_looks_at_none_is_refused_before_the_photo_is_looked_for(fails, command, other):
+    assert "only formulation=bodies looks at a depth map" in fails(*command, *other)
 
 
 def test_the_paper_has_no_fast_answer(fails):
