@@ -98,8 +98,8 @@ def labelled(folder):
 def by_evaluation(folder, monkeypatch):
     scenes, reconstruct_lines = [], linecad.evaluation.measure.reconstruct_lines
 
-    def kept(*arguments):
-        made = reconstruct_lines(*arguments)
+    def kept(*arguments, **more):
+        made = reconstruct_lines(*arguments, **more)
         scenes.append(made.scene)
         return made
 

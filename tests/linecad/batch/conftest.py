@@ -7,6 +7,7 @@ import cv2
 import pytest
 
 from linecad.batch.job import THUMBNAILS, Figures, Job, Limits, Outcome
+from linecad.batch.record import options_hash
 from linecad.batch.run import Plan
 from linecad.convert import Conversion
 from linecad.options import Options
@@ -72,10 +73,10 @@ def plan_of(output, conversion):
 def job_of(output, conversion):
     """A function that makes a job of a photo, as a batch does."""
 
-    def make(photo, suffixes=(".json",), seconds=100.0, memory_mb=2048):
+    def make(photo, suffixes=(".json",), seconds=100.0, memory_mb=2048, conversion=conversion):
         (output / THUMBNAILS).mkdir(exist_ok=True)
-        digest = hashlib.sha256(photo.read_bytes()).hexdigest()
-        return Job(photo, digest, photo.stem, output, suffixes, conversion, Limits(seconds, memory_mb))
+        digest, options = hashlib.sha256(photo.read_bytes()).hexdigest(), options_hash(conversion, suffixes)
+        return Job(photo, digest, photo.stem, output, suffixes, conversion, Limits(seconds, memory_mb), options)
 
     return make
 
@@ -88,11 +89,13 @@ class FakeExecutor:
     def __init__(self, answers=None):
         self.answers = answers or {}
         self.taken = []
+        self.jobs = []
         self.ended = []
         self.is_closed = False
 
     def submit(self, ticket, job):
         self.taken.append(job.photo.name)
+        self.jobs.append(job)
         answer = self.answers.get(job.photo.name)
         if isinstance(answer, list):
             answer = answer.pop(0) if answer else None

@@ -9,6 +9,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("distributed", reason="needs Dask: pip install 'linecad[cluster]'")
@@ -95,6 +96,23 @@ def test_photos_travel_as_bytes_and_results_are_those_of_convert(cluster, survey
         for picture in pictures:
             assert (output / picture.relative_to(tmp_path)).read_bytes() == picture.read_bytes()
     assert not list(output.rglob(".linecad-*"))
+
+
+def test_maps_travel_with_what_lies_beside_them(cluster, survey, output):
+    photos = survey(2)
+    folder = photos / "p01"
+    folder.mkdir()
+    depth = np.random.default_rng(0).uniform(1, 9, (213, 320)).astype(np.float32)
+    np.save(photos / "p00.depth.npy", depth)
+    with (folder / "depth.exr").open("wb") as file:  # what a file holds tells what it is, not its name
+        np.savez(file, depth=depth)
+    (folder / "fov.json").write_text('{"fov_x": 56.1, "fov_y": 39.1}')
+    command = ["batch", str(photos), "-o", str(output), "--scheduler", cluster.address, "--depth-maps"]
+    assert main([*command, "--option", "depth-kind=z", "--focal", "300", "--quiet"]) == 0
+    rows = {row["name"]: row for row in map(json.loads, (output / NAME).read_text().splitlines())}
+    # A worker that lacks a part of what a photo is made with fails it: the hashes differ.
+    assert {name: row["status"] for name, row in rows.items()} == {"p00": "done", "p01": "done"}
+    assert [Path(rows[name]["depth"]).name for name in ("p00", "p01")] == ["p00.depth.npy", "depth.exr"]
 
 
 def test_with_shared_files_a_worker_that_is_killed_costs_no_photo(cluster, survey, plan_of, output):

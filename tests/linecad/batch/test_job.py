@@ -16,7 +16,7 @@ def job(tmp_path, monkeypatch):
     row = Format("exporters.new", "lines", "metres", beside=Beside(".parts", re.compile(r"part-\d\.bin"), ".lib"))
     monkeypatch.setitem(FORMATS, ".new", row)
     suffixes = (".json", ".dxf", ".new")
-    return Job(tmp_path / "p.jpg", "0" * 64, "p", tmp_path, suffixes, Conversion(), Limits(1.0, 100))
+    return Job(tmp_path / "p.jpg", "0" * 64, "p", tmp_path, suffixes, Conversion(), Limits(1.0, 100), "f" * 64)
 
 
 def test_its_places_are_those_of_its_formats(job):

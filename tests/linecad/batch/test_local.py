@@ -74,7 +74,7 @@ def slow(tmp_path_factory):
 @pytest.fixture
 def slow_job(job_of):
     """The same as `job_of`, with a focal length that suits the slow photo."""
-    return lambda photo, **limits: dataclasses.replace(job_of(photo, **limits), conversion=Conversion(focal=4000.0))
+    return lambda photo, **limits: job_of(photo, conversion=Conversion(focal=4000.0), **limits)
 
 
 def test_photos_are_converted_and_told_of(executor, survey, job_of, output):

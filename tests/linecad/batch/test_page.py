@@ -59,6 +59,13 @@ def test_a_photo_has_its_picture_figures_and_files(folder):
     assert page.addresses == ["data:image/jpeg;base64,/9ggYSBwaWN0dXJl", "./facade.step"]
 
 
+def test_a_photo_says_which_map_it_had(folder):
+    page = page_of(folder, row("/p/facade.jpg", depth="/p/facade/depth.exr"), row("/p/a.jpg", depth=f"/q/{HOSTILE}"))
+    assert "depth map: facade/depth.exr" in page.words
+    assert f"depth map: /q/{HOSTILE}" in page.words
+    assert "depth map" not in page_of(folder, row("/p/facade.jpg")).words
+
+
 def test_a_photo_that_failed_says_why(folder):
     page = page_of(folder, Row("/p/a.jpg", "", "", "a", Outcome("failed", "no group of lines was found")))
     assert "no group of lines was found" in page.words

@@ -38,7 +38,7 @@ outcomes = st.builds(
 )  # fmt: skip
 
 
-@given(st.builds(Row, words, words, words, plain, outcomes, words))
+@given(st.builds(Row, words, words, words, plain, outcomes, words, words))
 def test_a_row_reads_back_as_it_was(given_row):
     line = row_line(given_row)
     assert line.count(b"\n") == 1
@@ -46,10 +46,12 @@ def test_a_row_reads_back_as_it_was(given_row):
     assert parse_row(line) == given_row
 
 
-def test_a_row_of_before_tells_nothing_of_the_camera():
+def test_a_row_of_before_tells_nothing_of_the_camera_and_had_no_map():
     document = json.loads(row_line(row()))
-    del document["camera"]
-    assert parse_row(json.dumps(document).encode()).outcome.figures.camera is None
+    del document["camera"], document["depth"]
+    found = parse_row(json.dumps(document).encode())
+    assert found.outcome.figures.camera is None
+    assert found.depth == ""
 
 
 def test_rows_are_read_back_in_their_order(tmp_path):
@@ -97,7 +99,7 @@ def test_a_row_with_a_hostile_value_is_none_or_harmless(key):
             assert parse_row(row_line(found)) is not None
     document = json.loads(row_line(row()))
     del document[key]
-    assert parse_row(json.dumps(document).encode()) is None or key in ("gap", "lines", "camera")
+    assert parse_row(json.dumps(document).encode()) is None or key in ("gap", "lines", "camera", "depth")
 
 
 @pytest.mark.parametrize("name", ["", ".", "..", "../up", "/etc/passwd", "a/b", "a\\b", ".hidden", "a\0b"])
@@ -137,6 +139,9 @@ def test_options_hash_changes_with_everything_that_decides(tmp_path):
         options_hash(Conversion(confidence=0.5), (".json",)),
         options_hash(Conversion(camera=camera), (".json",)),
         options_hash(Conversion(camera=other), (".json",)),
+        options_hash(Conversion(depth=camera), (".json",)),
+        options_hash(Conversion(depth=other), (".json",)),
+        options_hash(Conversion(depth=camera, options=Options(depth_kind="z")), (".json",)),
         options_hash(Conversion(options=Options(extension=31.0)), (".json",)),
         options_hash(Conversion(options=Options(solve=SolveOptions(seed=1))), (".json",)),
         options_hash(Conversion(options=Options(solve=SolveOptions(without=frozenset({"cycles"})))), (".json",)),

@@ -177,3 +177,70 @@ def test_a_batch_in_a_folder_where_one_runs_is_refused(photos, plan_of, fake, mo
 
     run(plan_of(photos), fake(), again)
     assert inner
+
+
+@pytest.fixture
+def maps(photos):
+    """Depth maps of the first two photos; the second one in the folder that MoGe makes."""
+    folder = photos[1].with_suffix("")
+    folder.mkdir()
+    found = {photos[0]: photos[0].with_name("p0.depth.npy"), photos[1]: folder / "depth.exr"}
+    found[photos[0]].write_bytes(b"\x93NUMPY 0")
+    found[photos[1]].write_bytes(b"\x76\x2f\x31\x01 1")
+    return found
+
+
+def test_each_photo_has_its_own_map_and_the_record_says_which(photos, maps, plan_of, fake, output):
+    executor = fake()
+    run(plan_of(photos, maps=maps), executor)
+    assert [job.conversion.depth for job in executor.jobs] == [*maps.values(), None, None, None]
+    assert [row["depth"] for row in recorded(output)] == [*map(str, maps.values()), "", "", ""]
+    page = (output / "index.html").read_text()
+    assert page.count("depth map: ") == 2
+    assert "depth map: p1/depth.exr" in page
+
+
+def test_a_map_that_changed_came_or_went_makes_its_photo_again(photos, maps, plan_of, fake):
+    run(plan_of(photos, maps=maps), fake())
+
+    def taken(maps=maps):
+        executor = fake()
+        run(plan_of(photos, maps=maps), executor)
+        return executor.taken
+
+    assert taken() == []
+    maps[photos[0]].write_bytes(b"\x93NUMPY 2")
+    assert taken() == ["p0.jpg"]
+    maps[photos[1]].with_name("fov.json").write_bytes(b"{}")  # read with the map
+    assert taken() == ["p1.jpg"]
+    maps[photos[1]].with_name("mask.png").write_bytes(b"1")  # not read
+    assert taken() == []
+    assert taken({}) == ["p0.jpg", "p1.jpg"]
+    assert taken() == ["p0.jpg", "p1.jpg"]
+
+
+def test_a_map_that_was_renamed_changes_nothing_but_the_record(photos, maps, plan_of, fake):
+    run(plan_of(photos, maps=maps), fake())
+    maps[photos[0]] = maps[photos[0]].rename(photos[0].with_name("p0_depth.npy"))
+    executor = fake()
+    result = run(plan_of(photos, maps=maps), executor)
+    assert executor.taken == []
+    assert result.rows[0].depth == str(maps[photos[0]])
+
+
+def test_a_map_that_is_none_is_a_row(photos, maps, plan_of, fake, output):
+    maps[photos[0]].write_bytes(b"")
+    result = run(plan_of(photos, maps=maps), fake())
+    assert (result.progress.done, result.progress.failed) == (4, 1)
+    [failed] = [row for row in recorded(output) if row["status"] == "failed"]
+    assert "p0.depth.npy is empty" in failed["error"]
+    assert failed["depth"] == str(maps[photos[0]])
+
+
+def test_no_map_is_overwritten_by_what_is_made_of_its_photo(plan_of, fake, output):
+    photo, depth = output / "facade.jpg", output / "facade.png"
+    photo.write_bytes(b"photo")
+    depth.write_bytes(b"\x89PNG")
+    result = run(plan_of([photo], suffixes=(".png",), maps={photo: depth}), fake())
+    assert "is the depth map and would be lost" in result.rows[0].outcome.error
+    assert depth.read_bytes() == b"\x89PNG"

@@ -3,7 +3,17 @@
 import threading
 import time
 
-from linecad.editing.solving import SolvingProcess
+import numpy as np
+import pytest
+
+import linecad.pipeline
+from linecad.corrections.edits import Corrections
+from linecad.depth.depth_map import DepthMap
+from linecad.editing.run import EditOptions, edit
+from linecad.editing.session import Session
+from linecad.editing.solving import SolvingProcess, solve_task
+from linecad.errors import DepthMapError, ReconstructionError
+from linecad.lines.segments import find_segments
 from linecad.options import Options
 
 
@@ -24,3 +34,35 @@ def test_the_pipe_is_closed_by_the_thread_that_listens_to_it(made_photo):
         assert time.monotonic() < end, "nobody closes the pipe"
         time.sleep(0.01)
     assert closed_by == ["answers of the solver"]
+
+
+@pytest.fixture
+def task(made_photo):
+    corrections = Corrections(made_photo.name, made_photo.width, made_photo.height)
+    session = Session(made_photo, find_segments(made_photo.grey), Options(), corrections, lambda _: None)
+    return session.task(session.now().version)
+
+
+def test_a_solve_looks_at_the_depth_map(made_photo, task, monkeypatch):
+    def look(_graph, sight, *_):
+        raise ReconstructionError(f"seen {sight.depth.name}")
+
+    monkeypatch.setattr(linecad.pipeline, "place_lines", look)
+    ones = np.ones((made_photo.height, made_photo.width))
+    depth = DepthMap("map.npz", ones, ones > 0, "z")
+    assert solve_task(task, made_photo, Options(), lambda _: None, depth).error == "seen map.npz"
+
+
+def test_the_page_reads_the_map_and_hands_it_to_the_process_that_solves(made_photo, tmp_path, monkeypatch):
+    def begin(_photo, _options, _hear, _take, depth):
+        raise ReconstructionError(f"{depth.kind} of {depth.width} x {depth.height} px")
+
+    monkeypatch.setattr("linecad.editing.run.SolvingProcess", begin)
+    np.savez(tmp_path / "map.npz", depth=np.ones((60, 80)))
+    options = EditOptions(tmp_path / "said.json", reconstruct=Options(depth_kind="z"), depth=tmp_path / "map.npz")
+    with pytest.raises(ReconstructionError, match="z of 1600 x 1200 px"):
+        edit(made_photo, options, lambda _: None, lambda _: None)
+    (tmp_path / "map.npz").write_bytes(b"")
+    with pytest.raises(DepthMapError, match="is empty"):
+        edit(made_photo, options, lambda _: None, lambda _: None)
+    assert not (tmp_path / "said.json").exists()

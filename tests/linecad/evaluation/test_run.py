@@ -3,15 +3,20 @@
 import json
 import multiprocessing
 import os
+import shutil
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+import linecad.pipeline
 from linecad.cli.main import main
-from linecad.errors import LinecadError
+from linecad.errors import LinecadError, ReconstructionError
 from linecad.evaluation.datasets import Case, find_dataset
+from linecad.evaluation.measure import measure_photo
 from linecad.evaluation.methods import Settings
 from linecad.evaluation.run import evaluate
+from linecad.options import Options
 from linecad.threads import THREADS
 
 
@@ -158,3 +163,52 @@ def test_a_process_that_dies_is_an_error(monkeypatch, york_folder):
 
 def die():
     os._exit(3)
+
+
+@pytest.fixture
+def mapped_folder(labels_folder, tmp_path):
+    """The labelled photo with a depth map beside it."""
+    folder = tmp_path / "labelled"
+    shutil.copytree(labels_folder, folder)
+    np.savez(folder / "boxes.depth.npz", depth=np.random.default_rng(0).uniform(1, 9, (120, 160)))
+    return folder
+
+
+def test_maps_beside_the_photos_are_used_where_they_are_asked_for(mapped_folder, monkeypatch):
+    seen = []
+
+    def look(_graph, sight, *_):
+        seen.append(sight.depth)
+        raise ReconstructionError("the places need not be found")
+
+    monkeypatch.setattr(linecad.pipeline, "place_lines", look)
+    dataset = find_dataset(mapped_folder)
+    settings = Settings(ablation=False, reconstruction=Options(depth_kind="distance"))
+    for cases in (dataset.cases, dataset.with_depth_maps().cases):
+        assert measure_photo(cases[0], settings).error == "the places need not be found"
+    assert seen[0] is None
+    assert (seen[1].values.shape, seen[1].kind) == ((1200, 1600), "distance")
+    assert dataset.with_depth_maps().cases[0].files[-1] == mapped_folder / "boxes.depth.npz"
+
+
+def test_the_report_says_that_maps_were_used(mapped_folder, tmp_path, capsys):
+    files = [tmp_path / name for name in ("a.json", "a.html")]
+    command = ["evaluate", str(mapped_folder), "--json", str(files[0]), "--report", str(files[1]), "--no-ablation"]
+    assert main([*command, "--depth-maps", "--option", "depth-kind=z", "--quiet"]) == 0
+    said = "1 of them with a depth map"
+    assert said in capsys.readouterr().out
+    assert said in files[1].read_text()
+    document = json.loads(files[0].read_text())
+    assert document["photos"][0]["depth_map"] == "boxes.depth.npz"
+    assert document["settings"]["reconstruction"]["depth_kind"] == "z"
+    assert main([*command, "--quiet"]) == 0
+    assert "depth map" not in capsys.readouterr().out
+    assert json.loads(files[0].read_text())["photos"][0]["depth_map"] is None
+
+
+def test_a_dataset_without_any_map_and_a_map_that_would_be_lost(labels_folder, mapped_folder, capsys):
+    assert main(["evaluate", str(labels_folder), "--depth-maps", "--quiet"]) == 1
+    assert "boxes.depth.npz" in capsys.readouterr().err
+    depth = mapped_folder / "boxes.depth.npz"
+    assert main(["evaluate", str(mapped_folder), "--depth-maps", "--json", str(depth), "--quiet"]) == 1
+    assert "is an input too" in capsys.readouterr().err
