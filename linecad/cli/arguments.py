@@ -49,9 +49,7 @@ def add_camera(parser: argparse.ArgumentParser) -> None:
 
 def add_depth(parser: argparse.ArgumentParser) -> None:
     """A depth map of the one photo."""
-    parser.add_argument(
-        "--depth", type=Path, metavar="FILE", help="depth map of the photo, by a network or a phone (.npz, .exr, ...)"
-    )
+    parser.add_argument("--depth", type=Path, metavar="FILE", help="depth map of the photo, from a network or a phone")
 
 
 def add_depth_maps(parser: argparse.ArgumentParser) -> None:
