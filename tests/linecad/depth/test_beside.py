@@ -2,6 +2,7 @@
 
 import pytest
 
+from linecad.dataset.store import DEPTH_MAP, PHOTO
 from linecad.depth.beside import NAMES, find_map, find_maps, photos_alone
 from linecad.errors import DepthMapError
 
@@ -43,6 +44,11 @@ def test_the_first_name_wins_until_it_is_gone(place, tmp_path):
         assert find_map(photo) == tmp_path / name.format(stem="house")
         find_map(photo).unlink()
     assert find_map(photo) is None
+
+
+def test_made_scenes_have_their_map_under_such_a_name(place):
+    photo = place(PHOTO, DEPTH_MAP, "truth.npz")
+    assert find_map(photo) == photo.with_name(DEPTH_MAP)
 
 
 def test_a_folder_of_such_a_name_is_no_map(tmp_path, place):
