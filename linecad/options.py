@@ -11,6 +11,7 @@ from typing import Any, Literal, get_args
 
 from linecad.errors import OptionError
 from linecad.line_graph import Formulation, Program
+from linecad.scene import DEPTH_KINDS, DepthKind
 from solver.options import (
     BACKENDS,
     DEFAULT_MU_BOUNDARY,
@@ -23,10 +24,8 @@ Weights = Literal["odds", "junctions", "ones"]
 Joins = Literal["stable", "biconnected", "all"]
 # What a depth map measures: along the optical axis, along the ray of its pixel, 1 / z but for its scale, or but for
 # scale and shift.
-DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]
 WEIGHTS: tuple[Weights, ...] = get_args(Weights)
 JOINS: tuple[Joins, ...] = get_args(Joins)
-DEPTH_KINDS: tuple[DepthKind, ...] = get_args(DepthKind)
 PROGRAMS: tuple[Program, ...] = get_args(Program)
 
 MIN_COMPONENT = 4  # lines; smaller groups say too little about space to be worth showing

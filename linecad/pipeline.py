@@ -9,14 +9,15 @@ from linecad.corrections.lengths import measured
 from linecad.decide.annotations import annotate, solve_annotated, told_in_the_photo, with_annotations
 from linecad.decide.decision import Decision, decide
 from linecad.depth.depth_map import DepthMap
+from linecad.depth.intrinsics import note_on_intrinsics
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Solution
 from linecad.model.build import View, build_scene, find_components
 from linecad.model.lifting import Lifted, lift
 from linecad.options import Options
 from linecad.progress import StageReport, silent
-from linecad.scene import Scene
-from linecad.ties.placing import place_lines
+from linecad.scene import Camera, Scene
+from linecad.ties.placing import Placed, place_lines
 from linecad.ties.setting import Sight
 from solver.options import OnProgress
 
@@ -75,13 +76,13 @@ def reconstruct_lines(
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)
     graph, annotations = annotate(graph, corrected)
-    probability = None
+    placed = None
     if options.uses_bodies:
         limits = with_annotations(options.solve, annotations)
         with told_in_the_photo(graph, corrected):
             sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels, depth)
             placed = place_lines(graph, sight, limits, on_progress, on_stage)
-        solution, probability = placed.solution, placed.probability
+        solution = placed.solution
     else:
         on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
         solution = solve_annotated(graph, options.solve, annotations, corrected, on_progress)
@@ -89,11 +90,20 @@ def reconstruct_lines(
     inconsistency = found.inconsistency if options.joins_used == "stable" else None
     decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
-    notes = found.notes + annotations.notes + decision.notes
+    notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
     view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes)
     lifted = lift(graph, decision.real, solution.log_depth)
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:
         decision = decision.within(found_components.kept, graph)
-    scene = build_scene(view, graph, solution, decision, found_components, probability)
+    scene = build_scene(view, graph, solution, decision, found_components, placed)
     return Reconstruction(whole, graph, solution, decision, lifted, scene)
+
+
+def _notes_on_map(depth: DepthMap | None, placed: Placed | None, camera: Camera) -> tuple[str, ...]:
+    """What to know about the depth map that was given."""
+    if depth is None or placed is None or placed.depth_map is None:
+        return ()
+    if placed.depth_map.left_out:
+        return (f"the depth map {depth.name} was left out: {placed.depth_map.left_out}",)
+    return note_on_intrinsics(depth, camera)

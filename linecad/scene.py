@@ -24,6 +24,7 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
+DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]  # what a depth map measures (linecad.depth)
 # Why a crossing is real or not (linecad.decide.decision, docs/reference/scene-file.md). Real: annotated, chosen.
 Reason = Literal[
     "annotated", "chosen", "not chosen", "impossible", "uninformative",
@@ -34,6 +35,7 @@ CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 CONFIDENCES: tuple[Confidence, ...] = get_args(Confidence)
 REASONS: tuple[Reason, ...] = get_args(Reason)
 QUALITIES: tuple[Quality, ...] = get_args(Quality)
+DEPTH_KINDS: tuple[DepthKind, ...] = get_args(DepthKind)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,6 +109,7 @@ class Lines:
     confidence: Text  # (N,) proven, supported, weak
     # (N,) 0 to 1, that the depth relative to component 0 is right within 5 %; (0,) in scenes that do not tell
     probability: Float | tuple[()] = ()
+    by_depth_map: Bool | tuple[()] = ()  # (N,) a depth map alone says where the line's body stands; left out: of none
 
     def __post_init__(self) -> None:
         for name in ("id", "axis", "component"):
@@ -116,7 +119,11 @@ class Lines:
         freeze(self, "is_boundary", np.bool_, (None,))
         freeze(self, "confidence", np.str_, (None,))
         freeze(self, "probability", np.float64, (None,))
-        check_lengths(self, len(self.id), ["axis", "segment", "ends", "is_boundary", "component", "confidence"])
+        if len(self.by_depth_map) == 0:
+            object.__setattr__(self, "by_depth_map", np.zeros(len(self.id), bool))
+        freeze(self, "by_depth_map", np.bool_, (None,))
+        same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map"]
+        check_lengths(self, len(self.id), same)
         if len(self.probability):
             check_lengths(self, len(self.id), ["probability"])
         check_not_negative(self, ["id", "component"])
@@ -213,6 +220,25 @@ class SolveReport:
     nodes: int = 0  # branch-and-bound nodes
 
 
+@dataclass(frozen=True)
+class DepthMapReport:
+    """What became of a depth map that was given with the photo."""
+
+    file: str  # name, without its folder
+    left_out: str  # why: one clause, without a full stop; "" where it was used, and then the rest is known
+    kind: DepthKind | None = None
+    shift: float | None = None  # added to the map's numbers, of kind affine-inverse
+    scale: float | None = None  # depth by the map (1 over its number, shifted, if inverse) over depth in the scene
+    width: float | None = None  # of the Cauchy error of its bodies, log depth
+
+    def __post_init__(self) -> None:
+        told = [self.kind, self.shift, self.scale, self.width]
+        if (None in told) == (not self.left_out):
+            raise ValueError("DepthMapReport must say either why the map was left out, or all about it")
+        if self.kind is not None and self.kind not in DEPTH_KINDS:
+            raise ValueError(f"DepthMapReport.kind is {self.kind!r}, expected one of {', '.join(DEPTH_KINDS)}")
+
+
 @dataclass(frozen=True, eq=False)
 class Scene:
     """The reconstruction of one photo: what the scene file says."""
@@ -228,6 +254,7 @@ class Scene:
     scale_source: str = ""  # what told metres_per_unit: one clause, without a full stop; "" where that is not known
     notes: tuple[str, ...] = field(default=())
     certainty: Certainty | None = None  # of camera and rotation; None in scenes that do not tell
+    depth_map: DepthMapReport | None = None  # None where none was given
 
     def __post_init__(self) -> None:
         freeze(self, "rotation", np.float64, (3, 3))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, freeze
 from linecad.errors import DepthMapError
-from linecad.options import DEPTH_KINDS, DepthKind
+from linecad.scene import DEPTH_KINDS, DepthKind
 
 Kind: TypeAlias = DepthKind
 Single = NDArray[np.float32]

@@ -7,6 +7,7 @@ import numpy as np
 from linecad.scene import (
     AXES,
     Certainty,
+    DepthMapReport,
     Intersections,
     Lines,
     Plane,
@@ -51,6 +52,7 @@ def document_of(scene: Scene) -> dict[str, object]:
             "cuts": int(solve.cuts),
             "nodes": int(solve.nodes),
         },
+        **({} if scene.depth_map is None else {"depth_map": _depth_map_record(scene.depth_map)}),
         "notes": list(scene.notes),
     }
 
@@ -66,6 +68,7 @@ def _line_records(lines: Lines) -> list[dict[str, object]]:
             "component": int(lines.component[row]),
             "confidence": str(lines.confidence[row]),
             **({"probability": float(lines.probability[row])} if len(lines.probability) else {}),
+            **({"by_depth_map": True} if lines.by_depth_map[row] else {}),
         }
         for row in range(len(lines))
     ]
@@ -96,6 +99,12 @@ def _plane_record(plane: Plane) -> dict[str, object]:
             {"id": int(face.id), "outline": face.outline.tolist(), "holes": [hole.tolist() for hole in face.holes]}
             for face in plane.faces
         ],
+    }
+
+
+def _depth_map_record(report: DepthMapReport) -> dict[str, object]:
+    return {"file": report.file, "left_out": report.left_out or None} | {
+        key: value for key in ("kind", "shift", "scale", "width") if (value := getattr(report, key)) is not None
     }
 
 

@@ -13,11 +13,14 @@ from linecad.scene import (
     AXES,
     CAMERA_SOURCES,
     CONFIDENCES,
+    DEPTH_KINDS,
     QUALITIES,
     REASONS,
     Camera,
     CameraSource,
     Certainty,
+    DepthKind,
+    DepthMapReport,
     Face,
     Intersections,
     Lines,
@@ -55,6 +58,7 @@ def scene_of(top: Node) -> Scene:
         scale_source=_text_or_none(top.get("scale_source")),
         notes=tuple(note.text() for note in _optional_items(top, "notes")),
         certainty=_certainty(top.get("certainty")),
+        depth_map=_depth_map(top.get("depth_map")),
     )
     _check_flatness(scene)
     return scene
@@ -72,14 +76,13 @@ def _camera(node: Node) -> tuple[Camera, Float]:
     off = np.abs(rotation @ rotation.T - np.eye(3)).max()
     if off > ROTATION_ERROR or np.linalg.det(rotation) < 0:
         raise JsonError(f"camera.R_cam_from_world is not a rotation (off by {off:.3g})")
-    resampled = node.get("resampled")
     camera = Camera(
         width=node["width"].integer(1, LARGEST_PHOTO),
         height=node["height"].integer(1, LARGEST_PHOTO),
         matrix=matrix,
         source=cast(CameraSource, node["source"].one_of(CAMERA_SOURCES)),
         distortion=tuple(item.number(LARGEST_NUMBER) for item in _optional_items(node, "distortion")),
-        is_resampled=resampled is not None and resampled.boolean(),
+        is_resampled=_optional_boolean(node, "resampled"),
     )
     return camera, rotation
 
@@ -102,6 +105,21 @@ def _certainty(node: Node | None) -> Certainty | None:
         radial=None if radial is None else _standard_error(radial),
         quality=cast(Quality, node["quality"].one_of(QUALITIES)),
         reason=node["reason"].text(),
+    )
+
+
+def _depth_map(node: Node | None) -> DepthMapReport | None:
+    if node is None or node.value is None:
+        return None
+    left_out = _known(node, "left_out")
+    if left_out is not None:
+        return DepthMapReport(node["file"].text(), left_out.text())
+    shift, scale, width = (node[key].number(LARGEST_NUMBER) for key in ("shift", "scale", "width"))
+    for key, value in (("scale", scale), ("width", width)):
+        if value <= 0:
+            raise node[key].wrong("a positive number")
+    return DepthMapReport(
+        node["file"].text(), "", cast(DepthKind, node["kind"].one_of(DEPTH_KINDS)), shift, scale, width
     )
 
 
@@ -128,7 +146,14 @@ def _lines(nodes: list[Node]) -> Lines:
         component=np.array([node["component"].integer() for node in nodes], np.int64),
         confidence=np.array([node["confidence"].one_of(CONFIDENCES) for node in nodes], str),
         probability=_probabilities(nodes),
+        by_depth_map=np.array([_optional_boolean(node, "by_depth_map") for node in nodes], bool),
     )
+
+
+def _optional_boolean(node: Node, key: str) -> bool:
+    """The member `key`; false where it is missing."""
+    member = node.get(key)
+    return member is not None and member.boolean()
 
 
 def _probabilities(nodes: list[Node]) -> Float:

@@ -17,6 +17,7 @@ from linecad.model.planes import find_planes
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, Intersections, Lines, Scene, SolveReport
+from linecad.ties.placing import Placed
 
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
 SHIFT_NOTED = 0.005  # rad; lines that had to move more to become exact are worth a note
@@ -80,18 +81,22 @@ def build_scene(
     solution: Solution,
     decision: Decision,
     found: Components,
-    probability: Float | None = None,
+    placed: Placed | None = None,
 ) -> Scene:
     """The scene of the components that were found, with planes and faces.
 
-    `probability` (N,) is that of `Lines`, where bodies were placed: then all components have one scale. Else each is
-    put at the depth of its neighbours.
+    Where bodies were `placed`, all components have one scale. Else each is put at the depth of its neighbours.
     """
     kept = np.flatnonzero(found.kept)
-    scale = _component_scales(graph, found.lifted, found.parts, probability is not None)[found.component]
+    scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
+    scale = scales[found.component]
     lines = _lines(graph, solution, decision, found, scale)
-    if probability is not None:
-        lines = replace(lines, probability=probability[kept])
+    depth_map = None
+    if placed is not None:
+        lines = replace(lines, probability=placed.probability[kept], by_depth_map=placed.by_map[kept])
+        depth_map = placed.depth_map
+    if depth_map is not None and depth_map.scale is not None:
+        depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
     offset = (found.lifted.offset * scale[:, None])[kept]
     planes = find_planes(offset, found.lifted.shared[kept], lines.id)
     planes = find_faces(planes, lines, view.camera, view.frame.rotation)
@@ -110,6 +115,7 @@ def build_scene(
         ),
         notes=(*_notes(view, graph, solution, found), *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
+        depth_map=depth_map,
     )  # fmt: skip
 
 

@@ -9,8 +9,10 @@ from linecad.arrays import Bool, Float
 from linecad.decide.stability import resample
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
+from linecad.scene import DepthMapReport
 from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import find_candidates
+from linecad.ties.depth_ties import DepthWitness, follow_map, hear, report_of, ties_to_map
 from linecad.ties.probability import probabilities
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates
@@ -38,6 +40,8 @@ class Placed:
     placement: Placement
     reference: int  # the body that the others are placed relative to
     probability: Float  # (N,) that a line's depth relative to component 0 is right within 5 %
+    by_map: Bool  # (N,) lines of bodies that a depth map alone ties to the reference
+    depth_map: DepthMapReport | None  # its scale is that of the solution's depths; None where no map was given
 
 
 def place_lines(
@@ -49,7 +53,8 @@ def place_lines(
 ) -> Placed:
     """The lines of a graph from a photo, with every body at its most likely scale.
 
-    Keeps to the crossings that `options` call real or fake. Raises SolverError or ContradictionError.
+    Keeps to the crossings that `options` call real or fake. Raises SolverError, ContradictionError, or DepthMapError
+    where nothing tells what the photo's depth map measures.
     """
     began = time.monotonic()
     ratios = end_ratios(graph)
@@ -59,12 +64,23 @@ def place_lines(
     on_stage("fitting depths, with and without some of the lines")
     setting = _setting(graph, sight, options, real, fake)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
-    ties = _with_sure(weigh_candidates(find_candidates(setting), setting.bodies.size), setting, real)
-    reference = int(setting.bodies.size.argmax()) if setting.bodies.count else 0
+    candidates = find_candidates(setting)
+    size = setting.bodies.size
+    ties = _with_sure(weigh_candidates(candidates, size), setting, real)
+    heard = hear(setting, candidates, sight.depth)
+    if isinstance(heard, DepthWitness):
+        ties = ties.joined(ties_to_map(heard, size))
+    reference = int(size.argmax()) if setting.bodies.count else 0
     on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
-    placement = place(ties, setting.bodies.count + 1, reference, options, on_progress)  # the last one is the ground
+    # The ground is one more body, and the map another where it ties any.
+    count = max(setting.bodies.count + 1, int(ties.bodies.max(initial=-1)) + 1)
+    placement = place(ties, count, reference, options, on_progress)
+    log_scale, mapped = placement.log_scale, None
+    if isinstance(heard, DepthWitness):
+        mapped = follow_map(heard, ties, placement, reference, size)
+        log_scale = mapped.log_scale
     body = setting.bodies.body
-    log_depth = setting.log_depth + np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
+    log_depth = setting.log_depth + np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
     log_depth = _kept_to(graph, log_depth, real, ratios)
     connected = (agreeing_with(graph, log_depth) & ~fake) | real
     solution = Solution(
@@ -81,8 +97,10 @@ def place_lines(
         planar_pairs=np.zeros((0, 3), np.int64),
         log_depth=log_depth,
     )
-    probability = probabilities(setting, placement, reference, log_depth)
-    return Placed(solution, setting, ties, placement, reference, probability)
+    probability = probabilities(setting, placement, reference, log_depth, mapped)
+    by_map = np.zeros(len(body), bool) if mapped is None else (body >= 0) & mapped.by_map[np.maximum(body, 0)]
+    told = None if sight.depth is None else report_of(sight.depth, heard, mapped)
+    return Placed(solution, setting, ties, placement, reference, probability, by_map, told)
 
 
 def _setting(graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool) -> Setting:
@@ -104,12 +122,14 @@ def _with_sure(ties: Ties, setting: Setting, real: Bool) -> Ties:
     sure = sure[body[first[sure]] != body[second[sure]]]
     i, j = graph.edges[sure].T
     asked = graph.log_ratio[sure] - setting.log_depth[i] + setting.log_depth[j]
-    return Ties(
-        np.concatenate([ties.bodies, np.column_stack([body[i], body[j]])]),
-        np.r_[ties.log_ratio, asked],
-        np.r_[ties.tolerance, graph.tolerance[sure]],
-        np.r_[ties.weight, np.full(len(sure), CERTAIN)],
-        np.r_[ties.group, np.full(len(sure), -1)],
+    return ties.joined(
+        Ties(
+            np.column_stack([body[i], body[j]]),
+            asked,
+            graph.tolerance[sure],
+            np.full(len(sure), CERTAIN),
+            np.full(len(sure), -1),
+        )
     )
 
 

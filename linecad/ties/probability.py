@@ -5,10 +5,12 @@ import numpy as np
 from linecad.arrays import Float
 from linecad.decide.stability import LEAST_TOLERANCE
 from linecad.ties.bodies import togetherness
+from linecad.ties.depth_ties import MapPlaces
 from linecad.ties.setting import Setting
 from solver.bodies.ties import Placement
 
 LARGEST_MARGIN = 12.0
+FARTHEST_OFF = 6.0  # widths
 # Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
 AT_ONCE = -7.3537
 LOG_ODDS: dict[str, float] = {
@@ -21,11 +23,18 @@ LOG_ODDS: dict[str, float] = {
     "agreement of all": -0.8356,
     "agreement of the line": 1.6449,
     "bodies": 0.5871,
+    "map's word": 0.0,
+    "off the map": 0.0,
 }
 
 
-def features(setting: Setting, placement: Placement, reference: int, log_depth: Float) -> dict[str, Float]:
-    """What speaks for the place of each line at the depths (N,) that were found, each (N,); 0 for lines of no body."""
+def features(
+    setting: Setting, placement: Placement, reference: int, log_depth: Float, mapped: MapPlaces | None = None
+) -> dict[str, Float]:
+    """What speaks for the place of each line at the depths (N,) that were found, each (N,); 0 for lines of no body.
+
+    `mapped` is what a depth map made of the places, where one was heard.
+    """
     graph = setting.graph
     agrees = graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
     told, first, second = graph.informative, *graph.edges.T
@@ -41,6 +50,7 @@ def features(setting: Setting, placement: Placement, reference: int, log_depth: 
         together[lines] = togetherness(setting.fits, shift, core)[lines]
     margin = np.minimum(placement.margin, LARGEST_MARGIN)
     size = np.bincount(body[own], minlength=len(margin))  # a photo without bodies has one place all the same
+    word, off_map = _by_the_map(mapped, len(margin))
     found = {
         "of the reference": (body == reference).astype(np.float64),
         "margin": margin[at],
@@ -51,13 +61,27 @@ def features(setting: Setting, placement: Placement, reference: int, log_depth: 
         "agreement of all": np.full(len(body), agreeing.sum() / max(1, many.sum())),
         "agreement of the line": (agreeing + 1) / (many + 2),
         "bodies": np.full(len(body), np.log(setting.bodies.count + 1)),
+        "map's word": word[at],
+        "off the map": off_map[at],
     }
     return {name: np.where(own, value, 0.0) for name, value in found.items()}
 
 
-def probabilities(setting: Setting, placement: Placement, reference: int, log_depth: Float) -> Float:
-    """(N,) from 0 to 1; 0 for lines of no body."""
-    known = features(setting, placement, reference, log_depth)
+def _by_the_map(mapped: MapPlaces | None, count: int) -> tuple[Float, Float]:
+    """What the map's word is worth about each of `count` bodies, and how many widths they are off it; 0 without one."""
+    if mapped is None:
+        return np.zeros(count), np.zeros(count)
+    off = np.minimum(np.abs(mapped.misfit) / mapped.width, FARTHEST_OFF)
+    off = np.concatenate([off, np.full(count - len(off), np.nan)])
+    told = np.isfinite(off)
+    return np.where(told, mapped.worth, 0.0), np.where(told, off, 0.0)
+
+
+def probabilities(
+    setting: Setting, placement: Placement, reference: int, log_depth: Float, mapped: MapPlaces | None = None
+) -> Float:
+    """(N,) from 0 to 1; 0 for lines of no body. `mapped` as for `features`."""
+    known = features(setting, placement, reference, log_depth, mapped)
     log_odds = AT_ONCE + sum(
         (LOG_ODDS[name] * value for name, value in known.items()), np.zeros(len(setting.log_depth))
     )

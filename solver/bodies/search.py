@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.arrays import Float
+from linecad.arrays import Float, Int
 from linecad.line_graph import Status
 from solver.backends.scip import Watch, run, version
 from solver.bodies.local_search import improve, margins
@@ -76,19 +76,32 @@ def _about(ties: Ties, log_scale: Float, reference: int) -> Float:
 def _refined(ties: Ties, log_scale: Float) -> Float:
     """The middle of what counts: weighted least squares, kept where the counted ties still hold there.
 
-    The program knows intervals only, and its answer lies at their ends.
+    The program knows intervals only, and its answer lies at their ends. Ties that yield come after all others: they
+    shift as wholes what these hold together, and may cease to hold.
     """
     counted = ties.counted(log_scale)
-    if not counted.any():
-        return log_scale
-    used = ties.subset(counted)
-    first, second = used.bodies.T
-    rows = np.zeros((len(used), len(log_scale)))
-    at = np.arange(len(used))
-    rows[at, first], rows[at, second] = 1.0, -1.0
-    # The shortest step of all, so that what no counted tie holds stays. By the rows themselves and not their squares:
-    # what a person called real weighs so much that the normal equations are singular to machine precision.
-    weight = np.sqrt(used.weight) / used.tolerance
-    step = np.linalg.lstsq(weight[:, None] * rows, weight * (used.log_ratio - rows @ log_scale))[0]
-    refined = log_scale + step
-    return refined if ties.value(refined) >= ties.value(log_scale) else log_scale
+    yields = np.asarray(ties.yields)
+    firm = ties.subset(~yields)
+    refined = log_scale + _step(ties.subset(counted & ~yields), log_scale, np.arange(len(log_scale)))
+    if firm.value(refined) < firm.value(log_scale):
+        refined = log_scale
+    part = ties.parts(counted & ~yields, len(log_scale))
+    return refined + _step(ties.subset(counted & yields), refined, part)
+
+
+def _step(ties: Ties, log_scale: Float, part: Int) -> Float:
+    """By how much each body (B,) moves so that all of the ties are met best, each `part` (B,) as a whole.
+
+    The shortest step of all, so that what no tie holds stays. By the rows themselves and not their squares: what a
+    person called real weighs so much that the normal equations are singular to machine precision.
+    """
+    if not len(ties):
+        return np.zeros(len(log_scale))
+    first, second = ties.bodies.T
+    rows, at = np.zeros((len(ties), int(part.max()) + 1)), np.arange(len(ties))
+    np.add.at(rows, (at, part[first]), 1.0)
+    np.subtract.at(rows, (at, part[second]), 1.0)
+    weight = np.sqrt(ties.weight) / ties.tolerance
+    missed = ties.log_ratio - log_scale[first] + log_scale[second]
+    step: Float = np.linalg.lstsq(weight[:, None] * rows, weight * missed)[0][part]
+    return step

@@ -26,13 +26,18 @@ class Ties:
     tolerance: Float  # (T,) half width of the interval about log_ratio, positive
     weight: Float  # (T,) positive: log-odds that are won where the ratio is in the interval
     group: Int  # (T,) -1, or the group whose ties repeat each other
+    # (T,) its ratio is known less well than others': it places what they leave free, and moves nothing that they hold.
+    yields: Bool | tuple[()] = ()
 
     def __post_init__(self) -> None:
         freeze(self, "bodies", np.int64, (None, 2))
         for name in ("log_ratio", "tolerance", "weight"):
             freeze(self, name, np.float64, (None,))
         freeze(self, "group", np.int64, (None,))
-        check_lengths(self, len(self.bodies), ["log_ratio", "tolerance", "weight", "group"])
+        if len(self.yields) == 0:
+            object.__setattr__(self, "yields", np.zeros(len(self.bodies), bool))
+        freeze(self, "yields", np.bool_, (None,))
+        check_lengths(self, len(self.bodies), ["log_ratio", "tolerance", "weight", "group", "yields"])
         check_not_negative(self, ["bodies"])
         if len(self) and not (self.tolerance.min() > 0 and self.weight.min() > 0):
             raise ValueError("Ties.tolerance and Ties.weight must be positive")
@@ -46,7 +51,21 @@ class Ties:
 
     def subset(self, keep: Bool | Int) -> "Ties":
         """The ties that a mask or an index array selects."""
-        return Ties(self.bodies[keep], self.log_ratio[keep], self.tolerance[keep], self.weight[keep], self.group[keep])
+        return Ties(
+            self.bodies[keep], self.log_ratio[keep], self.tolerance[keep], self.weight[keep], self.group[keep],
+            np.asarray(self.yields)[keep],
+        )  # fmt: skip
+
+    def joined(self, other: "Ties") -> "Ties":
+        """These ties and then the others."""
+        return Ties(
+            np.concatenate([self.bodies, other.bodies]),
+            np.r_[self.log_ratio, other.log_ratio],
+            np.r_[self.tolerance, other.tolerance],
+            np.r_[self.weight, other.weight],
+            np.r_[self.group, other.group],
+            np.r_[self.yields, other.yields],
+        )
 
     def parts(self, used: Bool, count: int) -> Int:
         """Number (B,) of the part that each of `count` bodies is in by the used ties (T,), in order of first bodies."""

@@ -1,0 +1,112 @@
+"""What a depth map measures, and whether it is of this photo: told by the walls, whose shapes are known.
+
+The depths of lines inside a body are right to some tenths of a percent. A map whose log depth differs from theirs by
+one number for each body tells the truth; one that is read as another kind bends the walls, and one of another photo, or
+of one depth throughout, does not follow them at all.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.depth.depth_map import DepthMap, Kind
+from linecad.errors import DepthMapError
+from linecad.ties.depth_samples import DepthSamples, log_scales
+
+LEAST_SAMPLES, LEAST_BODIES = 60, 2
+LEAST_SPREAD = 0.01  # log of the 95th over the 5th percentile of the map's values
+MOST_UNEVEN = 0.65  # share of the depth that walls span
+QUARTER, LEAST_OFF = 0.25, 0.03  # of samples; log depth off the middle of a body
+CLEARLY = 1.5  # times as uneven as another must z be for the other to be meant: a wrong focal length does as much
+SAME_PLACES = 0.02  # log scale, the median over bodies, by which two kinds may differ where nothing tells them apart
+UNTOLD: tuple[Kind, ...] = ("z", "distance", "affine-inverse")  # disparity without a shift is told by its file
+SHIFTS = np.concatenate([[0.0], np.geomspace(1e-3, 10.0, 41)])  # of the map's upper values, above the least possible
+REFINED = np.geomspace(1 / 1.25, 1.25, 15)
+
+
+@dataclass(frozen=True, eq=False)
+class DepthReading:
+    """How a map was read."""
+
+    kind: Kind
+    shift: float  # in units of the map's inverse depth; 0 but for affine-inverse
+    unevenness: float  # of the depth that walls span, how far off them the map is (`_unevenness`)
+    log_scale: Float  # (B,) by which log the map asks each body to grow; NaN where it does not tell
+
+
+def read_depth(depth: DepthMap, samples: DepthSamples) -> DepthReading | str:
+    """The reading that makes walls flat, or one clause that says why the map is left out.
+
+    Where the file tells the kind, that is taken; else the one that makes walls flattest. Raises DepthMapError where
+    two kinds would place bodies apart and nothing tells which is meant.
+    """
+    if len(samples) < LEAST_SAMPLES or len(np.unique(samples.body)) < LEAST_BODIES:
+        return "it covers too few walls of this photo"
+    low, high = np.quantile(depth.values[depth.valid], [0.05, 0.95])
+    if np.log(high / low) < LEAST_SPREAD:
+        return "it holds one depth throughout"
+    readings = [_best_reading(samples, kind) for kind in (UNTOLD if depth.kind is None else (depth.kind,))]
+    readings.sort(key=lambda reading: reading.unevenness)
+    best = readings[0]
+    usual = next(reading for reading in readings if reading.kind in (depth.kind, "z"))
+    if best.unevenness > MOST_UNEVEN:
+        return f"it is off the photo's walls by {best.unevenness:.0%} of the depth that they span"
+    if best is not usual and usual.unevenness < CLEARLY * best.unevenness and _disagree(best, usual):
+        raise DepthMapError(
+            f"{depth.name} may hold {best.kind} or {usual.kind}: it is off the walls by {best.unevenness:.0%} of the "
+            f"depth that they span as the one, by {usual.unevenness:.0%} as the other; say which, like --option "
+            f"depth-kind={usual.kind}"
+        )
+    return best
+
+
+def _best_reading(samples: DepthSamples, kind: Kind) -> DepthReading:
+    shift = _best_shift(samples) if kind == "affine-inverse" else 0.0
+    excess = samples.excess(kind, shift)
+    return DepthReading(kind, shift, _unevenness(samples, excess), log_scales(samples, excess))
+
+
+def _best_shift(samples: DepthSamples) -> float:
+    """What must be added to disparity for walls to be flattest."""
+    unit = float(np.quantile(samples.value, 0.95))
+    least = float(np.quantile(samples.value, 0.02))
+
+    def best_of(shifts: Float) -> float:
+        found = [_unevenness(samples, samples.excess("affine-inverse", shift)) for shift in shifts]
+        return float(shifts[int(np.argmin(found))])
+
+    coarse = best_of(SHIFTS * unit - least)
+    return best_of((coarse + least) * REFINED - least)
+
+
+def _unevenness(samples: DepthSamples, excess: Float) -> float:
+    """How far the map is off the depths that vary inside bodies, as a share of how much they do.
+
+    0 for a perfect map, 1 for one of one depth throughout; the median over the QUARTER of the samples that differ most
+    in depth from the middle of their body. Infinite where the map has no depth at most of them.
+    """
+    own = _off_middle(samples.log_depth, samples.body)
+    far = np.abs(own) >= max(LEAST_OFF, float(np.quantile(np.abs(own), 1 - QUARTER)))
+    known = np.isfinite(excess)
+    if not far.any() or known[far].mean() < 0.5:
+        return float("inf")
+    off = np.zeros(len(excess))
+    off[known] = _off_middle(excess[known], samples.body[known])
+    return float(np.median(np.abs(off[far & known]) / np.abs(own[far & known])))
+
+
+def _off_middle(values: Float, body: Int) -> Float:
+    """Values (S,) less the median of those of their body (S,), whose numbers ascend."""
+    ordered = values[np.lexsort([values, body])]
+    starts = np.flatnonzero(np.diff(body, prepend=-1))
+    count = np.diff(starts, append=len(body))
+    off: Float = values - np.repeat(ordered[starts + count // 2], count)
+    return off
+
+
+def _disagree(one: DepthReading, other: DepthReading) -> bool:
+    """Whether two readings place bodies apart."""
+    apart = one.log_scale - other.log_scale
+    apart = apart[np.isfinite(apart)]
+    return len(apart) > 1 and bool(np.median(np.abs(apart - np.median(apart))) > SAME_PLACES)

@@ -1,0 +1,148 @@
+"""A depth map as a witness of where bodies stand: one more body, to which the map ties each of them.
+
+The log scale of the map is that of its unit. How far its word goes is estimated from the photo itself: the width of the
+Cauchy error of its bodies, by how well the ratios that it asks for agree with those that other evidence asks for, each
+of which is right with the probability that the table gives it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.depth.depth_map import DepthMap
+from linecad.line_graph import LineGraph
+from linecad.scene import DepthMapReport
+from linecad.ties.candidates import Candidate
+from linecad.ties.depth_kind import DepthReading, read_depth
+from linecad.ties.depth_samples import sample_walls, weighted_median
+from linecad.ties.setting import Setting
+from linecad.ties.weights import FULL_SIZE, log_odds_of
+from solver.bodies.ties import Placement, Ties
+from solver.robust import agreeing_with
+
+WIDTHS = np.geomspace(0.004, 0.5, 60)  # log scale, half widths at half maximum of a body's error
+LEAST_WIDTH = 0.01  # no network is known to be better from one photo
+USUAL_WIDTH, SPREAD = 0.02, 1.0  # before anything is seen: the middle of published networks; log, standard deviation
+MOST_WIDTH = 0.1  # of a map of this photo
+ELSEWHERE = 0.4  # log ratio, mean by which wrong candidates are off
+WITHIN = 1.5  # widths, half of the interval in which a tie to the map holds
+DENSITY = 1.25  # of scales, a unit of log ratio, where nothing is known: BY_CHANCE over twice TOLERANCE
+CONTRADICTED = 0.055  # share of the crossings' weight that contradicts a fit, at which the map counts as it stands
+LEAST_WORTH = 2.5  # log-odds of a large body, below which the map places only what nothing else ties
+POWER, FEWEST, MOST = 2.0, 0.25, 3.0  # of that share; times that the map may count less or more
+
+
+@dataclass(frozen=True, eq=False)
+class DepthWitness:
+    """What a depth map says of bodies."""
+
+    reading: DepthReading
+    width: float  # log scale: of the Cauchy error of a body
+    worth: float  # log-odds of its word for a large body
+    weight: float  # the same against ties of crossings that contradict each other more or less
+
+
+def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) -> DepthWitness | str:
+    """What the map says, or one clause that says why it is left out; where none was given, that is nothing.
+
+    Where crossings contradict each other, ties are worth less against the map. Raises DepthMapError where nothing tells
+    what it measures.
+    """
+    if depth is None:
+        return ""
+    reading = read_depth(depth, sample_walls(setting, depth))
+    if isinstance(reading, str):
+        return reading
+    width = max(LEAST_WIDTH, estimate_width(reading.log_scale, candidates))
+    if width > MOST_WIDTH:
+        return f"it places bodies {np.expm1(width):.0%} off those that crossings hold"
+    inside, chance = 2 / np.pi * np.arctan(WITHIN), 2 * WITHIN * width * DENSITY
+    worth = float(np.log(inside / (1 - inside)) - np.log(chance / (1 - chance)))
+    contradicted = _contradicted(setting.graph, setting.log_depth)
+    trust = float(np.clip((contradicted / CONTRADICTED) ** POWER, FEWEST, MOST))
+    return DepthWitness(reading, width, worth, worth * trust)
+
+
+def _contradicted(graph: LineGraph, log_depth: Float) -> float:
+    """Share of the weight of all crossings that disagree with log depths (N,)."""
+    told = graph.informative
+    agree = agreeing_with(graph, log_depth)
+    return 1 - float(graph.weight[agree & told].sum()) / max(float(graph.weight[told].sum()), 1e-9)
+
+
+def estimate_width(log_scale: Float, candidates: list[Candidate]) -> float:
+    """The most likely width of the map's errors.
+
+    Each candidate is right, and off the map's ratio by the errors of two bodies, or wrong, and off by anything. The
+    ground is left out: feet are found far less well than the map could be.
+    """
+    known = [candidate for candidate in candidates if candidate.kind != "ground"]
+    first, second = np.array([candidate.bodies for candidate in known], np.int64).reshape(-1, 2).T
+    off = np.abs(log_scale[first] - log_scale[second] - np.array([candidate.log_ratio for candidate in known]))
+    log_odds = np.array([log_odds_of(candidate) for candidate in known])[np.isfinite(off)]
+    off = off[np.isfinite(off)]
+    right, both = 1 / (1 + np.exp(-log_odds)), 2 * WIDTHS[:, None]
+    density = right * both / (np.pi * (both**2 + off**2)) + (1 - right) * np.exp(-off / ELSEWHERE) / ELSEWHERE / 2
+    likely = np.log(density).sum(axis=1) - 0.5 * (np.log(WIDTHS / USUAL_WIDTH) / SPREAD) ** 2
+    return float(WIDTHS[int(likely.argmax())])
+
+
+def ties_to_map(witness: DepthWitness, size: Int) -> Ties:
+    """A tie of each body of `size` (B,) lines that the map tells of to the map, which is body B + 1; B is the ground.
+
+    None where the map's word is worth less than LEAST_WORTH.
+    """
+    told = np.flatnonzero(np.isfinite(witness.reading.log_scale))
+    if witness.weight < LEAST_WORTH:
+        told = told[:0]
+    return Ties(
+        bodies=np.column_stack([told, np.full(len(told), len(size) + 1)]),
+        log_ratio=witness.reading.log_scale[told],
+        tolerance=np.full(len(told), WITHIN * witness.width),
+        weight=witness.weight * np.minimum(1.0, size[told] / FULL_SIZE),
+        group=np.full(len(told), -1),
+        yields=np.ones(len(told), bool),
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class MapPlaces:
+    """Where bodies stand once the map has placed those that nothing else ties."""
+
+    log_scale: Float  # (B,)
+    of_map: float  # log of the map's depth over that of the bodies
+    by_map: Bool  # (B,) bodies that the map alone ties to the reference
+    misfit: Float  # (B,) log scale by which bodies are off the map; NaN where it does not tell
+    width: float  # as of the witness
+    worth: float
+
+
+def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, reference: int, size: Int) -> MapPlaces:
+    """The places of B bodies of `size` lines: as they were placed, and by the map what no counted tie leads to."""
+    asked, count = witness.reading.log_scale, len(placement.log_scale)
+    log_scale = placement.log_scale[: len(size)].copy()
+    part = ties.parts(placement.counted, count)[: len(size)]
+    told = np.isfinite(asked)
+    main = told & (part == part[reference])
+    if not main.any():
+        nothing = np.zeros(len(size), bool)
+        return MapPlaces(log_scale, 0.0, nothing, np.full(len(size), np.nan), witness.width, witness.worth)
+    of_map = weighted_median((asked - log_scale)[main], size[main].astype(np.float64))
+    for number in np.unique(part[told]).tolist():
+        own = part == number
+        if number != part[reference]:
+            own_told = own & told
+            off = weighted_median((asked - log_scale)[own_told], size[own_told].astype(np.float64))
+            log_scale[own] += off - of_map
+    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)[: len(size)]
+    by_map = (firm != firm[reference]) & np.isin(firm, firm[told])
+    return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
+
+
+def report_of(depth: DepthMap, heard: DepthWitness | str, mapped: MapPlaces | None) -> DepthMapReport:
+    """What became of a map, its scale that of the depths of the solution."""
+    if isinstance(heard, str) or mapped is None:
+        return DepthMapReport(depth.name, str(heard))
+    reading = heard.reading
+    return DepthMapReport(depth.name, "", reading.kind, reading.shift, float(np.exp(mapped.of_map)), heard.width)
