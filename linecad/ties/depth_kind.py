@@ -16,7 +16,7 @@ from linecad.ties.depth_samples import DepthSamples, log_scales
 
 LEAST_SAMPLES, LEAST_BODIES = 60, 2
 LEAST_SPREAD = 0.01  # log of the 95th over the 5th percentile of the map's values
-MOST_UNEVEN = 0.65  # share of the depth that walls span
+MOST_UNEVEN = 0.6  # share of the depth that walls span
 QUARTER, LEAST_OFF = 0.25, 0.03  # of samples; log depth off the middle of a body
 CLEARLY = 1.5  # times as uneven as another must z be for the other to be meant: a wrong focal length does as much
 SAME_PLACES = 0.02  # log scale, the median over bodies, by which two kinds may differ where nothing tells them apart
@@ -32,6 +32,7 @@ class DepthReading:
     kind: Kind
     shift: float  # in units of the map's inverse depth; 0 but for affine-inverse
     unevenness: float  # of the depth that walls span, how far off them the map is (`_unevenness`)
+    spread: float  # log depth, the median by which samples are off the middle of their body
     log_scale: Float  # (B,) by which log the map asks each body to grow; NaN where it does not tell
 
 
@@ -64,7 +65,10 @@ def read_depth(depth: DepthMap, samples: DepthSamples) -> DepthReading | str:
 def _best_reading(samples: DepthSamples, kind: Kind) -> DepthReading:
     shift = _best_shift(samples) if kind == "affine-inverse" else 0.0
     excess = samples.excess(kind, shift)
-    return DepthReading(kind, shift, _unevenness(samples, excess), log_scales(samples, excess))
+    known = np.isfinite(excess)
+    off = np.abs(_off_middle(excess[known], samples.body[known]))
+    spread = float(np.median(off)) if known.any() else float("inf")
+    return DepthReading(kind, shift, _unevenness(samples, excess), spread, log_scales(samples, excess))
 
 
 def _best_shift(samples: DepthSamples) -> float:

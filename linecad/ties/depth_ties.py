@@ -23,14 +23,15 @@ from solver.robust import agreeing_with
 
 WIDTHS = np.geomspace(0.004, 0.5, 60)  # log scale, half widths at half maximum of a body's error
 LEAST_WIDTH = 0.01  # no network is known to be better from one photo
+WITHIN_BODIES = 0.5  # of the spread inside bodies, that the error of bodies has at least
 USUAL_WIDTH, SPREAD = 0.02, 1.0  # before anything is seen: the middle of published networks; log, standard deviation
-MOST_WIDTH = 0.1  # of a map of this photo
+MOST_WIDTH = 0.06  # of a map of this photo
 ELSEWHERE = 0.4  # log ratio, mean by which wrong candidates are off
 WITHIN = 1.5  # widths, half of the interval in which a tie to the map holds
 DENSITY = 1.25  # of scales, a unit of log ratio, where nothing is known: BY_CHANCE over twice TOLERANCE
-CONTRADICTED = 0.055  # share of the crossings' weight that contradicts a fit, at which the map counts as it stands
+CONTRADICTED = 0.045  # share of the crossings' weight that contradicts a fit, at which the map counts as it stands
 LEAST_WORTH = 2.5  # log-odds of a large body, below which the map places only what nothing else ties
-POWER, FEWEST, MOST = 2.0, 0.25, 3.0  # of that share; times that the map may count less or more
+POWER, FEWEST, MOST = 2.0, 0.25, 6.0  # of that share; times that the map may count less or more
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +55,7 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
     reading = read_depth(depth, sample_walls(setting, depth))
     if isinstance(reading, str):
         return reading
-    width = max(LEAST_WIDTH, estimate_width(reading.log_scale, candidates))
+    width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, estimate_width(reading.log_scale, candidates))
     if width > MOST_WIDTH:
         return f"it places bodies {np.expm1(width):.0%} off those that crossings hold"
     inside, chance = 2 / np.pi * np.arctan(WITHIN), 2 * WITHIN * width * DENSITY

@@ -22,8 +22,10 @@ import linecad.ties.probability
 import linecad.ties.table
 import linecad.ties.weights
 from linecad.arrays import Float, Int
+from linecad.depth.depth_map import DepthMap
 from linecad.evaluation.datasets import find_dataset
 from linecad.ties.candidates import KINDS, Candidate, Kind
+from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, hear, ties_to_map
 from linecad.ties.probability import features
 from linecad.ties.weights import weigh_candidates
 from solver.bodies.search import place
@@ -35,6 +37,7 @@ RIGHT_DEPTH = 0.05
 LEAST_REFERENCE = 10  # points on the reference body, for the others to be relative to
 RIDGE, RIDGE_OF_LINES = 3.0, 30.0
 SURE = 0.9
+WIDTHS = (0.012, 0.035, 0.08)  # of simulated depth maps
 
 # For each row of the ablation the kinds that are left out, and the features that the fit does without.
 WITHOUT: dict[str, tuple[tuple[Kind, ...], tuple[str, ...]]] = {
@@ -121,14 +124,34 @@ def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
     return {"AT_ONCE": {kind: fitted.at_once for kind, fitted in fits.items()}, "LOG_ODDS": slopes}
 
 
-def place_bodies(photo: Judged, candidates: list[Candidate]) -> tuple[Placement, int, Float]:
-    """The placement by some candidates, the body that others are placed relative to, and the log depths (N,)."""
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Bodies in their places."""
+
+    placement: Placement
+    reference: int  # the body that others are placed relative to
+    log_depth: Float  # (N,)
+    heard: DepthWitness | str  # the depth map, or why it was left out
+    mapped: MapPlaces | None
+
+
+def place_bodies(photo: Judged, candidates: list[Candidate], depth: DepthMap | None = None) -> Places:
+    """The placement by some candidates and a depth map, as linecad.ties.placing has it."""
     setting = photo.setting
     body, size = setting.bodies.body, setting.bodies.size
     reference = int(size.argmax()) if setting.bodies.count else 0
-    placement = place(weigh_candidates(candidates, size), setting.bodies.count + 1, reference, SolveOptions())
-    moved = np.where(body >= 0, placement.log_scale[np.maximum(body, 0)], 0.0)
-    return placement, reference, setting.log_depth + moved
+    ties, count = weigh_candidates(candidates, size), setting.bodies.count + 1
+    heard, mapped = hear(setting, candidates, depth), None
+    if isinstance(heard, DepthWitness):
+        ties = ties.joined(ties_to_map(heard, size))
+        count = max(count, int(ties.bodies.max(initial=-1)) + 1)
+    placement = place(ties, count, reference, SolveOptions())
+    log_scale = placement.log_scale
+    if isinstance(heard, DepthWitness):
+        mapped = follow_map(heard, ties, placement, reference, size)
+        log_scale = mapped.log_scale
+    moved = np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
+    return Places(placement, reference, setting.log_depth + moved, heard, mapped)
 
 
 @dataclass(frozen=True, eq=False)
@@ -137,18 +160,22 @@ class Placed:
 
     score: tuple[float, float]  # recall and precision at 5 %
     proven: bool
+    heard: bool  # a depth map was given and used
     features: Float  # (P, F) of the lines at the points that are judged; none where the reference body shows too few
     right: Float  # (P,) 0 or 1
 
 
-def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Placed:
-    """The photo placed by a table, without the candidates of some kinds."""
+def placed(
+    photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict], depth: tuple[float, int] | None = None
+) -> Placed:
+    """The photo placed by a table, without the candidates of some kinds, and with a map of that width and seed."""
     setting = photo.setting
     candidates = [candidate for candidate in photo.candidates if candidate.kind not in kinds]
     with mock.patch.multiple(linecad.ties.weights, **table):
-        placement, reference, log_depth = place_bodies(photo, candidates)
+        places = place_bodies(photo, candidates, depth and photo.true_depth.simulated(*depth))
+    placement, reference, log_depth = places.placement, places.reference, places.log_depth
     body = setting.bodies.body
-    known = features(setting, placement, reference, log_depth)
+    known = features(setting, placement, reference, log_depth, places.mapped)
     seen = photo.seen
     line = photo.on[seen]
     error = log_depth[line] + photo.log_factor[seen] - photo.log_true[seen]
@@ -158,7 +185,8 @@ def placed(photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict]) -> Pl
         error = error - densest(error[body[line] == reference])
     right = np.abs(np.expm1(error)) < RIGHT_DEPTH
     of_lines = np.array([value[line] for value in known.values()]).T
-    return Placed(photo.score(log_depth), placement.status == "optimal", of_lines, right.astype(np.float64))
+    is_proven, is_heard = placement.status == "optimal", places.mapped is not None
+    return Placed(photo.score(log_depth), is_proven, is_heard, of_lines, right.astype(np.float64))
 
 
 def print_ablation(
@@ -181,6 +209,23 @@ def print_ablation(
     return complete
 
 
+def print_maps(
+    photos: list[Judged], rows: dict[Kind, Rows], datasets: list[str], pool: ProcessPoolExecutor
+) -> list[list[Placed]]:
+    """Print a row for simulated depth maps of each of WIDTHS; the placements with them."""
+    print("\n| with a depth map | " + " | ".join(datasets) + " |\n| --- " + "| --- " * len(datasets) + "|")
+    scenes = sorted({photo.scene for photo in photos})
+    table = {scene: tables(fits_without(photos, rows, scene, ()), rows) for scene in scenes}
+    found = []
+    for width in WIDTHS:
+        jobs = [pool.submit(placed, photo, (), table[photo.scene], (width, seed)) for seed, photo in enumerate(photos)]
+        found.append([job.result() for job in jobs])
+        _print_row(f"{width:.1%}", photos, [one.score for one in found[-1]], datasets)
+        heard = sum(one.heard for one in found[-1])
+        print(f"{heard} of {len(photos)} maps are heard, {sum(one.proven for one in found[-1])} proven", flush=True)
+    return found
+
+
 def at_true_scales(photo: Judged) -> Float:
     """Log depths (N,); bodies whose scale is not known keep their place beside the largest whose scale is."""
     body, true_scale = photo.setting.bodies.body, photo.true_scale[:-1]
@@ -200,15 +245,17 @@ def _print_row(name: str, photos: list[Judged], scores: list[tuple[float, float]
     print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
 
 
-def print_probabilities(photos: list[Judged], found: list[Placed], datasets: list[str]) -> logistic.Logistic:
-    """Print how far the probabilities of lines hold; the regression over all photos, each of one weight."""
-    known = [(photo, one) for photo, one in zip(photos, found, strict=True) if len(one.right)]
-    of_lines = np.concatenate([one.features for _, one in known])
-    right = np.concatenate([one.right for _, one in known])
-    weight = np.concatenate([np.full(len(one.right), 1 / len(one.right)) for _, one in known])
+def print_probabilities(known: list[tuple[str, Judged, Placed]]) -> logistic.Logistic:
+    """Print how far the probabilities of lines hold, by the names given; the regression over all, each of one weight.
+
+    A scene is left out with and without maps at once.
+    """
+    of_lines = np.concatenate([one.features for _, _, one in known])
+    right = np.concatenate([one.right for _, _, one in known])
+    weight = np.concatenate([np.full(len(one.right), 1 / len(one.right)) for _, _, one in known])
     weight /= weight.mean()
-    scene = np.concatenate([np.full(len(one.right), photo.scene) for photo, one in known])
-    dataset = np.concatenate([np.full(len(one.right), photo.dataset) for photo, one in known])
+    scene = np.concatenate([np.full(len(one.right), photo.scene) for _, photo, one in known])
+    dataset = np.concatenate([np.full(len(one.right), name) for name, _, one in known])
     predicted = np.zeros(len(right))
     for name in np.unique(scene):
         out = scene == name
@@ -216,7 +263,7 @@ def print_probabilities(photos: list[Judged], found: list[Placed], datasets: lis
         predicted[out] = fitted.probability(of_lines[out])
     print("\n| lines | " + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10)) + " | at 0.9: precision | recall |")
     print("| --- " * 13 + "|")
-    for name in datasets:
+    for name in dict.fromkeys(name for name, _, _ in known):
         own = dataset == name
         cells = [_cell(tenth) for tenth in logistic.tenths(right[own], predicted[own], weight[own])]
         sure = own & (predicted >= SURE)
@@ -242,7 +289,11 @@ def main() -> None:
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
         print_kinds(rows, datasets)
         found = print_ablation(photos, rows, datasets, pool)
-        of_lines = print_probabilities(photos, found, datasets)
+        with_maps = print_maps(photos, rows, datasets, pool)
+    known = [(photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True)]
+    for of_width in with_maps:
+        known += [(f"{photo.dataset}, map", photo, one) for photo, one in zip(photos, of_width, strict=True)]
+    of_lines = print_probabilities([one for one in known if len(one[2].right)])
     fits = {kind: of_kind.fit(np.ones(len(of_kind.right), bool)) for kind, of_kind in rows.items()}
     print_changes(tables(fits, rows), of_lines)
     if chosen.write:

@@ -5,6 +5,7 @@ from functools import cached_property
 from types import SimpleNamespace
 
 import numpy as np
+from depth_truth import TrueDepth, true_depth
 from feet_truth import examples_of
 
 from linecad.arrays import Float, Int
@@ -15,6 +16,7 @@ from linecad.evaluation.depth import NO_LINE, depths_of, nearest_lines, score
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.options import LONG_REACH, Options
+from linecad.scene import Camera
 from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.placing import FITS
@@ -38,6 +40,7 @@ class Judged:
     log_factor: Float  # (P,) log depth of the point where its line has log depth 0
     log_true: Float  # (P,)
     true_scale: Float  # (B + 1,) log, that of the ground last; NaN where the points do not tell
+    true_depth: TrueDepth  # of the photo's pixels
 
     @cached_property
     def seen(self) -> Int:
@@ -63,6 +66,7 @@ class Seen:
     """A photo with its bodies, and the points whose depth is known."""
 
     setting: Setting
+    camera: Camera
     reference: Reference
     on: Int  # (P,) as in Judged
     log_factor: Float  # (P,)
@@ -89,7 +93,9 @@ def look_at(case: Case) -> Seen | None:
     setting = Setting(graph, log_depth, bodies, fits, sight)
     on, log_factor = lines_at(setting, found, reference.edges.pixels)
     log_true = np.log(reference.edges.depth)
-    return Seen(setting, reference, on, log_factor, log_true, true_scales(setting, on, log_true - log_factor))
+    return Seen(
+        setting, found.camera, reference, on, log_factor, log_true, true_scales(setting, on, log_true - log_factor)
+    )
 
 
 def scene_of(dataset: str, case: Case) -> str:
@@ -118,6 +124,7 @@ def judge(dataset: str, case: Case) -> Judged | None:
         seen.log_factor,
         seen.log_true,
         np.append(seen.true_scale, densest(np.array(feet)) if feet else np.nan),
+        true_depth(seen.reference, seen.camera),
     )
 
 

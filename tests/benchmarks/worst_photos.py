@@ -39,7 +39,8 @@ def see(folder: Path, case: Case) -> Seen | None:
     photo = judge(folder.name, case)
     if photo is None:
         return None
-    _, reference, log_depth = place_bodies(photo, photo.candidates)
+    places = place_bodies(photo, photo.candidates)
+    reference, log_depth = places.reference, places.log_depth
     true = photo.score(at_true_scales(photo))
     return Seen(case.name, photo.score(log_depth), true, _picture(case, photo, log_depth, reference))
 
