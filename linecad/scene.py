@@ -238,6 +238,13 @@ class DepthMapReport:
         if self.kind is not None and self.kind not in DEPTH_KINDS:
             raise ValueError(f"DepthMapReport.kind is {self.kind!r}, expected one of {', '.join(DEPTH_KINDS)}")
 
+    @property
+    def text(self) -> str:
+        """One line for people: the file, and its kind and width or why it was left out."""
+        if self.width is None:
+            return f"depth map {self.file} left out: {self.left_out}"
+        return f"depth map {self.file}: {self.kind}, width of its errors {100 * self.width:.2g} %"
+
 
 @dataclass(frozen=True, eq=False)
 class Scene:

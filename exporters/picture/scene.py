@@ -14,10 +14,11 @@ from exporters.picture.canvas import Canvas, drawable, text_width
 from exporters.picture.faces import OPACITY, draw_faces, draw_line, words_of
 from exporters.picture.views import VIEWS, draw_view
 from linecad.arrays import Float
-from linecad.scene import AXES, Lines, Scene
+from linecad.scene import AXES, DepthMapReport, Lines, Scene
 
 _WIDTH = 2400  # px
 _MARGIN, _GAP = 44, 24  # px
+_TOP, _ROW = _MARGIN + 122, 42  # px: where photo and views begin, and how much lower for one more line of facts
 _PHOTO_WIDTH, _PHOTO_HEIGHT = 1560, 1500  # px, at most, with the views beside it
 _VIEW_HEIGHT, _VIEW_HEIGHT_BELOW = 300, 560  # px, at least with the views beside the photo; always with them below
 _PANORAMA = 1.9  # from this ratio of width to height on, the views stand below the photo
@@ -26,10 +27,12 @@ _LONGEST_PANORAMA = 40  # px of height that the thinnest strip of a photo still 
 _PAPER, _INK, _QUIET = (0.965, 0.965, 0.97), (0.13, 0.13, 0.15), (0.40, 0.40, 0.43)
 _NO_PHOTO = (0.86, 0.86, 0.87)
 _REAL, _FAKE, _CASING = (1.0, 0.84, 0.12), (0.80, 0.05, 0.62), (1.0, 1.0, 1.0)
+_BY_MAP = (1.0, 0.50, 0.0)  # rim about the casing of lines that the depth map alone places
 _TITLE, _TEXT = 42, 27  # px of text
 
 _LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 4, False: 2}  # px, by boundary
 _CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wider than the line
+_RIM_WIDTH = 5  # px that the rim of a line is wider than its casing
 _FEW_LINES = 600  # from there on they are drawn thin
 _MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.0  # px, of crossings
 _OUTLINED = 1.22  # radius of a disc with its dark outline over that of the disc
@@ -46,9 +49,12 @@ class _Box(NamedTuple):
 
 def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
     """Write the picture to `path`; OSError where that fails. `photo` is RGB, of the size of the camera, or None."""
-    shape, views, height = _layout(scene.camera.width / scene.camera.height)
+    top = _TOP if scene.depth_map is None else _TOP + _ROW
+    shape, views, height = _layout(scene.camera.width / scene.camera.height, top)
     canvas = Canvas(_WIDTH, height, _PAPER)
     _draw_title(canvas, scene)
+    if scene.depth_map is not None:
+        _draw_depth_map(canvas, scene.depth_map, scene.lines)
     _draw_photo(canvas.window(*shape), scene, photo)
     for box, (name, right, up) in zip(views, VIEWS, strict=True):
         draw_view(canvas.window(*box), scene, name, right, up)
@@ -56,9 +62,9 @@ def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
     canvas.image().save(path, format="PNG")
 
 
-def _layout(aspect: float) -> tuple[_Box, list[_Box], int]:
-    """Where the photo and the views stand, and the height of the picture."""
-    top, inner = _MARGIN + 122, _WIDTH - 2 * _MARGIN
+def _layout(aspect: float, top: int) -> tuple[_Box, list[_Box], int]:
+    """Where the photo and the views stand, from `top` down, and the height of the picture."""
+    inner = _WIDTH - 2 * _MARGIN
     if aspect >= _PANORAMA:
         photo = _Box(_MARGIN, top, inner, max(round(inner / aspect), _LONGEST_PANORAMA))
         width, height = (inner - 2 * _GAP) // 3, _VIEW_HEIGHT_BELOW
@@ -90,10 +96,28 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
         f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
     ]
     facts += _sureness(lines)
+    _draw_facts(canvas, _MARGIN, _MARGIN + 88, facts)
+
+
+def _draw_depth_map(canvas: Canvas, report: DepthMapReport, lines: Lines) -> None:
+    """What became of the depth map, and how many lines have the mark that it placed them."""
+    x, y = _MARGIN, _MARGIN + 88 + _ROW
+    facts = [report.text]
+    if not report.left_out:
+        facts.insert(0, f"{_count(int(np.sum(lines.by_depth_map)), 'line')} placed by the depth map")
+        middle = y - _TEXT // 3
+        width = _LINE_WIDTH[False] + _CASING_WIDTH
+        for colour, wider in ((_BY_MAP, _RIM_WIDTH), (_CASING, 0), (_QUIET, -_CASING_WIDTH)):
+            canvas.line((x + 6, middle), (x + 62, middle), colour, width + wider)
+        x += 80
+    _draw_facts(canvas, x, y, facts)
+
+
+def _draw_facts(canvas: Canvas, x: int, y: int, facts: Sequence[str]) -> None:
+    """One line of facts from `x`, written smaller where it would be cut off at the border of the picture."""
     text = "   ·   ".join(map(drawable, facts))
-    # A long line is written smaller and not cut off at the border of the picture.
-    size = min(_TEXT, int(_TEXT * (canvas.width - 2 * _MARGIN) / text_width(text, _TEXT)))
-    canvas.text(_MARGIN, _MARGIN + 88, text, size, _QUIET)
+    size = min(_TEXT, int(_TEXT * (canvas.width - _MARGIN - x) / text_width(text, _TEXT)))
+    canvas.text(x, y, text, size, _QUIET)
 
 
 def _sureness(lines: Lines) -> list[str]:
@@ -129,7 +153,7 @@ def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) ->
 
 
 def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
-    """Boundaries over the others, with a light casing that keeps them apart from the photo."""
+    """Boundaries over the others, with a light casing that keeps them apart from the photo; some with a rim."""
     lines = scene.lines
     words, _ = words_of(lines)
     few = len(lines) <= _FEW_LINES
@@ -137,6 +161,8 @@ def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
     for wanted in (False, True):
         chosen = np.flatnonzero(lines.is_boundary == wanted).tolist()
         width = widths[wanted]
+        for number in (number for number in chosen if lines.by_depth_map[number]):
+            panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _BY_MAP, width + casing + _RIM_WIDTH)
         for number in chosen:
             panel.line(ends[number, 0].tolist(), ends[number, 1].tolist(), _CASING, width + casing)
         for number in chosen:

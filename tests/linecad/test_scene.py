@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
-from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.scene import Camera, DepthMapReport, Face, Intersections, Lines, Plane, Scene, SolveReport
 
 K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
 TRIANGLE = [[0, 4, 0], [1, 4, 0], [0, 4, 1]]
@@ -182,3 +182,11 @@ def test_faces_of_a_scene_are_in_the_order_of_their_ids() -> None:
     second = Plane(1, 1, 4.0, (), (Face(3, TRIANGLE),))
     pairs = replace(scene, planes=(first, second)).faces
     assert [(owner.id, face.id) for owner, face in pairs] == [(0, 1), (1, 3), (0, 5)]
+
+
+def test_a_depth_map_is_told_in_one_line() -> None:
+    used = DepthMapReport("a.npz", "", kind="affine-inverse", shift=0.1, scale=2.0, width=0.0123)
+    assert used.text == "depth map a.npz: affine-inverse, width of its errors 1.2 %"
+    assert (
+        DepthMapReport("a.npz", "it covers too few walls").text == "depth map a.npz left out: it covers too few walls"
+    )

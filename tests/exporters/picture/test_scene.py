@@ -10,7 +10,7 @@ from exporters.picture import faces as picture_faces
 from exporters.picture import scene as picture
 from exporters.picture import views as picture_views
 from exporters.picture.canvas import Canvas, drawable, text_width
-from linecad.scene import CONFIDENCES, Camera, Intersections
+from linecad.scene import CONFIDENCES, Camera, DepthMapReport, Intersections
 
 GREY = (0.5, 0.5, 0.5)
 LEFT, TOP, PHOTO_WIDTH = 44, 166, 1560  # px: where the photo stands in a picture of a 4 : 3 photo
@@ -281,6 +281,60 @@ def test_guesses_are_paler_in_the_views_whatever_their_component(scene):
         assert (np.abs(pixels - red).max(axis=2) < 2).any() == is_full
 
 
+USED = DepthMapReport("rear wall.npz", "", kind="z", shift=0.0, scale=0.4, width=0.012)
+LEFT_OUT = DepthMapReport("rear wall.npz", "it holds one depth throughout")
+
+
+def rim(scene, by_map):
+    """How many px of the photo have the colour of the rim, where these lines (N,) are placed by a depth map."""
+    lines = replace(scene.lines, by_depth_map=by_map)
+    panel = Canvas(1600, 1200, GREY)
+    picture._draw_segments(panel, replace(scene, lines=lines), lines.segment)
+    return np.abs(panel.pixels - np.array(picture._BY_MAP) * 255).max(axis=2) < 2
+
+
+def test_a_line_that_a_depth_map_alone_places_has_a_rim_and_no_other(scene):
+    nothing = np.zeros(len(scene.lines), bool)
+    assert not rim(scene, nothing).any()
+    number = int(np.argmax(np.linalg.norm(scene.lines.segment[:, 1] - scene.lines.segment[:, 0], axis=1)))
+    one = nothing.copy()
+    one[number] = True
+    y, x = np.nonzero(rim(scene, one))
+    start, end = scene.lines.segment[number]
+    along = (end - start) / np.linalg.norm(end - start)
+    place, beside = np.abs((np.column_stack([x, y]) - start) @ np.array([along, (-along[1], along[0])]).T).T
+    beside = beside[(place > 10) & (place < np.linalg.norm(end - start) - 10)]  # its ends are round
+    assert len(beside) > 100
+    assert beside.min() > 2
+    assert beside.max() < 9
+
+
+def heading(scene, report):
+    canvas = Canvas(2400, 300, GREY)
+    picture._draw_depth_map(canvas, report, scene.lines)
+    (text,) = canvas.texts
+    assert text.x + text_width(text.text, text.size) < 2400
+    has_sample = (np.abs(canvas.pixels - np.array(picture._BY_MAP) * 255).max(axis=2) < 2).any()
+    return text.text, has_sample
+
+
+def test_the_heading_tells_what_a_depth_map_placed_beside_a_sample_of_the_mark(scene):
+    by_map = np.arange(len(scene.lines)) < 12
+    told = heading(replace(scene, lines=replace(scene.lines, by_depth_map=by_map)), USED)
+    assert told == ("12 lines placed by the depth map   ·   " + USED.text, True)
+    assert heading(scene, USED)[0].startswith("0 lines placed")
+
+
+def test_the_heading_tells_why_a_depth_map_was_left_out(scene):
+    assert heading(scene, LEFT_OUT) == (LEFT_OUT.text, False)
+
+
+def test_the_picture_of_a_scene_with_a_map_is_one_line_higher(scene, drawn_without_photo, tmp_path):
+    export(replace(scene, depth_map=LEFT_OUT), tmp_path / "a.png")
+    with Image.open(tmp_path / "a.png") as picture_with_map:
+        assert picture_with_map.height == len(drawn_without_photo) + picture._ROW
+
+
 @pytest.mark.parametrize(("start", "end"), [((-1e7, 50.0), (1e7, 50.0)), ((50.0, 20.0), (50.0, 80.0))])
 def test_dashes_stay_in_the_panel_and_cover_about_half(start, end):
     panel = Canvas(100, 100, GREY)
@@ -318,8 +372,10 @@ def test_photos_of_any_shape_fill_their_place(scene, tmp_path, width, height):
 
 
 @pytest.mark.parametrize("aspect", [0.01, 0.5, 1.0, 1.5, 1.89, 1.91, 30.0])
-def test_nothing_is_laid_over_anything_else(aspect):
-    photo, views, height = picture._layout(aspect)
+@pytest.mark.parametrize("top", [picture._TOP, picture._TOP + picture._ROW])
+def test_nothing_is_laid_over_anything_else(aspect, top):
+    photo, views, height = picture._layout(aspect, top)
+    assert min(box.top for box in (photo, *views)) == top
     boxes = [photo, *views]
     for box in boxes:
         assert box.left >= 0
