@@ -6,7 +6,6 @@ borders of what is seen its colours go on for a few texels, so that no filter mi
 """
 
 import math
-from dataclasses import dataclass
 
 import cv2
 import numpy as np
@@ -14,13 +13,11 @@ from numpy.typing import NDArray
 
 from exporters.colours import FACE
 from exporters.model import FlatFace, Model, signed_area
-from exporters.textures.layout import MARGIN, Layout, Patch, View, seen_part
+from exporters.textures.layout import MARGIN, Layout, Patch, View
+from exporters.textures.nearest import Nearest, Shape, filled, nearest_of, shape_of
 from linecad.arrays import Bool, Float
 
 PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the photo says nothing about
-_LEAST_AREA = 1e-3  # px^2; a face that is seen from its edge shows nothing
-_SHIFT = 4  # bits after the point in OpenCV's coordinates
-_BORDER = 3  # px about a face in the photo, which the interpolation reaches into
 _ROUNDED = 0.75  # px by which the border of a face is off where it is filled pixel by pixel
 _BLURRED = 1.5  # px, the width of an edge in a photo: so near to a border the colours are mixed
 _MOST_BLURRED = MARGIN / 2  # texels
@@ -28,40 +25,13 @@ _NEARER = 1e-3  # relative; what differs less in depth touches
 _WHOLLY_SEEN = 250  # of 255: less of a texel is mixed with what hides it
 
 Pixels = NDArray[np.uint8]
-_Float32 = NDArray[np.float32]
-
-
-@dataclass(frozen=True, eq=False)
-class _Shape:
-    """A face in the photo."""
-
-    rings: list[Float]  # (C, 2) px, what of the face lies in the photo; none where nothing does
-    box: tuple[int, int, int, int]  # px: left, top, right, bottom; the last two are outside
-    inverse_depth: Float  # (3,) 1/m: the inverse of the depth is its product with (x, y, 1)
-
-    def inverse_depths(self) -> _Float32:
-        """1/m, of the face's whole plane at every pixel of the box."""
-        left, top, right, bottom = self.box
-        a, b, c = self.inverse_depth
-        across, down = a * np.arange(left, right), b * np.arange(top, bottom) + c
-        inverse: _Float32 = across.astype(np.float32)[None, :] + down.astype(np.float32)[:, None]
-        return inverse
-
-
-@dataclass(frozen=True, eq=False)
-class _Nearest:
-    """The nearest face at each pixel of the photo."""
-
-    inverse_depth: _Float32  # (H, W) 1/m; 0 where there is none
-    owner: NDArray[np.int32]  # (H, W) the number of the face; any where there is none
-    slopes: _Float32  # (F, 2) 1/m a px, of the inverse depth of each face
 
 
 def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list[Pixels]:
     """The pages of a layout, RGB, from the photo (H, W, 3)."""
     pages = [np.full((height, width, 3), PLAIN, np.uint8) for width, height in layout.pages]
-    shapes = [_shape(face, view) for face in model.faces]
-    nearest = _nearest(shapes, view)
+    shapes = [shape_of(face, view) for face in model.faces]
+    nearest = nearest_of(shapes, view)
     for face, shape, patch in zip(model.faces, shapes, layout.patches, strict=True):
         if shape.rings:
             colours = _paint(face, shape, patch, view, nearest, photo)
@@ -70,33 +40,7 @@ def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list
     return pages
 
 
-def _shape(face: FlatFace, view: View) -> _Shape:
-    seen = [seen_part(ring, view) for ring in face.rings]
-    rings = [ring[:, :2] / ring[:, 2:] for ring in seen if len(ring)] if len(seen[0]) else []
-    if not rings or face.offset == 0 or abs(signed_area(rings[0])) < _LEAST_AREA:
-        return _Shape([], (0, 0, 0, 0), np.zeros(3))
-    # World rays of camera depth 1 are linear in the pixel, and the plane cuts them at offset over their coordinate.
-    inverse_depth = np.linalg.inv(view.projection)[face.axis] / face.offset
-    left, top = np.maximum(np.floor(rings[0].min(axis=0)).astype(int) - _BORDER, 0).tolist()
-    right, bottom = np.ceil(rings[0].max(axis=0)).astype(int) + _BORDER + 1
-    return _Shape(rings, (left, top, min(int(right), view.width), min(int(bottom), view.height)), inverse_depth)
-
-
-def _nearest(shapes: list[_Shape], view: View) -> _Nearest:
-    inverse_depth = np.zeros((view.height, view.width), np.float32)
-    owner = np.zeros((view.height, view.width), np.int32)
-    for number, shape in enumerate(shapes):
-        if shape.rings:
-            left, top, right, bottom = shape.box
-            here = np.s_[top:bottom, left:right]
-            inverse = shape.inverse_depths()
-            nearer = _filled(shape.rings, (left, top), inverse.shape) & (inverse > inverse_depth[here])
-            inverse_depth[here][nearer] = inverse[nearer]
-            owner[here][nearer] = number
-    return _Nearest(inverse_depth, owner, np.array([shape.inverse_depth[:2] for shape in shapes], np.float32))
-
-
-def _hidden(shape: _Shape, nearest: _Nearest) -> Bool:
+def _hidden(shape: Shape, nearest: Nearest) -> Bool:
     """Where in its box a face is behind another one.
 
     Not within _ROUNDED of the line where their planes meet: the difference of the inverse depths is linear in the
@@ -110,7 +54,7 @@ def _hidden(shape: _Shape, nearest: _Nearest) -> Bool:
     return hidden
 
 
-def _paint(face: FlatFace, shape: _Shape, patch: Patch, view: View, nearest: _Nearest, photo: Pixels) -> Pixels:
+def _paint(face: FlatFace, shape: Shape, patch: Patch, view: View, nearest: Nearest, photo: Pixels) -> Pixels:
     """RGB of a patch with its margin."""
     left, top, right, bottom = shape.box
     here = np.s_[top:bottom, left:right]
@@ -123,7 +67,7 @@ def _paint(face: FlatFace, shape: _Shape, patch: Patch, view: View, nearest: _Ne
     )
     corner = (patch.left - MARGIN, patch.top - MARGIN)
     rings = [patch.texels(ring) - 0.5 for ring in face.rings]
-    known = (seen >= _WHOLLY_SEEN) & _filled(rings, corner, size[::-1]) & _in_front(to_photo, size)
+    known = (seen >= _WHOLLY_SEEN) & filled(rings, corner, size[::-1]) & _in_front(to_photo, size)
 
     texels = abs(signed_area(rings[0]))
     step = math.sqrt(abs(signed_area(shape.rings[0])) / texels)  # px a texel, in the mean
@@ -141,14 +85,6 @@ def _to_space(face: FlatFace, patch: Patch) -> Float:
     start = patch.right * patch.corner[0] + patch.up * patch.corner[1] + (0.5 - MARGIN) * (across + down)
     start[face.axis] = face.offset
     return np.stack([across, down, start], axis=1)
-
-
-def _filled(rings: list[Float], corner: tuple[int, int], shape: tuple[int, ...]) -> Bool:
-    """Where a picture that begins at `corner` lies in a polygon with holes or on its border; rings (C, 2) in px."""
-    inside = np.zeros(shape, np.uint8)
-    fixed = [np.round((ring - corner) * 2**_SHIFT).astype(np.int32) for ring in rings]
-    cv2.fillPoly(inside, fixed, (1,), cv2.LINE_8, _SHIFT)
-    return inside.astype(np.bool_)
 
 
 def _in_front(to_photo: Float, size: tuple[int, int]) -> Bool:
