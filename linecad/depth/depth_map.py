@@ -84,6 +84,18 @@ class Content:
     mask: Bool | None = None  # (H, W) false where the network says that there is nothing; None: it does not say
 
 
+def camera_depths(values: Float, slant: Float, kind: Kind, shift: float = 0.0) -> Float:
+    """Camera depth, in units of the map, of its numbers (...); NaN where a map of that kind and shift has none.
+
+    `slant` (...) is the distance of a point of depth 1 on the ray of each; `shift` is added, by affine-inverse alone.
+    """
+    shifted = values + shift if kind == "affine-inverse" else values
+    depth = np.where(shifted > 0, shifted, np.nan)
+    if kind in ("inverse", "affine-inverse"):
+        return np.asarray(1 / depth, np.float64)
+    return np.asarray(depth / slant if kind == "distance" else depth, np.float64)
+
+
 def check_size(width: int, height: int, path: Path) -> None:
     """Raise DepthMapError where a map of that size is too small or too large; called before memory is taken for it."""
     if min(width, height) < SMALLEST_SIDE:

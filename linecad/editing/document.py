@@ -11,6 +11,8 @@ from exporters.model import FlatFace, build_model
 from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary
+from linecad.depth.depth_map import DepthMap
+from linecad.editing.depth_layers import document_of_layers
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError
@@ -18,11 +20,12 @@ from linecad.scene import AXES, Face, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
+    "by_depth_map": False,
 }  # fmt: skip
 
 
-def document_of(now: Now, levels: int, is_saved: bool) -> dict[str, object]:
-    """The answer to GET /api/state; `levels` of the photo's tiles."""
+def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = None) -> dict[str, object]:
+    """The answer to GET /api/state; `levels` of the photo's tiles, `depth` a map on its pixels."""
     camera = now.found.camera
     scene = None if now.model is None else now.model.scene
     labelled = sum(label is not None for label in now.lines.annotations.label)
@@ -39,6 +42,7 @@ def document_of(now: Now, levels: int, is_saved: bool) -> dict[str, object]:
         "crossings": _crossings(now),
         "planes": [] if now.model is None else _planes(now, now.model),
         "notes": list(now.found.notes if scene is None else scene.notes),
+        "depth_map": None if depth is None else document_of_layers(depth, now),
         "solve": solve_of(now),
         "undo": len(now.corrections.edits),
         "redo": len(now.corrections.undone),
@@ -116,6 +120,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "confidence": str(lines.confidence[row]),
             "probability": float(lines.probability[row]) if len(lines.probability) else None,
             "guess": bool(guess[row]),
+            "by_depth_map": bool(lines.by_depth_map[row]),
         }
         for look, row in _rows(scene).items()
     }

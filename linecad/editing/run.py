@@ -90,7 +90,7 @@ def _edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], o
         solving = SolvingProcess(photo, options.reconstruct, session.hear, session.take, depth)
         try:
             token, port = new_token(), listener.getsockname()[1]
-            app = Editor(session, solving, saver, camera).app(token, port)
+            app = Editor(session, solving, saver, camera, depth).app(token, port)
             solving.start(session.task(session.now().version))
             signal.signal(signal.SIGTERM, _end)
             serve(app, listener, lambda: on_ready(f"http://{HOST}:{port}/#{token}"))

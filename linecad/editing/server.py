@@ -16,6 +16,8 @@ from starlette.responses import JSONResponse, Response
 from starlette.routing import Route
 
 from exporters.formats import FORMATS, SCENE_FILE
+from linecad.depth.depth_map import DepthMap
+from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
 from linecad.editing.edits import proposal, read_edit
 from linecad.editing.guard import HOST, Guard, TooLargeError
@@ -54,9 +56,19 @@ class Solver(Protocol):
 class Editor:
     """The routes and what they work on."""
 
-    def __init__(self, session: Session, solving: Solver, saver: Saver[ToSave], camera: object = None) -> None:
-        """`camera` is what a labels file says about it (`linecad.editing.labelling.camera_of_labels`)."""
-        self.session, self.solving, self.saver, self.camera = session, solving, saver, camera
+    def __init__(
+        self,
+        session: Session,
+        solving: Solver,
+        saver: Saver[ToSave],
+        camera: object = None,
+        depth: DepthMap | None = None,
+    ) -> None:
+        """`camera` is what a labels file says about it (`linecad.editing.labelling.camera_of_labels`).
+
+        `depth` is the map on the photo's pixels that the solver is given.
+        """
+        self.session, self.solving, self.saver, self.camera, self.depth = session, solving, saver, camera, depth
         self.pyramid = Pyramid(session.photo.pixels)
         self.tabs = Tabs(time.monotonic)
         self.files = page_files()
@@ -69,6 +81,7 @@ class Editor:
             Route("/api/state", self.state),
             Route("/api/progress", self.progress),
             Route("/api/tile/{level:int}/{column:int}/{row:int}", self.tile),
+            Route("/api/depth/{layer}", self.depth_layer),
             Route("/api/edit", _post(self.edit), methods=["POST"]),
             Route("/api/undo", _post(self.undo), methods=["POST"]),
             Route("/api/redo", _post(self.redo), methods=["POST"]),
@@ -99,7 +112,7 @@ class Editor:
         return self._state()
 
     def _state(self) -> Response:
-        return JSONResponse(document_of(self.session.now(), self.pyramid.levels, self.saver.is_saved))
+        return JSONResponse(document_of(self.session.now(), self.pyramid.levels, self.saver.is_saved, self.depth))
 
     def progress(self, _request: Request) -> Response:
         """GET /api/progress: small, asked for several times a second."""
@@ -111,6 +124,13 @@ class Editor:
         at = request.path_params
         data = self.pyramid.tile(at["level"], at["column"], at["row"])
         return _error(404, "there is no such tile") if data is None else Response(data, media_type="image/jpeg")
+
+    def depth_layer(self, request: Request) -> Response:
+        """GET /api/depth/LAYER: a picture over the photo, as the state that is shown has it."""
+        data = None
+        if self.depth is not None:
+            data = layer_of(request.path_params["layer"], self.depth, self.session.now())
+        return _error(404, "there is no such layer") if data is None else Response(data, media_type="image/png")
 
     def edit(self, body: Node) -> Response:
         """POST /api/edit."""

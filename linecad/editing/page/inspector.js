@@ -109,6 +109,7 @@ export class Inspector {
       line.boundary ? "boundary" : null,
       line.confidence,
       line.probability === null ? null : `depth ${Math.round(100 * line.probability)} % sure`,
+      line.by_depth_map ? "placed by the depth map" : null,
       line.component > 0 ? `component ${line.component}` : null,
       ORIGINS[line.origin],
       this.#length(line),

@@ -1,7 +1,6 @@
 // The keys: one table, from which the help is made too.
 
 import { element } from "./dom.js";
-import { LAYERS } from "./store.js";
 import { TOOLS } from "./tools.js";
 
 /** Rows of the table: `keys` as in KeyboardEvent.key (lower case), with "ctrl+" and "shift+" before them. */
@@ -100,7 +99,7 @@ export function keyTable({ store, actions, tools, pointer, panels }) {
         { keys: ["h"], text: "While held: nothing over the photo", held: (down) => store.set({ hidden: down }) },
         { keys: ["t"], text: "See the model through the camera", run: () => panels.toggleCamera() },
         { keys: ["p"], text: "Photo on the faces of the model", run: () => store.set({ texture: !store.texture }) },
-        ...LAYERS.map(({ name, label: layer, key }) => ({
+        ...store.offeredLayers.map(({ name, label: layer, key }) => ({
           keys: [key],
           text: `Show or hide: ${layer.toLowerCase()}`,
           run: () => store.toggleLayer(name),

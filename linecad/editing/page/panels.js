@@ -1,7 +1,7 @@
 // The bars, menus and dialogs around the two views.
 
 import { counted, element, icon } from "./dom.js";
-import { LAYERS, isReal } from "./store.js";
+import { isReal } from "./store.js";
 import { TOOLS } from "./tools.js";
 
 const LABELS = { name: "labels", label: "crossings as a person labelled them, for linecad evaluate" };
@@ -54,7 +54,7 @@ export class Panels {
 
   #makeLayers() {
     const counts = new Map();
-    const buttons = LAYERS.map(({ name, label, key }) => {
+    const buttons = this.store.offeredLayers.map(({ name, label, key }) => {
       const count = element("span", { class: "count" });
       counts.set(name, count);
       return element(
@@ -80,8 +80,12 @@ export class Panels {
         changed: crossings.filter((crossing) => crossing.changed).length,
       };
       for (const [name, number] of Object.entries(numbers)) counts.get(name).textContent = number.toLocaleString("en");
-      for (const button of buttons)
-        button.setAttribute("aria-pressed", String(this.store.layers[button.dataset.layer]));
+      const { depth_map: map } = this.store.state;
+      for (const button of buttons) {
+        const { layer } = button.dataset;
+        button.setAttribute("aria-pressed", String(this.store.layers[layer]));
+        button.disabled = map?.[layer] === null; // no model is there to compare with, or the map was left out
+      }
     };
     this.store.listen((changed) => (changed.has("layers") || changed.has("state")) && show());
     show();

@@ -1,5 +1,6 @@
-// The photo and what lies over it: three canvases, so that a pointer that moves redraws the least of them.
+// The photo and what lies over it: four canvases, so that a pointer that moves redraws the least of them.
 
+import { DepthLayers } from "./depthlayers.js";
 import { draw, drawAttention, drawDraft } from "./drawing.js";
 import { Marks, markRadius } from "./marks.js";
 import { Tiles } from "./tiles.js";
@@ -8,6 +9,8 @@ import { Viewport } from "./viewport.js";
 const PIXELS_SHOWN = 3; // from this many device px a photo pixel on, pixels are squares instead of being smoothed
 const FEW_CHANGED = 10; // crossings; when more have changed, all are drawn anew
 const CLOSE = 6; // times the scale at which all of the photo is seen: there one sees what meets where
+
+const CANVASES = ["photo", "depth", "drawing", "overlay"]; // from below
 
 /** The crossings of a list that are not those of the list before it; null where that has others or many differ. */
 function differing(before, now) {
@@ -18,7 +21,7 @@ function differing(before, now) {
 
 /** Draws what the store holds; `draft` is the unfinished work of the tools. */
 export class PhotoView {
-  #dirty = new Set(["photo", "drawing", "overlay"]);
+  #dirty = new Set(CANVASES);
   #asked = false;
   #marks = null;
   #relabelled = []; // crossings whose marks alone are to be drawn anew
@@ -29,11 +32,12 @@ export class PhotoView {
     this.draft = draft;
     this.stage = document.querySelector("#stage");
     this.canvases = Object.fromEntries(
-      ["photo", "drawing", "overlay"].map((name) => [name, document.querySelector(`#${name}-canvas`)]),
+      CANVASES.map((name) => [name, document.querySelector(`#${name}-canvas`)]),
     );
     const photo = store.state.photo;
     this.viewport = new Viewport(photo.width, photo.height);
     this.tiles = new Tiles(server, photo, () => this.redraw("photo"));
+    this.depthLayers = new DepthLayers(store, server, () => this.redraw("depth"));
     this.onView = () => {};
     store.listen((changed) => this.#noticed(changed));
     draft.listen(() => this.redraw("overlay"));
@@ -45,6 +49,7 @@ export class PhotoView {
   #noticed(changed) {
     const parts = ["lines", "planes", "crossings", "contradiction", "K", "R_cam_from_world"];
     const { state } = this.store;
+    if (["layers", "hidden", "state"].some((name) => changed.has(name))) this.depthLayers.renew();
     const isNew = parts.filter((name) => state[name] !== this.#drawn?.[name]);
     const relabelled = isNew.join() === "crossings" ? differing(this.#drawn?.crossings, state.crossings) : null;
     this.#drawn = state;
@@ -67,7 +72,7 @@ export class PhotoView {
 
   /** The viewport has been moved: everything is drawn again. */
   moved() {
-    this.redraw("photo", "drawing", "overlay");
+    this.redraw(...CANVASES);
     this.onView();
   }
 
@@ -105,6 +110,7 @@ export class PhotoView {
     this.#asked = false;
     const paint = {
       photo: () => this.#paintPhoto(),
+      depth: () => this.#paintDepth(),
       marks: () => this.#paintMarks(),
       drawing: () => this.#paintDrawing(),
       overlay: () => this.#paintOverlay(),
@@ -123,15 +129,26 @@ export class PhotoView {
     return context;
   }
 
-  #paintPhoto() {
-    const context = this.#cleared("photo");
+  /** An empty canvas whose context is scaled to the photo. */
+  #clearedForPhoto(name) {
+    const context = this.#cleared(name);
     const { x, y, scale } = this.viewport;
     context.translate(x, y);
     context.scale(scale, scale);
+    return context;
+  }
+
+  #paintPhoto() {
+    const context = this.#clearedForPhoto("photo");
+    const { scale } = this.viewport;
     const density = scale * devicePixelRatio;
     context.imageSmoothingEnabled = density < PIXELS_SHOWN;
     const part = this.viewport.seen().map((at) => at + 0.5);
     this.tiles.draw(context, this.tiles.level(density), part);
+  }
+
+  #paintDepth() {
+    this.depthLayers.draw(this.#clearedForPhoto("depth"));
   }
 
   /** The surroundings of some crossings, as a click on one changes them: 4,000 marks take longer than one. */

@@ -60,9 +60,17 @@ export class Server {
   }
 
   /** A tile of the photo as a bitmap that a canvas can draw. */
-  async tile(level, column, row, signal) {
-    const answer = await this.#ask(`tile/${level}/${column}/${row}`, { signal });
-    return createImageBitmap(await answer.blob());
+  tile(level, column, row, signal) {
+    return this.#bitmap(`tile/${level}/${column}/${row}`, { signal });
+  }
+
+  /** A layer of the depth map as a bitmap of the photo's shape. */
+  depthLayer(name) {
+    return this.#bitmap(`depth/${name}`);
+  }
+
+  async #bitmap(path, options) {
+    return createImageBitmap(await (await this.#ask(path, options)).blob());
   }
 
   /** Save the model in a format: name and content are the server's, the browser asks where to or takes its folder. */

@@ -1,6 +1,10 @@
 // What the page knows: the state that the server sent, with the edits under way laid over it, and what is seen here.
 
-/** The layers that can be switched off, in the order of their buttons; `key` is the digit that does it. */
+/**
+ * The layers that can be switched on and off, in the order of their buttons; `key` is the digit that does it.
+ *
+ * Those of a depth map are there where the photo has one, and off at first.
+ */
 export const LAYERS = [
   { name: "real", label: "Real", key: "1" },
   { name: "fake", label: "Fake", key: "2" },
@@ -9,6 +13,8 @@ export const LAYERS = [
   { name: "y", label: "y", key: "5" },
   { name: "z", label: "z", key: "6" },
   { name: "faces", label: "Faces", key: "7" },
+  { name: "depth", label: "Depth map", key: "8", ofMap: true },
+  { name: "difference", label: "Map and model", key: "9", ofMap: true },
 ];
 
 /**
@@ -20,7 +26,7 @@ export class Store {
   state = null;
   lines = new Map(); // id -> line
   crossings = new Map(); // id -> crossing
-  layers = Object.fromEntries(LAYERS.map(({ name }) => [name, true]));
+  layers = Object.fromEntries(LAYERS.map(({ name, ofMap }) => [name, !ofMap]));
   hidden = false; // everything over the photo, while a key is held
   hover = null;
   selection = null;
@@ -72,6 +78,11 @@ export class Store {
   /** The selected crossing, or undefined. */
   get selectedCrossing() {
     return this.selection?.kind === "crossing" ? this.find(this.selection) : undefined;
+  }
+
+  /** The layers that this photo has. */
+  get offeredLayers() {
+    return LAYERS.filter(({ ofMap }) => !ofMap || this.state.depth_map !== null);
   }
 
   showsLine(line) {

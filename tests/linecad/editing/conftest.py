@@ -5,8 +5,12 @@ import pytest
 from starlette.testclient import TestClient
 
 import linecad.editing.session
+from exporters.model import build_model
+from exporters.textures.layout import view_of
+from exporters.textures.nearest import nearest_of, shape_of
 from linecad.camera.photo import Photo
 from linecad.corrections.edits import Corrections
+from linecad.depth.depth_map import DepthMap
 from linecad.editing.guard import HOST
 from linecad.editing.saving import Saver
 from linecad.editing.server import Editor
@@ -14,6 +18,7 @@ from linecad.editing.session import Session
 from linecad.finding import name_lines
 from linecad.lines.segments import find_segments
 from linecad.options import Options
+from linecad.pipeline import reconstruct
 
 PORT, TOKEN = 8765, "the-token"
 URL = f"http://{HOST}:{PORT}"
@@ -22,8 +27,8 @@ URL = f"http://{HOST}:{PORT}"
 class InPlace:
     """Solves in the same process, when it is asked to: the test decides when an answer comes."""
 
-    def __init__(self, photo, options):
-        self.photo, self.options = photo, options
+    def __init__(self, photo, options, depth):
+        self.photo, self.options, self.depth = photo, options, depth
         self.waiting, self.stopped, self.take = [], 0, None
 
     def start(self, task):
@@ -37,7 +42,7 @@ class InPlace:
         from linecad.editing.solving import Answer, solve_task
 
         task = self.waiting.pop(0)
-        answer = solve_task(task, self.photo, self.options, lambda _: None)
+        answer = solve_task(task, self.photo, self.options, lambda _: None, self.depth)
         assert isinstance(answer, Answer)
         self.take(answer)
 
@@ -115,16 +120,16 @@ def open_page(made_photo, raw):
     """A function that opens a page on the made scene's picture, with corrections that were there before."""
     savers = []
 
-    def open_(corrections=None, options=None):
+    def open_(corrections=None, options=None, depth=None):
         saved = []
         saver = Saver(saved.append)
         savers.append(saver)
         options = options or Options()
         corrections = corrections or Corrections("made.jpg", made_photo.width, made_photo.height)
         session = Session(made_photo, raw, options, corrections, saver.save)
-        solving = InPlace(made_photo, options)
+        solving = InPlace(made_photo, options, depth)
         solving.take = session.take
-        app = Editor(session, solving, saver).app(TOKEN, PORT)
+        app = Editor(session, solving, saver, depth=depth).app(TOKEN, PORT)
         client = TestClient(app, base_url=URL, headers={"X-Linecad-Token": TOKEN}, raise_server_exceptions=True)
         page = Page(client, session, solving, saved)
         page.state()
@@ -133,6 +138,16 @@ def open_page(made_photo, raw):
     yield open_
     for saver in savers:
         saver.close()
+
+
+@pytest.fixture(scope="session")
+def map_of_made(made_photo):
+    """A depth map of the made scene's picture: 2.5 times the depths of the faces that are found in it, else far off."""
+    scene = reconstruct(made_photo, Options())
+    view = view_of(scene)
+    inverse = nearest_of([shape_of(face, view) for face in build_model(scene).faces], view).inverse_depth
+    values = np.where(inverse > 0, 2.5 / np.maximum(inverse, 1e-6), 40)
+    return DepthMap("made.depth.npz", values, values > 0, "z")
 
 
 @pytest.fixture

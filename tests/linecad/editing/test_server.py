@@ -11,6 +11,7 @@ import pytest
 from exporters.formats import FORMATS
 from linecad.cli.main import main
 from linecad.corrections.file import corrections_from_json, corrections_to_json
+from linecad.editing.depth_layers import DIVERGING
 from linecad.editing.document import document_of
 from linecad.editing.tiles import TILE
 from linecad.evaluation.datasets import find_dataset
@@ -120,6 +121,67 @@ class TestTiles:
     )
     def test_there_are_no_others(self, page, tile):
         assert page.get(f"tile/{tile}").status_code == 404
+
+
+class TestDepthMap:
+    def test_without_one_there_are_no_layers(self, page):
+        page.solve()
+        assert page.state()["depth_map"] is None
+        assert page.get("depth/depth").status_code == 404
+        assert page.get("depth/difference").status_code == 404
+
+    def test_the_map_is_there_at_once_and_the_difference_after_a_solve(self, open_page, map_of_made):
+        page = open_page(depth=map_of_made)
+        assert page.state()["depth_map"] == {"text": "depth map made.depth.npz", "depth": 0, "difference": None}
+        before = page.get("depth/depth")
+        assert before.headers["content-type"] == "image/png"
+        assert page.get("depth/difference").status_code == 404
+        told = page.solve()["depth_map"]
+        assert told["text"].startswith("depth map made.depth.npz: z, width of its errors")
+        assert told["depth"] == told["difference"] > 0
+        colours = [picture(page.get(f"depth/{layer}").content) for layer in ("depth", "difference")]
+        assert [image.shape for image in colours] == [(1200, 1600, 4)] * 2
+        assert (colours[0] == picture(before.content)).all()
+        assert (colours[0][..., 3] == 255).all()
+        known = colours[1][..., 3] > 0
+        assert 0.1 < known.mean() < 0.9
+        middle = [int(DIVERGING[2][at : at + 2], 16) for at in (5, 3, 1)]
+        assert (np.abs(colours[1][known][:, :3].astype(int) - middle).max(axis=1) < 12).mean() > 0.8
+
+    def test_each_solve_renews_the_numbers_of_the_layers(self, open_page, map_of_made):
+        page = open_page(depth=map_of_made)
+        first = page.solve()["depth_map"]
+        page.edit(op="delete", line=page.state()["lines"][0]["id"])
+        assert page.state()["depth_map"] == first
+        second = page.solve()["depth_map"]
+        assert second["depth"] > first["depth"]
+        assert second["difference"] > first["difference"]
+
+    def test_one_that_is_left_out_says_why_and_has_no_difference(self, open_page, map_of_made):
+        flat = np.full_like(map_of_made.values, 3.0)
+        page = open_page(depth=replace(map_of_made, values=flat))
+        told = page.solve()["depth_map"]
+        assert told["text"] == "depth map made.depth.npz left out: it holds one depth throughout"
+        assert told["difference"] is None
+        assert page.get("depth/difference").status_code == 404
+        assert page.get("depth/depth").status_code == 200
+
+    @pytest.mark.parametrize("layer", ["other", "", "..%2F..", "depth/depth"])
+    def test_there_are_no_other_layers(self, open_page, map_of_made, layer):
+        assert open_page(depth=map_of_made).get(f"depth/{layer}").status_code == 404
+
+    def test_the_state_tells_which_lines_the_map_placed(self, page):
+        page.solve()
+        now = page.session.now()
+        scene = now.model.scene
+        lines = replace(scene.lines, by_depth_map=np.arange(len(scene.lines)) < 3)
+        document = document_of(replace(now, model=replace(now.model, scene=replace(scene, lines=lines))), 1, True)
+        segments = [line["segment"] for line in document["lines"] if line["by_depth_map"]]
+        assert sorted(segments) == sorted(scene.lines.segment[:3].tolist())
+
+
+def picture(data):
+    return cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_UNCHANGED)
 
 
 class TestEdits:
