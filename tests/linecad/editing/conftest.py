@@ -146,7 +146,8 @@ def map_of_made(made_photo):
     scene = reconstruct(made_photo, Options())
     view = view_of(scene)
     inverse = nearest_of([shape_of(face, view) for face in build_model(scene).faces], view).inverse_depth
-    values = np.where(inverse > 0, 2.5 / np.maximum(inverse, 1e-6), 40)
+    far = np.linspace(40, 50, inverse.size).reshape(inverse.shape)  # one depth throughout would be taken for a sky
+    values = np.where(inverse > 0, 2.5 / np.maximum(inverse, 1e-6), far)
     return DepthMap("made.depth.npz", values, values > 0, "z")
 
 

@@ -129,6 +129,76 @@ def test_a_layer_goes_and_comes_back(screen):
     assert screen.painted("#drawing-canvas") == same
 
 
+def test_without_a_depth_map_there_is_nothing_of_one(screen):
+    assert screen.page.locator("#layers [data-layer]").count() == 7
+    assert screen.page.locator("#help-columns dd", has_text="depth map").count() == 0
+    for key in ("8", "9"):
+        screen.press(key)
+    assert screen.painted("#depth-canvas") == 0
+    assert screen.page.locator("#depth-legend").is_hidden()
+    assert not [url for url in screen.requests if "/api/depth/" in url]
+
+
+def test_the_depth_map_and_where_the_model_differs_from_it_lie_over_the_photo(new_screen, start, tmp_path, map_of_made):
+    np.savez(tmp_path / "map.npz", depth=map_of_made.values)
+    screen = new_screen(start("--depth", str(tmp_path / "map.npz"), "--option", "depth-kind=z"))
+    screen.open()
+    asked = [url for url in screen.requests if "/api/depth/" in url]
+    assert (asked, screen.painted("#depth-canvas")) == ([], 0)
+
+    screen.press("8")
+    screen.wait("!document.querySelector('#depth-legend').hidden")
+    wait_for_depth(screen)
+    whole = screen.painted("#depth-canvas")
+    legend = screen.page.locator("#depth-legend")
+    assert "near" in legend.inner_text()
+    assert "map.npz: z" in legend.inner_text()
+    scale = screen.run("linecad.photo.viewport.scale")
+    assert whole == pytest.approx(1600 * 1200 * scale**2, rel=0.02)
+
+    screen.press("8")
+    assert screen.painted("#depth-canvas") == 0
+    assert legend.is_hidden()
+    screen.button("Map and model").click()
+    wait_for_depth(screen)
+    assert 0.1 * whole < screen.painted("#depth-canvas") < 0.9 * whole
+    assert "20 % nearer" in legend.inner_text()
+    screen.page.keyboard.down("h")
+    screen.settle()
+    assert screen.painted("#depth-canvas") == 0
+    screen.page.keyboard.up("h")
+
+    asked = len([url for url in screen.requests if url.endswith("/api/depth/difference")])
+    before = screen.state["depth_map"]["difference"]
+    screen.press("s")
+    screen.wait(f"linecad.store.state.depth_map.difference > {before}")
+    wait_for_depth(screen)
+    assert len([url for url in screen.requests if url.endswith("/api/depth/difference")]) == asked + 1
+
+    screen.run(
+        """() => {
+          const { store } = linecad;
+          const depth_map = { text: "depth map map.npz left out: it is flat", depth: 9, difference: null };
+          store.set({ state: { ...store.state, depth_map } });
+        }"""
+    )
+    screen.settle()
+    assert screen.button("Map and model").is_disabled()
+    assert screen.painted("#depth-canvas") == 0
+    assert legend.is_hidden()
+
+
+def wait_for_depth(screen):
+    """Until what is asked for is painted."""
+    screen.wait(
+        """(({ canvases }) => {
+          const { width, height } = canvases.depth;
+          return canvases.depth.getContext("2d").getImageData(0, 0, width, height).data.some((value) => value > 0);
+        })(linecad.photo)"""
+    )
+    screen.settle()
+
+
 def test_marks_have_one_size_at_every_zoom(screen):
     crossings = screen.state["crossings"]
     pixels = np.array([each["pixel"] for each in crossings])
@@ -275,3 +345,17 @@ def test_a_selected_line_tells_how_sure_its_depth_is(screen):
         0.834,
     )
     assert "depth 83 % sure" in told
+
+
+def test_a_selected_line_says_when_the_depth_map_placed_it(screen):
+    told = screen.run(
+        """() => [false, true].map((by_depth_map) => {
+          const { store } = linecad;
+          const line = store.state.lines.find(({ ends }) => ends);
+          line.by_depth_map = by_depth_map;
+          store.set({ selection: null });
+          store.set({ selection: { kind: "line", id: line.id } });
+          return document.querySelector("#inspector").innerText.includes("placed by the depth map");
+        })"""
+    )
+    assert told == [False, True]
