@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from linecad.depth.depth_map import LARGEST_SIDE, MOST_PIXELS, SMALLEST_SIDE, DepthMap, check_size
+from linecad.depth.depth_map import LARGEST_SIDE, MOST_PIXELS, SMALLEST_SIDE, DepthMap, camera_depths, check_size
 from linecad.errors import DepthMapError
 
 
@@ -41,3 +41,17 @@ def test_sizes_at_the_limits():
     for width, height in ((SMALLEST_SIDE - 1, 100), (8192, MOST_PIXELS // 8192 + 1), (LARGEST_SIDE + 1, 20)):
         with pytest.raises(DepthMapError, match=f"{width} x {height} px"):
             check_size(width, height, Path("map"))
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "depths"),
+    [
+        ("z", [0.5, 4, 0], [0.5, 4, np.nan]),
+        ("distance", [0.5, 4, 0], [0.25, 3.2, np.nan]),
+        ("inverse", [0.5, 4, 0], [2, 0.25, np.nan]),
+        ("affine-inverse", [0.5, 4, -1], [1 / 1.5, 0.2, np.nan]),
+    ],
+)
+def test_numbers_of_each_kind_are_depths_along_the_axis(kind, values, depths):
+    found = camera_depths(np.array(values, float), np.array([2, 1.25, 1]), kind, 1.0)
+    assert found == pytest.approx(depths, nan_ok=True)
