@@ -275,6 +275,12 @@ def paint_photo():
 
 
 @pytest.fixture(scope="session")
+def small_camera():
+    """The camera of a photo of so few pixels that its depth map is made at once."""
+    return SMALL
+
+
+@pytest.fixture(scope="session")
 def build_depth_map():
     """The exact depth map of what a camera sees of walls and the ground."""
     return depth_map

@@ -81,12 +81,12 @@ def test_a_wrong_kind_that_is_told_bends_walls(read, avenue_walls, build_depth_m
 
 
 def test_a_map_between_two_kinds_is_refused_with_both_numbers(
-    build_wall, build_town, build_setting, build_facade, build_depth_map
+    build_wall, build_town, build_setting, build_facade, build_depth_map, small_camera
 ):
     """Half way between z and distance, a little nearer to the latter, so that walls are as bent by either."""
     beside = build_wall(0, -4.6, np.arange(8.0, 13.1, 0.7), np.array([-2.0, -0.4, 0.9, 2.1]))
     across = build_wall(1, 26.0, np.arange(-1.5, 1.6, 0.5), np.array([-2.5, 0.2, 1.2, 3.1]))
-    seen = build_town(beside, across)
+    seen = build_town(beside, across, camera=small_camera)
     surfaces = [build_facade(0, -4.6, (7.0, 14.0), (-3.0, 3.0)), build_facade(1, 26.0, (-3.0, 3.0), (-4.0, 4.0))]
     z, distance = (build_depth_map(seen.sight, surfaces, kind) for kind in ("z", "distance"))
     depth = DepthMap("half.npz", np.where(z.valid, z.values**0.45 * distance.values**0.55, 0.0), z.valid, None)

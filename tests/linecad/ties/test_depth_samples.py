@@ -33,9 +33,9 @@ def changed(depth, **fields):
     return replace(depth, values=np.where(valid, values, 0.0), valid=valid)
 
 
-def numbered(depth):
-    """A map in which each pixel holds its number from 1 on, all valid."""
-    values = np.arange(1, depth.values.size + 1, dtype=np.float32).reshape(depth.values.shape)
+def numbered(like):
+    """A map of the shape of that array in which each pixel holds its number from 1 on, all valid."""
+    values = np.arange(1, like.size + 1, dtype=np.float32).reshape(like.shape)
     return DepthMap("numbers.npz", values, np.ones(values.shape, bool), "z")
 
 
@@ -81,7 +81,7 @@ def test_an_exact_map_asks_each_body_for_its_true_scale(
 
 def test_samples_lie_beside_lines_of_their_wall(avenue_walls, moved, plain):
     seen, _ = avenue_walls
-    samples = sample_walls(moved, numbered(plain))
+    samples = sample_walls(moved, numbered(plain.values))
     at = places(samples, plain)
     assert set(samples.body.tolist()) == {0, 1, 2}
     assert (np.diff(samples.wall) >= 0).all()
@@ -115,7 +115,7 @@ def test_what_bleeds_on_the_lines_themselves_changes_nothing(avenue_walls, moved
 def test_invalid_pixels_are_not_asked(moved, plain):
     valid = np.zeros(plain.valid.shape, bool)
     valid[::2, 1::3] = True
-    numbers = numbered(plain)
+    numbers = numbered(plain.values)
     samples = sample_walls(moved, changed(numbers, valid=valid))
     at = places(samples, plain)
     assert len(samples) > 50
@@ -141,27 +141,30 @@ def test_a_map_without_any_depth_tells_nothing(moved, plain):
     assert np.isnan(log_scales(samples, samples.excess("z"))).all()
 
 
-def test_nothing_outside_the_photo_is_asked(build_wall, build_town, build_setting, build_facade, build_depth_map):
-    """Uprights and courses hug all four edges of the photo: beside them there is nothing, nor the other edge."""
-    across, heights = np.array([-6.39, -6.3, 0.0, 6.3, 6.39]), np.array([-4.79, -4.7, 0.0, 4.7, 4.79])
-    seen = build_town(build_wall(1, 10.0, across, heights))
-    depth = build_depth_map(seen.sight, [build_facade(1, 10.0, (-9.0, 9.0), (-9.0, 9.0))])
-    setting = build_setting(seen)
-    at = places(sample_walls(setting, numbered(depth)), depth)
-    edge = np.array([[0, 0], [depth.width - 1, depth.height - 1]])
-    assert np.abs(at[:, None] - edge).min() < 0.02 * depth.width, "there are samples near the edge"
-    for place in at:
-        off = np.abs(seen.graph.segments.ends - place).min(axis=(1, 2))
-        assert off.min() < 0.02 * depth.width
-    samples = sample_walls(setting, depth)
-    np.testing.assert_allclose(samples.excess("z"), 0.0, atol=1e-5)
+@pytest.mark.parametrize("turned", ["yaw", "pitch"])
+def test_nothing_outside_the_photo_is_asked(
+    build_wall, build_town, build_setting, build_facade, build_depth_map, small_camera, turned
+):
+    """Lines hug two edges of the photo. Beyond them there is nothing: neither the other edge nor more of this one."""
+    half = np.arctan((small_camera.width if turned == "yaw" else small_camera.height) / 2 / small_camera.focal)
+    hugging = 10 * np.tan(0.3 + np.array([-half + 0.001, -half + 0.004, 0.0, half - 0.004, half - 0.001]))
+    between = np.linspace(-0.5, 0.5, 5)
+    grid = (hugging, between) if turned == "yaw" else (between, hugging)
+    seen = build_town(build_wall(1, 10.0, *grid), **{turned: 0.3}, camera=small_camera)
+    depth = build_depth_map(seen.sight, [build_facade(1, 10.0, (-99.0, 99.0), (-99.0, 99.0))])
+    samples = sample_walls(build_setting(seen), depth)
+    at = places(sample_walls(build_setting(seen), numbered(depth.values)), depth)
+    along = at[:, 0 if turned == "yaw" else 1]
+    assert along.min() < 20
+    assert along.max() > (depth.width if turned == "yaw" else depth.height) - 20
+    np.testing.assert_allclose(samples.excess("z"), 0.0, atol=1e-3)
 
 
-def test_nothing_behind_the_camera_is_asked(build_wall, build_town, build_setting, avenue_walls):
+def test_nothing_behind_the_camera_is_asked(build_wall, build_town, build_setting, small_camera):
     """A wall that runs far away ends at its horizon, beyond which its plane is behind the camera."""
-    wall = build_wall(0, 2.5, np.array([9.0, 14.0, 30.0, 90.0, 250.0]), np.array([-1.0, 0.3, 1.2]))
-    seen = build_town(wall)
-    depth = DepthMap("any.npz", *numbered_arrays(seen.sight), "z")
+    wall = build_wall(0, 2.5, np.array([9.0, 14.0, 30.0, 90.0, 250.0]), np.array([-3.0, 0.3, 4.0]))
+    seen = build_town(wall, camera=small_camera)
+    depth = numbered(np.empty((small_camera.height, small_camera.width)))
     samples = sample_walls(build_setting(seen), depth)
     rays = world_rays(places(samples, depth).astype(float), seen.sight.matrix, seen.sight.rotation)
     assert len(samples) > 50
@@ -169,15 +172,12 @@ def test_nothing_behind_the_camera_is_asked(build_wall, build_town, build_settin
     np.testing.assert_allclose(samples.log_depth, np.log(2.5 / rays[:, 0]), atol=0.03)
 
 
-def numbered_arrays(sight):
-    values = np.arange(1, 2880 * sight.width + 1, dtype=np.float32).reshape(2880, sight.width)
-    return values, np.ones(values.shape, bool)
-
-
-def test_bodies_without_a_wall_are_not_told(build_wall, build_town, build_setting, build_facade, build_depth_map):
+def test_bodies_without_a_wall_are_not_told(
+    build_wall, build_town, build_setting, build_facade, build_depth_map, small_camera
+):
     first = build_wall(1, 10.0, np.linspace(-5.0, -2.0, 5), np.linspace(-2.0, 2.0, 5))
     uprights = build_wall(1, 10.0, np.linspace(1.0, 4.0, 6), np.array([-2.0, 2.0]))[:6]
-    seen = build_town(first, uprights)
+    seen = build_town(first, uprights, camera=small_camera)
     depth = build_depth_map(seen.sight, [build_facade(1, 10.0, (-6.0, 6.0), (-4.0, 4.0))])
     samples = sample_walls(build_setting(seen), depth)
     assert np.isnan(log_scales(samples, samples.excess("z"))).tolist() == [False, True]
