@@ -59,7 +59,7 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
         return "it says nothing of the largest body, relative to which the others stand"
     width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, estimate_width(reading.log_scale, candidates))
     if width > MOST_WIDTH:
-        return f"it places bodies {np.expm1(width):.0%} off those that crossings hold"
+        return f"it is {np.expm1(width):.0%} off the bodies of this photo, too much to place them"
     inside, chance = 2 / np.pi * np.arctan(WITHIN), 2 * WITHIN * width * DENSITY
     worth = float(np.log(inside / (1 - inside)) - np.log(chance / (1 - chance)))
     contradicted = _contradicted(setting.graph, setting.log_depth)
