@@ -233,7 +233,7 @@ class DepthMapReport:
 
     def __post_init__(self) -> None:
         told = [self.kind, self.shift, self.scale, self.width]
-        if (None in told) == (not self.left_out):
+        if told.count(None) != (len(told) if self.left_out else 0):
             raise ValueError("DepthMapReport must say either why the map was left out, or all about it")
         if self.kind is not None and self.kind not in DEPTH_KINDS:
             raise ValueError(f"DepthMapReport.kind is {self.kind!r}, expected one of {', '.join(DEPTH_KINDS)}")

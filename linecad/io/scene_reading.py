@@ -113,8 +113,10 @@ def _depth_map(node: Node | None) -> DepthMapReport | None:
         return None
     left_out = _known(node, "left_out")
     if left_out is not None:
+        if not left_out.text():
+            raise left_out.wrong("a reason or null")
         return DepthMapReport(node["file"].text(), left_out.text())
-    shift, scale, width = (node[key].number(LARGEST_NUMBER) for key in ("shift", "scale", "width"))
+    shift, scale, width = (node[key].number() for key in ("shift", "scale", "width"))
     for key, value in (("scale", scale), ("width", width)):
         if value <= 0:
             raise node[key].wrong("a positive number")

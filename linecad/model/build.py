@@ -16,7 +16,7 @@ from linecad.model.lifting import Lifted
 from linecad.model.planes import find_planes
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
-from linecad.scene import Camera, Certainty, Intersections, Lines, Scene, SolveReport
+from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Scene, SolveReport
 from linecad.ties.placing import Placed
 
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
@@ -113,7 +113,7 @@ def build_scene(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.cuts, solution.nodes,
         ),
-        notes=(*_notes(view, graph, solution, found), *disagreements(planes, lines, pairs)),
+        notes=(*_notes(view, graph, solution, found, depth_map), *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
         depth_map=depth_map,
     )  # fmt: skip
@@ -209,7 +209,9 @@ def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int], are_pl
     return np.array([*scales, 1.0])
 
 
-def _notes(view: View, graph: LineGraph, solution: Solution, found: Components) -> tuple[str, ...]:
+def _notes(
+    view: View, graph: LineGraph, solution: Solution, found: Components, depth_map: DepthMapReport | None
+) -> tuple[str, ...]:
     """What is known so far, and what a reader of the scene should know of lines and solver."""
     notes = list(view.notes)
     other = ", or are not of the largest group," if found.is_largest_alone else ""
@@ -226,7 +228,11 @@ def _notes(view: View, graph: LineGraph, solution: Solution, found: Components) 
             f"{by_grids} lines of component 0 are not connected to the rest of it by crossings: their place follows "
             "from window grids that continue (supported)"
         )
-    return (*notes, *_solver_notes(solution), *_placing_notes(found, solution.formulation == "bodies"))
+    by = "at the depth of their neighbours in the photo"
+    if solution.formulation == "bodies":
+        is_heard = depth_map is not None and not depth_map.left_out
+        by = f"where planes and heights that match{' or the depth map' if is_heard else ''} put them"
+    return (*notes, *_solver_notes(solution), *_placing_notes(found, by))
 
 
 def _solver_notes(solution: Solution) -> list[str]:
@@ -240,17 +246,12 @@ def _solver_notes(solution: Solution) -> list[str]:
     return [f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal"]
 
 
-def _placing_notes(found: Components, are_placed: bool) -> list[str]:
+def _placing_notes(found: Components, by: str) -> list[str]:
     notes = []
     if len(found.parts) > 1:
         notes.append(
             f"{len(found.parts) - 1} smaller groups of lines, which no crossings connect to component 0, are placed "
-            + (
-                "where planes and heights that match put them"
-                if are_placed
-                else "at the depth of their neighbours in the photo"
-            )
-            + " and marked weak"
+            f"{by} and marked weak"
         )
     shift = found.lifted.shift[found.kept]
     moved = int((shift > SHIFT_NOTED).sum())

@@ -102,7 +102,7 @@ def log_scales(samples: DepthSamples, excess: Float) -> Float:
     votes: dict[int, list[tuple[float, float, float, int]]] = {}
     known = np.isfinite(excess)
     starts = np.flatnonzero(np.diff(samples.wall, prepend=-1))
-    for start, end in zip(starts, [*starts[1:], len(samples)], strict=True):
+    for start, end in zip(starts, np.append(starts, len(samples))[1:], strict=True):
         own = excess[start:end][known[start:end]]
         if len(own) < LEAST_SAMPLES:
             continue

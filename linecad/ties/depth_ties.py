@@ -55,9 +55,11 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
     reading = read_depth(depth, sample_walls(setting, depth))
     if isinstance(reading, str):
         return reading
+    if not np.isfinite(reading.log_scale[setting.bodies.size.argmax()]):
+        return "it says nothing of the largest body, relative to which the others stand"
     width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, estimate_width(reading.log_scale, candidates))
     if width > MOST_WIDTH:
-        return f"it places bodies {np.expm1(width):.0%} off those that crossings hold"
+        return f"it is {np.expm1(width):.0%} off the bodies of this photo, too much to place them"
     inside, chance = 2 / np.pi * np.arctan(WITHIN), 2 * WITHIN * width * DENSITY
     worth = float(np.log(inside / (1 - inside)) - np.log(chance / (1 - chance)))
     contradicted = _contradicted(setting.graph, setting.log_depth)
@@ -120,15 +122,15 @@ class MapPlaces:
 
 
 def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, reference: int, size: Int) -> MapPlaces:
-    """The places of B bodies of `size` lines: as they were placed, and by the map what no counted tie leads to."""
+    """The places of B bodies of `size` lines: as they were placed, and by the map what no counted tie leads to.
+
+    The map must tell of the reference.
+    """
     asked, count = witness.reading.log_scale, len(placement.log_scale)
     log_scale = placement.log_scale[: len(size)].copy()
     part = ties.parts(placement.counted, count)[: len(size)]
     told = np.isfinite(asked)
     main = told & (part == part[reference])
-    if not main.any():
-        nothing = np.zeros(len(size), bool)
-        return MapPlaces(log_scale, 0.0, nothing, np.full(len(size), np.nan), witness.width, witness.worth)
     of_map = weighted_median((asked - log_scale)[main], size[main].astype(np.float64))
     for number in np.unique(part[told]).tolist():
         own = part == number

@@ -66,7 +66,9 @@ scene = Scene(
     planes=(plane,),
     solve=SolveReport("SCIP", "paper", "optimal", 1, 1, 0),
 )
-RECORDS = [camera, segments, frame, graph, solution, lines, intersections, face, plane, scene]
+used = DepthMapReport("a.npz", "", "z", 0.0, 1.5, 0.02)
+left_out = DepthMapReport("a.npz", "it holds one depth throughout")
+RECORDS = [camera, segments, frame, graph, solution, lines, intersections, face, plane, scene, used, left_out]
 
 REFUSED = [
     (camera, "width", 0, "Camera is 0 x 480 px"),
@@ -94,6 +96,12 @@ REFUSED = [
     (lines, "axis", [0, -1], "Lines.axis holds a number outside 0, 1, 2"),
     (lines, "ends", np.full((2, 2, 3), np.nan), "Lines.ends holds a number that is not finite"),
     (lines, "confidence", ["proven", "sure"], r"Lines.confidence holds \['sure'\], expected proven, supported, weak"),
+    (lines, "by_depth_map", [True], "Lines.by_depth_map has 1 entries, expected 2"),
+    (used, "left_out", "it is flat", "DepthMapReport must say either why the map was left out, or all about it"),
+    *((used, name, None, "DepthMapReport must say either") for name in ("kind", "shift", "scale", "width")),
+    (used, "kind", "depth", "DepthMapReport.kind is 'depth', expected one of z, distance, inverse, affine-inverse"),
+    (left_out, "left_out", "", "DepthMapReport must say either"),
+    (left_out, "scale", 2.0, "DepthMapReport must say"),
     (intersections, "kind", ["Y"], r"Intersections.kind holds \['Y'\], expected L, T, X, collinear"),
     (intersections, "real", [True, False], "Intersections.real has 2 entries, expected 1"),
     (face, "outline", TRIANGLE[:2], r"Face 0 has a ring of shape \(2, 3\), expected at least 3 points"),
@@ -146,6 +154,12 @@ def test_empty_lists_take_the_shape_of_their_field() -> None:
     empty = Segments([], [])
     assert empty.ends.shape == (0, 2, 2)
     assert len(empty) == 0
+
+
+def test_no_line_is_placed_by_a_depth_map_unless_it_is_said() -> None:
+    assert lines.by_depth_map.tolist() == [False, False]
+    assert replace(lines, by_depth_map=[False, True]).by_depth_map.tolist() == [False, True]
+    assert scene.depth_map is None
 
 
 def test_length_of_segments_is_in_pixels() -> None:

@@ -22,10 +22,12 @@ from linecad.scene import (
     AXES,
     CAMERA_SOURCES,
     CONFIDENCES,
+    DEPTH_KINDS,
     QUALITIES,
     REASONS,
     Camera,
     Certainty,
+    DepthMapReport,
     Face,
     Intersections,
     Lines,
@@ -80,6 +82,21 @@ def certainties(draw: st.DrawFn) -> Certainty:
 
 
 @st.composite
+def depth_map_reports(draw: st.DrawFn) -> DepthMapReport:
+    positive = st.floats(0, exclude_min=True, allow_infinity=False)
+    if draw(st.booleans()):
+        return DepthMapReport(draw(words), draw(st.text(min_size=1, max_size=12)))
+    return DepthMapReport(
+        draw(words),
+        "",
+        draw(st.sampled_from(DEPTH_KINDS)),
+        draw(st.floats(allow_nan=False, allow_infinity=False)),
+        draw(positive),
+        draw(positive),
+    )
+
+
+@st.composite
 def rings(draw: st.DrawFn, axis: int, offset: float) -> np.ndarray:
     ring = np.array(draw(st.lists(st.tuples(*[coordinates] * 3), min_size=3, max_size=6)))
     ring[:, axis] = offset
@@ -125,6 +142,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             component=several(n, ids),
             confidence=several(n, st.sampled_from(CONFIDENCES)),
             probability=several(n, st.floats(0, 1)) if draw(st.booleans()) else (),
+            by_depth_map=several(n, st.booleans()) if draw(st.booleans()) else (),
         ),
         intersections=Intersections(
             lines=several(m, st.lists(st.sampled_from(line_ids if m else [0, 1]), min_size=2, max_size=2, unique=True)),
@@ -145,6 +163,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         metres_per_unit=draw(st.none() | st.floats(1e-6, 1e6)),
         notes=tuple(draw(st.lists(words, max_size=3))),
         certainty=draw(st.none() | certainties()),
+        depth_map=draw(st.none() | depth_map_reports()),
     )
 
 
@@ -258,12 +277,14 @@ REQUIRED = [
     *(f"planes[0].faces[0].{key}" for key in ("id", "outline")),
     *(f"solve.{key}" for key in ("solver", "formulation", "status", "objective", "bound", "gap")),
     *(f"certainty.{key}" for key in ("quality", "reason", "rotation_degrees")),
+    *(f"depth_map.{key}" for key in ("file", "kind", "shift", "scale", "width")),
 ]
 OPTIONAL = [
     *("camera.distortion", "camera.resampled"),
     *("metres_per_unit", "scale_source", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
     *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
+    *("depth_map", "depth_map.left_out", "lines[2].by_depth_map"),
 ]
 
 
@@ -375,7 +396,7 @@ WRONG = [
     ("lines[0].boundary", 1, "lines[0].boundary is 1, expected true or false"),
     ("lines[0].component", -1, "lines[0].component is -1, expected a whole number from 0"),
     ("lines[0].confidence", "sure", 'lines[0].confidence is "sure", expected one of proven, supported, weak'),
-    ("intersections[0].lines", [0, 2], "intersections[0].lines[1] is 2, but no line has this id"),
+    ("intersections[0].lines", [0, 3], "intersections[0].lines[1] is 3, but no line has this id"),
     ("intersections[0].lines", [0, -1], "intersections[0].lines[1] is -1, expected a whole number from 0"),
     ("intersections[0].lines", [0, 0], "intersections[0].lines[1] is 0, as is intersections[0].lines[0]"),
     ("intersections[0].lines", [0], "intersections[0].lines is a list of 1, expected a list of 2"),
@@ -394,8 +415,24 @@ WRONG = [
         "faces[0].outline is a list of 2, expected at least 3 points",
     ),
     ("planes[0].faces[0].holes", [[]], "planes[0].faces[0].holes[0] is a list of 0, expected at least 3 points"),
-    ("planes[0].faces[0].outline[2][1]", 4.00001, "face 0 leaves plane 0 (y = 4) by 1e-05, expected at most 1.41e-06"),
+    ("planes[0].faces[0].outline[2][1]", 4.00001, "face 0 leaves plane 0 (y = 4) by 1e-05, expected at most 2.45e-06"),
     ("planes[0].offset", 5, "face 0 leaves plane 0 (y = 5) by 1"),
+    ("lines[2].by_depth_map", 1, "lines[2].by_depth_map is 1, expected true or false"),
+    ("lines[2].by_depth_map", None, "lines[2].by_depth_map is null, expected true or false"),
+    ("lines[0].by_depth_map", "no", 'lines[0].by_depth_map is "no", expected true or false'),
+    ("depth_map", "a.npz", 'depth_map is "a.npz", expected an object'),
+    ("depth_map", {"file": 3, "left_out": "flat"}, "depth_map.file is 3, expected a string"),
+    ("depth_map.file", None, "depth_map.file is null, expected a string"),
+    ("depth_map.left_out", True, "depth_map.left_out is true, expected a string"),
+    ("depth_map.left_out", "", 'depth_map.left_out is "", expected a reason or null'),
+    ("depth_map.kind", "depth", 'depth_map.kind is "depth", expected one of z, distance, inverse, affine-inverse'),
+    ("depth_map.kind", None, "depth_map.kind is null, expected one of z, distance, inverse, affine-inverse"),
+    ("depth_map.shift", None, "depth_map.shift is null, expected a number"),
+    ("depth_map.scale", "1 m", 'depth_map.scale is "1 m", expected a number'),
+    ("depth_map.scale", 0, "depth_map.scale is 0, expected a positive number"),
+    ("depth_map.scale", 10**400, "expected a finite number"),
+    ("depth_map.width", -0.01, "depth_map.width is -0.01, expected a positive number"),
+    ("depth_map.width", [], "depth_map.width is a list of 0, expected a number"),
     ("solve", "SCIP", 'solve is "SCIP", expected an object'),
     ("solve.status", 3, "solve.status is 3, expected a string"),
     ("solve.objective", None, "solve.objective is null, expected a number"),
@@ -471,7 +508,7 @@ def test_unknown_keys_are_ignored_everywhere() -> None:
 
 
 def test_whole_numbers_may_have_a_decimal_point() -> None:
-    assert scene_from_json(changed("lines[1].id", 1.0)).lines.id.tolist() == [0, 1]
+    assert scene_from_json(changed("lines[1].id", 1.0)).lines.id.tolist() == [0, 1, 2]
 
 
 def test_numbers_may_be_whole() -> None:
@@ -505,6 +542,44 @@ def test_certainty_is_null_in_the_file_where_there_is_none() -> None:
     text = scene_to_json(replace(scene_from_json(EXAMPLE), certainty=None))
     assert '"certainty": null' in text
     assert scene_from_json(text).certainty is None
+
+
+def test_a_scene_without_a_depth_map_says_nothing_of_one() -> None:
+    """Its file is what it was before there were depth maps."""
+    document = json.loads(EXAMPLE)
+    del document["depth_map"], document["lines"][2]["by_depth_map"]
+    text = json.dumps(document)
+    scene = scene_from_json(text)
+    assert scene.depth_map is None
+    assert scene.lines.by_depth_map.tolist() == [False] * 3
+    assert json.loads(scene_to_json(scene)) == document
+    assert "depth_map" not in scene_to_json(scene)
+
+
+def test_lines_that_others_place_do_not_name_the_depth_map() -> None:
+    text = changed("lines[0].by_depth_map", False)
+    assert scene_to_json(scene_from_json(text)) == EXAMPLE
+    both = scene_from_json(changed("lines[0].by_depth_map", True))
+    assert both.lines.by_depth_map.tolist() == [True, False, True]
+
+
+def test_a_depth_map_that_was_left_out_is_a_name_and_a_reason() -> None:
+    for more in ({}, {"kind": "z", "scale": "of an earlier version"}):
+        text = changed("depth_map", {"file": "a.npz", "left_out": "it holds one depth throughout", **more})
+        scene = scene_from_json(text)
+        assert scene.depth_map == DepthMapReport("a.npz", "it holds one depth throughout")
+        assert json.loads(scene_to_json(scene))["depth_map"] == {
+            "file": "a.npz",
+            "left_out": "it holds one depth throughout",
+        }
+    assert scene_from_json(changed("depth_map", None)).depth_map is None
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e30])
+def test_the_unit_of_a_depth_map_may_be_any(scale: float) -> None:
+    scene = scene_from_json(changed("depth_map.scale", scale))
+    assert scene.depth_map is not None
+    assert scene.depth_map.scale == scale
 
 
 def test_a_hopeless_rotation_is_180_degrees_in_the_file() -> None:
@@ -620,11 +695,12 @@ def named_in_tables(heading: str) -> list[str]:
         ("The top object", "", ()),
         ("`camera`", "camera", CAMERA_SOURCES),
         ("`certainty`", "certainty", QUALITIES),
-        ("`lines[]`", "lines[0]", CONFIDENCES),
+        ("`lines[]`", "lines[2]", CONFIDENCES),
         ("`intersections[]`", "intersections[0]", REASONS),
         ("`planes[]`", "planes[0]", ()),
         ("`planes[].faces[]`", "planes[0].faces[0]", ()),
         ("`solve`", "solve", STATUSES),
+        ("`depth_map`", "depth_map", DEPTH_KINDS),
     ],
 )
 def test_page_names_every_key_and_word(heading: str, place: str, others: tuple[str, ...]) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import Fits
+from linecad.depth.depth_map import DepthMap
 from linecad.geometry import central_camera, project, rotation_about, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
@@ -18,6 +19,7 @@ from linecad.ties.setting import Setting, Sight
 
 WIDTH, HEIGHT, FOCAL = 3840, 2880, 3000.0
 CAMERA = Camera(WIDTH, HEIGHT, central_camera(FOCAL, WIDTH, HEIGHT), "file")
+SMALL = Camera(WIDTH // 4, HEIGHT // 4, central_camera(FOCAL / 4, WIDTH // 4, HEIGHT // 4), "file")
 FRONTAL = ManhattanFrame(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), 0.0, 1.0)  # x right, y away, z up
 FITS = 4
 
@@ -47,7 +49,7 @@ def wall(normal, place, across, heights):
     return lines
 
 
-def town(*parts, collinear=True, yaw=0.0, pitch=0.0):
+def town(*parts, collinear=True, yaw=0.0, pitch=0.0, camera=CAMERA):
     """What the camera sees of parts; every line must be long enough to be seen.
 
     The camera is turned to the right by `yaw` and then up by `pitch` (rad).
@@ -57,19 +59,19 @@ def town(*parts, collinear=True, yaw=0.0, pitch=0.0):
     ends = np.array([line[1:] for line in lines], float)
     level = FRONTAL.rotation @ rotation_about(np.array([0.0, 0.0, yaw]))
     rotation = rotation_about(np.array([-pitch, 0.0, 0.0])) @ level
-    pixels = project(ends, CAMERA.matrix, rotation)
+    pixels = project(ends, camera.matrix, rotation)
     assert ends[..., 1].min() > 1
     assert pixels.min() > 0
-    assert (pixels < [WIDTH, HEIGHT]).all()
+    assert (pixels < [camera.width, camera.height]).all()
     frame = ManhattanFrame(rotation, 0.0, 1.0)
-    graph = build_line_graph(Segments(pixels, axis), CAMERA, frame, LONG_REACH, "odds", collinear)
+    graph = build_line_graph(Segments(pixels, axis), camera, frame, LONG_REACH, "odds", collinear)
     assert len(graph.segments) == len(lines)
     # The ray of a middle has depth 1; across its axis it is the line's own coordinate over the depth.
     fixed = np.where(axis == 1, np.where(np.abs(graph.rays[:, 0]) > np.abs(graph.rays[:, 2]), 0, 2), 1)
     at = np.arange(len(lines))
     log_depth = np.log(ends[at, 0, fixed] / graph.rays[at, fixed])
     part = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
-    return Town(graph, Sight(CAMERA.matrix, rotation, WIDTH, None), log_depth, part)
+    return Town(graph, Sight(camera.matrix, rotation, camera.width, None), log_depth, part)
 
 
 SKY = (205, 220, 240)
@@ -83,11 +85,11 @@ class Surface:
     place: float
     low: tuple[float, float, float]  # the coordinate `normal` does not count
     high: tuple[float, float, float]
-    colour: Callable[[Float], Float]
+    colour: Callable[[Float], Float] | None
 
 
-def facade(normal, place, across, heights, colour):
-    """The wall between two places across and two heights."""
+def facade(normal, place, across, heights, colour=None):
+    """The wall between two places across and two heights; without a colour where nobody paints it."""
     low, high = np.full(3, place), np.full(3, place)
     low[[1 - normal, 2]], high[[1 - normal, 2]] = (across[0], heights[0]), (across[1], heights[1])
     return Surface(normal, place, tuple(low), tuple(high), colour)
@@ -127,6 +129,45 @@ def paint(sight, surfaces, block=4):
         seen[shown], nearest[shown] = surface.colour(points[shown]), depth[shown]
     small = np.clip(np.rint(seen), 0, 255).astype(np.uint8)
     return small.repeat(block, axis=0).repeat(block, axis=1)
+
+
+def depth_map(sight, surfaces, kind="z", scale=1.0, shift=0.0, told=True):
+    """The exact map of what a camera sees of surfaces, all `scale` times as far; no depth where there is none.
+
+    To the map of kind affine-inverse `shift` is added, as a share of its largest number.
+    """
+    turned = np.linalg.inv(sight.matrix @ sight.rotation)
+    u, v = np.arange(sight.width), np.arange(sight.width * HEIGHT // WIDTH)[:, None]
+    rays = [row[0] * u + row[1] * v + row[2] for row in turned]
+    depth = np.full(rays[0].shape, np.inf)
+    for surface in surfaces:
+        with np.errstate(divide="ignore"):
+            found = surface.place / rays[surface.normal]
+        shown = (found > 0) & (found < depth)
+        for axis in {0, 1, 2} - {surface.normal}:
+            with np.errstate(invalid="ignore"):
+                at = rays[axis] * found
+            shown &= (at >= surface.low[axis]) & (at <= surface.high[axis])
+        depth[shown] = found[shown]
+    depth *= scale
+    values = {"z": depth, "distance": depth * np.sqrt(sum(ray**2 for ray in rays))}.get(kind, 1 / depth)
+    valid = np.isfinite(depth)
+    values = values + shift * values[valid].max()
+    return DepthMap("map.npz", np.where(valid, values, 0), valid, kind if told else None)
+
+
+def avenue():
+    """Two walls along the way and one across its end, and their surfaces; nothing but a map tells how they stand."""
+    heights = [np.array([-2.2, -1.3, 0.1, 0.9, 2.0]), np.array([-1.9, -0.7, 0.4, 1.6]), np.array([-2.5, 0.2, 1.2, 3.1])]
+    sides = [(-3.0, np.arange(8.0, 16.1, 0.9)), (2.6, np.arange(9.0, 18.1, 1.0))]
+    parts = [wall(0, place, away, high) for (place, away), high in zip(sides, heights, strict=False)]
+    parts.append(wall(1, 26.0, np.arange(-1.5, 1.6, 0.43), heights[2]))
+    surfaces = [
+        facade(0, -3.0, (7.6, 16.6), (-2.7, 2.5)),
+        facade(0, 2.6, (8.6, 18.6), (-2.4, 2.1)),
+        facade(1, 26.0, (-2.2, 2.2), (-3.2, 3.8)),
+    ]
+    return town(*parts, yaw=0.04, pitch=0.02, camera=SMALL), surfaces
 
 
 CAMERA_HEIGHT = 1.6  # m above the pavement of `lane`
@@ -231,6 +272,24 @@ def brick_lane():
 def paint_photo():
     """What a camera sees of walls and the ground."""
     return paint
+
+
+@pytest.fixture(scope="session")
+def small_camera():
+    """The camera of a photo of so few pixels that its depth map is made at once."""
+    return SMALL
+
+
+@pytest.fixture(scope="session")
+def build_depth_map():
+    """The exact depth map of what a camera sees of walls and the ground."""
+    return depth_map
+
+
+@pytest.fixture(scope="session")
+def avenue_walls():
+    """Three walls that nothing but a map ties, and their surfaces."""
+    return avenue()
 
 
 @pytest.fixture(scope="session")

@@ -7,6 +7,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+import linecad.ties.depth_ties
 import linecad.ties.placing
 import linecad.ties.weights
 from linecad.errors import ContradictionError, SolverError
@@ -242,3 +243,112 @@ def test_a_real_crossing_outweighs_all_other_ties(street):
     assert found.ties.weight[-1] > 1000 * found.ties.weight[:-1].sum()
     assert found.ties.tolerance[-1] == street.graph.tolerance[between(street)[2]]
     assert found.placement.counted[-1]
+
+
+def with_map(seen, depth, **more):
+    return place_lines(seen.graph, replace(seen.sight, depth=depth), SolveOptions(**more))
+
+
+def errors(seen, found):
+    """By how much log depths of each part are off, relative to the first."""
+    error = found.solution.log_depth - seen.log_depth
+    off = np.array([np.median(error[seen.part == part]) for part in range(seen.part.max() + 1)])
+    return off - off[0]
+
+
+@pytest.fixture
+def heard_by_the_program(monkeypatch):
+    """However little a map's word is worth, as it is where crossings never contradict each other."""
+    monkeypatch.setattr(linecad.ties.depth_ties, "LEAST_WORTH", 0.0)
+
+
+@pytest.fixture(scope="module")
+def terrace(build_town, build_wall, build_facade, small_camera):
+    """Two walls in one plane that one course joins, seen at an angle, and their surfaces with the second moved away."""
+    random = np.random.default_rng(7)
+    heights, others = (np.linspace(-2.7, 2.7, 10) + random.uniform(-0.2, 0.2, 10) for _ in range(2))
+    first = build_wall(1, 10.0, np.linspace(-3.3, 0.6, 9), heights)
+    first[12][2][0] = 6.5
+    second = build_wall(1, 10.0, np.linspace(3.2, 8.0, 9), others)
+
+    def surfaces(by):
+        return [
+            build_facade(1, 10.0, (-4.0, 1.5), (-3.5, 3.5)),
+            build_facade(1, 10.0 * by, (2.5 * by, 8.5 * by), (-3.5 * by, 3.5 * by)),
+        ]
+
+    return build_town(first, second, yaw=0.2, camera=small_camera), surfaces
+
+
+@pytest.mark.parametrize(
+    ("kind", "scale", "shift"),
+    [("z", 1.0, 0.0), ("z", 40.0, 0.0), ("distance", 0.1, 0.0), ("inverse", 3.0, 0.0), ("affine-inverse", 1.0, 0.4)],
+)
+def test_a_map_puts_bodies_where_they_stand(avenue_walls, build_depth_map, kind, scale, shift):
+    seen, surfaces = avenue_walls
+    alone = place_lines(seen.graph, seen.sight, SolveOptions())
+    assert len(alone.ties) == 0
+    assert np.abs(errors(seen, alone)).max() > 0.1
+    depth = build_depth_map(seen.sight, surfaces, kind, scale, shift)
+    found = with_map(seen, depth)
+    np.testing.assert_allclose(errors(seen, found), 0.0, atol=0.02 if shift else 0.001)
+    by_map = [set(found.by_map[seen.part == part].tolist()) for part in range(3)]
+    assert by_map == [{part != found.reference} for part in range(3)]
+    report = found.depth_map
+    assert (report.file, report.left_out, report.kind) == ("map.npz", "", kind)
+    if not shift:
+        relative = np.exp(np.median(seen.log_depth - found.solution.log_depth))
+        assert report.scale == pytest.approx(scale * relative, rel=0.01), "of the map over the solution"
+
+
+@pytest.mark.usefixtures("heard_by_the_program")
+def test_the_program_hears_a_map(avenue_walls, build_depth_map):
+    """As one more body beside the ground, with a tie to each of the three."""
+    seen, surfaces = avenue_walls
+    found = with_map(seen, build_depth_map(seen.sight, surfaces))
+    assert found.ties.bodies.tolist() == [[body, 4] for body in range(3)]
+    assert len(found.placement.log_scale) == 5
+    assert found.placement.counted.all()
+    np.testing.assert_allclose(errors(seen, found), 0.0, atol=0.001)
+    assert found.by_map.sum() == len(seen.part) - (seen.part == found.reference).sum()
+
+
+@pytest.mark.usefixtures("heard_by_the_program")
+@pytest.mark.parametrize("by", [0.99, 1.0, 1.01, 1.015])
+def test_a_map_does_not_move_what_a_bundle_holds(terrace, build_depth_map, by):
+    """Not even by less than the bundle's tolerance."""
+    seen, surfaces = terrace
+    alone = place_lines(seen.graph, seen.sight, SolveOptions())
+    assert alone.placement.counted.any()
+    assert abs(off(seen, alone)) < 1e-6
+    found = with_map(seen, build_depth_map(seen.sight, surfaces(by)))
+    assert found.depth_map.left_out == ""
+    assert len(found.ties) == len(alone.ties) + 2
+    assert found.placement.counted.all()
+    assert abs(off(seen, found)) < 1e-6
+    assert not found.by_map.any()
+
+
+def test_what_is_left_out_changes_nothing_but_the_report(avenue_walls, build_depth_map):
+    seen, surfaces = avenue_walls
+    alone = place_lines(seen.graph, seen.sight, SolveOptions())
+    exact = build_depth_map(seen.sight, surfaces)
+    shuffled = np.random.default_rng(0).permutation(exact.values[exact.valid])
+    values = exact.values.copy()
+    values[exact.valid] = shuffled
+    for bad in (replace(exact, values=values), replace(exact, values=np.where(exact.valid, 4.0, 0.0))):
+        found = with_map(seen, bad)
+        assert found.depth_map.left_out
+        assert found.solution.log_depth.tobytes() == alone.solution.log_depth.tobytes()
+        assert found.probability.tobytes() == alone.probability.tobytes()
+        assert not found.by_map.any()
+    assert alone.depth_map is None
+
+
+def test_a_real_crossing_outweighs_a_map(terrace, build_depth_map):
+    """The map has the second wall a tenth farther away than a person says."""
+    seen, surfaces = terrace
+    edge = int(between(seen)[0])
+    found = with_map(seen, build_depth_map(seen.sight, surfaces(1.1)), real=(edge,))
+    assert found.solution.connected[edge]
+    assert abs(off(seen, found)) < 0.005

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from linecad.ties.bodies import RigidBodies
+from linecad.ties.depth_ties import MapPlaces
 from linecad.ties.probability import AT_ONCE, LARGEST_MARGIN, LOG_ODDS, features, probabilities
 from solver.bodies.ties import Placement
 
@@ -126,6 +127,53 @@ def test_lines_move_relative_to_the_fit_to_all(placed):
     fits = replace(placed.fits, depth=np.tile(depth, (len(placed.fits.depth), 1)))
     together = known(replace(placed, log_depth=depth, fits=fits))["together"]
     assert (together[placed.bodies.body >= 0] == 1).all()
+
+
+def by_map(*misfit, width=0.02, worth=3.0):
+    """What a map made of two bodies that are so far off it."""
+    return MapPlaces(np.zeros(2), 0.0, np.zeros(2, bool), np.array(misfit), width, worth)
+
+
+def test_without_a_map_it_says_nothing(placed):
+    found = known(placed)
+    assert not found["map's word"].any()
+    assert not found["off the map"].any()
+
+
+def test_a_map_speaks_of_the_bodies_that_it_tells_of(placed):
+    """The margins are those of the ground and of the map too."""
+    first, second = (placed.bodies.body == body for body in range(2))
+    places = placement(6.0, 2.0, 1.0, 4.0)
+    found = features(placed, places, 0, placed.log_depth, by_map(-0.03, np.nan))
+    assert set(found["map's word"][first].tolist()) == {3.0}
+    assert found["off the map"][first] == pytest.approx(1.5), "widths, whether too far or too near"
+    for name in ("map's word", "off the map"):
+        assert not found[name][~first].any()
+    before = features(placed, places, 0, placed.log_depth)
+    assert all((found[name] == before[name]).all() for name in LOG_ODDS if "map" not in name)
+    assert second.any()
+
+
+def test_how_far_off_the_map_counts_up_to_an_end(placed):
+    places = placement(6.0, 2.0, 1.0)
+    far, farther = (
+        features(placed, places, 0, placed.log_depth, by_map(0.0, off))["off the map"] for off in (0.5, 50.0)
+    )
+    assert (far == farther).all()
+    assert 1 < far.max() < 25
+
+
+def test_the_map_counts_as_the_table_says(placed, monkeypatch):
+    places, second = placement(6.0, 2.0, 1.0), placed.bodies.body == 1
+    monkeypatch.setitem(LOG_ODDS, "map's word", 0.5)
+    monkeypatch.setitem(LOG_ODDS, "off the map", -0.4)
+    without, near, far = (
+        probabilities(placed, places, 0, placed.log_depth, mapped)
+        for mapped in (None, by_map(0.0, 0.0), by_map(0.0, 0.08))
+    )
+    assert (without < near)[placed.bodies.body >= 0].all()
+    assert (far < near)[second].all()
+    assert (far == near)[~second].all()
 
 
 def test_a_photo_without_bodies_has_no_sure_line(placed):

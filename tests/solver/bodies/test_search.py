@@ -1,12 +1,13 @@
 """The scene program against brute force, and what it promises."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 import pytest
 from numpy.random import Generator
 
-from linecad.arrays import Float
+from linecad.arrays import Bool, Float
 from solver.bodies.local_search import ELSEWHERE
 from solver.bodies.search import place
 from solver.bodies.ties import Ties, pseudoforest
@@ -91,6 +92,102 @@ def test_the_heaviest_first_are_the_best_pseudoforest(seed: int) -> None:
     assert weight[pseudoforest(edges)].sum() == pytest.approx(best)
 
 
+def yielding(ties: Ties, rng: Generator) -> Ties:
+    """The same, of which half yield."""
+    return replace(ties, yields=rng.random(len(ties)) < 0.5)
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_the_answer_is_the_best_of_all_where_ties_yield(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    bodies = int(rng.integers(2, 5))
+    ties = yielding(some_ties(rng, bodies, int(rng.integers(1, 9))), rng)
+    found = place(ties, bodies, 0, OPTIONS)
+    assert found.status == "optimal"
+    assert found.objective == pytest.approx(best_value(ties, bodies))
+    assert ties.holds(found.log_scale)[found.counted].all()
+    assert ties.weight[found.counted].sum() <= found.objective + 1e-9
+
+
+def least_squares(ties: Ties, counted: Bool, count: int, reference: int) -> Float:
+    """The log scales (B,) that meet the counted ties best, by normal equations: 0 for one body of each part."""
+    used = ties.subset(counted)
+    rows = np.zeros((len(used), count))
+    rows[np.arange(len(used)), used.bodies[:, 0]] = 1.0
+    rows[np.arange(len(used)), used.bodies[:, 1]] -= 1.0
+    strength = used.weight / used.tolerance**2
+    linked = np.linalg.matrix_power(np.eye(count) + np.abs(rows.T) @ np.abs(rows), count) > 0
+    first = [reference if linked[body, reference] else int(linked[body].argmax()) for body in range(count)]
+    free = [body for body in range(count) if first[body] != body]
+    found = np.zeros(count)
+    normal = rows[:, free].T * strength
+    found[free] = np.linalg.solve(normal @ rows[:, free], normal @ used.log_ratio)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_scales_are_in_the_middle_of_what_counts(seed: int) -> None:
+    """What counts is met by weighted least squares where no tie yields."""
+    rng = np.random.default_rng(seed)
+    ties = some_ties(rng, 5, int(rng.integers(3, 14)))
+    ties = replace(ties, tolerance=rng.uniform(0.02, 0.04, len(ties)))
+    found = place(ties, 5, 2, OPTIONS)
+    wanted = least_squares(ties, found.counted, 5, 2)
+    if ties.value(wanted) >= found.objective - 1e-9:
+        np.testing.assert_allclose(found.log_scale, wanted, atol=1e-9)
+    else:
+        assert ties.value(found.log_scale) == pytest.approx(found.objective), "what counts goes before its middle"
+
+
+def test_ties_that_yield_move_nothing_that_others_hold() -> None:
+    firm = Ties([[0, 1]], [0.3], [0.02], [1.0], [-1])
+    for ratio in (0.285, 0.3, 0.319):
+        found = place(firm.joined(Ties([[0, 1]], [ratio], [0.02], [50.0], [-1], [True])), 2, 0, OPTIONS)
+        assert found.counted.all()
+        assert found.log_scale.tolist() == pytest.approx([0.0, -0.3], abs=1e-12)
+
+
+def test_ties_that_yield_place_what_nothing_else_holds() -> None:
+    found = place(Ties([[0, 1], [2, 1]], [0.3, -0.1], [0.02] * 2, [1.0, 2.0], [-1] * 2, [True] * 2), 3, 0, OPTIONS)
+    assert found.log_scale.tolist() == pytest.approx([0.0, -0.3, -0.4], abs=1e-9)
+    assert found.counted.all()
+
+
+def test_ties_that_yield_shift_as_a_whole_what_others_hold() -> None:
+    """Bodies 0 and 1, and 2 and 3, are held together; 4 is tied to all of them, to each a little otherwise."""
+    firm = Ties([[0, 1], [2, 3]], [0.2, -0.1], [0.02] * 2, [1.0, 1.0], [-1] * 2)
+    off = np.array([0.01, -0.01, 0.01, 0.0])
+    asked = np.array([0.0, -0.2, 0.5, 0.6]) + off
+    loose = Ties([[body, 4] for body in range(4)], asked, [0.02] * 4, [30.0, 30.0, 10.0, 30.0], [-1] * 4, [True] * 4)
+    found = place(firm.joined(loose), 5, 0, OPTIONS)
+    assert found.counted.all()
+    second = 0.5 + np.average(off[2:], weights=[10.0, 30.0])
+    assert found.log_scale.tolist() == pytest.approx([0.0, -0.2, second, second + 0.1, 0.0], abs=1e-9)
+
+
+def test_what_yields_may_cease_to_hold() -> None:
+    """Its weight tells which of two places it is, not where in the interval."""
+    firm = Ties([[0, 1], [0, 1]], [0.3, 0.5], [0.02] * 2, [3.0, 2.0], [-1] * 2)
+    found = place(firm.joined(Ties([[0, 1]], [0.475], [0.006], [4.0], [-1], [True])), 2, 0, OPTIONS)
+    assert found.objective == pytest.approx(6.0)
+    assert found.log_scale.tolist() == pytest.approx([0.0, -0.5], abs=1e-9)
+    assert found.counted.tolist() == [False, True, False]
+
+
+def test_joined_ties_stand_one_after_the_other() -> None:
+    rng = np.random.default_rng(4)
+    first, second = some_ties(rng, 4, 5), yielding(some_ties(rng, 4, 3), rng)
+    both = first.joined(second)
+    assert len(both) == 8
+    for name, value in vars(both).items():
+        np.testing.assert_array_equal(value, [*getattr(first, name), *getattr(second, name)])
+    assert not np.asarray(first.yields).any()
+    none = Ties(np.zeros((0, 2)), [], [], [], [])
+    for same in (second.joined(none), none.joined(second), both.subset(np.arange(5, 8))):
+        for name, value in vars(same).items():
+            np.testing.assert_array_equal(value, getattr(second, name))
+
+
 def test_the_same_ties_give_the_same_answer() -> None:
     ties = some_ties(np.random.default_rng(5), 10, 36)
     first, second = (place(ties, 10, 0, OPTIONS) for _ in range(2))
@@ -173,7 +270,14 @@ def test_progress_is_told_and_a_node_limit_ends_the_search() -> None:
 
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("bodies", [[0, 0]]), ("tolerance", [0.0]), ("weight", [-1.0]), ("group", [-2]), ("log_ratio", [0.1, 0.2])],
+    [
+        ("bodies", [[0, 0]]),
+        ("tolerance", [0.0]),
+        ("weight", [-1.0]),
+        ("group", [-2]),
+        ("log_ratio", [0.1, 0.2]),
+        ("yields", [True, False]),
+    ],
 )
 def test_ties_that_mean_nothing_are_refused(field: str, value: list[object]) -> None:
     known = {"bodies": [[0, 1]], "log_ratio": [0.1], "tolerance": [0.02], "weight": [1.0], "group": [-1]}
