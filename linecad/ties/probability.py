@@ -23,8 +23,21 @@ LOG_ODDS: dict[str, float] = {
     "agreement of all": -0.8356,
     "agreement of the line": 1.6449,
     "bodies": 0.5871,
-    "map's word": 0.0,
-    "off the map": 0.0,
+}
+# The same where a depth map was heard.
+WITH_MAP_AT_ONCE = -8.1024
+WITH_MAP_LOG_ODDS: dict[str, float] = {
+    "of the reference": 1.4191,
+    "margin": 0.0499,
+    "root of margin": 0.0233,
+    "lines of the body": 0.1392,
+    "share of the reference": 3.3702,
+    "together": 1.7944,
+    "agreement of all": 1.1244,
+    "agreement of the line": 2.4195,
+    "bodies": 0.1446,
+    "map's word": 0.4053,
+    "off the map": -0.1519,
 }
 
 
@@ -50,7 +63,6 @@ def features(
         together[lines] = togetherness(setting.fits, shift, core)[lines]
     margin = np.minimum(placement.margin, LARGEST_MARGIN)
     size = np.bincount(body[own], minlength=len(margin))  # a photo without bodies has one place all the same
-    word, off_map = _by_the_map(mapped, len(margin))
     found = {
         "of the reference": (body == reference).astype(np.float64),
         "margin": margin[at],
@@ -61,16 +73,15 @@ def features(
         "agreement of all": np.full(len(body), agreeing.sum() / max(1, many.sum())),
         "agreement of the line": (agreeing + 1) / (many + 2),
         "bodies": np.full(len(body), np.log(setting.bodies.count + 1)),
-        "map's word": word[at],
-        "off the map": off_map[at],
     }
+    if mapped is not None:
+        word, off_map = _by_the_map(mapped, len(margin))
+        found |= {"map's word": word[at], "off the map": off_map[at]}
     return {name: np.where(own, value, 0.0) for name, value in found.items()}
 
 
-def _by_the_map(mapped: MapPlaces | None, count: int) -> tuple[Float, Float]:
+def _by_the_map(mapped: MapPlaces, count: int) -> tuple[Float, Float]:
     """What the map's word is worth about each of `count` bodies, and how many widths they are off it; 0 without one."""
-    if mapped is None:
-        return np.zeros(count), np.zeros(count)
     off = np.minimum(np.abs(mapped.misfit) / mapped.width, FARTHEST_OFF)
     off = np.concatenate([off, np.full(count - len(off), np.nan)])
     told = np.isfinite(off)
@@ -82,7 +93,6 @@ def probabilities(
 ) -> Float:
     """(N,) from 0 to 1; 0 for lines of no body. `mapped` as for `features`."""
     known = features(setting, placement, reference, log_depth, mapped)
-    log_odds = AT_ONCE + sum(
-        (LOG_ODDS[name] * value for name, value in known.items()), np.zeros(len(setting.log_depth))
-    )
+    at_once, slopes = (AT_ONCE, LOG_ODDS) if mapped is None else (WITH_MAP_AT_ONCE, WITH_MAP_LOG_ODDS)
+    log_odds = at_once + sum((slopes[name] * value for name, value in known.items()), np.zeros(len(setting.log_depth)))
     return np.where(setting.bodies.body >= 0, 1 / (1 + np.exp(-log_odds)), 0.0)

@@ -248,8 +248,9 @@ def _print_row(name: str, photos: list[Judged], scores: list[tuple[float, float]
 def print_probabilities(known: list[tuple[str, Judged, Placed]]) -> logistic.Logistic:
     """Print how far the probabilities of lines hold, by the names given; the regression over all, each of one weight.
 
-    A scene is left out with and without maps at once.
+    All with a map that is heard, or all without one. A scene is left out with all its maps.
     """
+    known = [one for one in known if len(one[2].right)]
     of_lines = np.concatenate([one.features for _, _, one in known])
     right = np.concatenate([one.right for _, _, one in known])
     weight = np.concatenate([np.full(len(one.right), 1 / len(one.right)) for _, _, one in known])
@@ -290,27 +291,32 @@ def main() -> None:
         print_kinds(rows, datasets)
         found = print_ablation(photos, rows, datasets, pool)
         with_maps = print_maps(photos, rows, datasets, pool)
-    known = [(photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True)]
-    for of_width in with_maps:
-        known += [(f"{photo.dataset}, map", photo, one) for photo, one in zip(photos, of_width, strict=True)]
-    of_lines = print_probabilities([one for one in known if len(one[2].right)])
+    of_lines = print_probabilities([(photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True)])
+    of_maps = print_probabilities([
+        (f"{photo.dataset}, map", photo, one)
+        for of_width in with_maps for photo, one in zip(photos, of_width, strict=True) if one.heard
+    ])  # fmt: skip
     fits = {kind: of_kind.fit(np.ones(len(of_kind.right), bool)) for kind, of_kind in rows.items()}
-    print_changes(tables(fits, rows), of_lines)
+    print_changes(tables(fits, rows), of_lines, of_maps)
     if chosen.write:
         write_table(tables(fits, rows))
-        write_probability(of_lines)
+        write_probability(of_lines, of_maps)
 
 
-def print_changes(table: dict[str, dict], of_lines: logistic.Logistic) -> None:
+def print_changes(table: dict[str, dict], of_lines: logistic.Logistic, of_maps: logistic.Logistic) -> None:
     """By how much the fits to all photos differ from what the project has, at most."""
     for kind in KINDS:
         known = linecad.ties.table.LOG_ODDS[kind]
         change = [table["AT_ONCE"][kind] - linecad.ties.table.AT_ONCE[kind]]
         change += [value - known[name] for name, value in table["LOG_ODDS"][kind].items()]
         print(f"{kind}: the fit differs from the table by up to {np.abs(change).max():.4f}")
-    known = [linecad.ties.probability.AT_ONCE, *linecad.ties.probability.LOG_ODDS.values()]
-    change = np.array(known) - np.r_[of_lines.at_once, of_lines.slope]
-    print(f"lines: the fit differs from the table by up to {np.abs(change).max():.4f}")
+    now = linecad.ties.probability
+    for what, known, fitted in (
+        ("lines", [now.AT_ONCE, *now.LOG_ODDS.values()], of_lines),
+        ("lines with a map", [now.WITH_MAP_AT_ONCE, *now.WITH_MAP_LOG_ODDS.values()], of_maps),
+    ):
+        change = np.array(known) - np.r_[fitted.at_once, fitted.slope]
+        print(f"{what}: the fit differs from the table by up to {np.abs(change).max():.4f}")
 
 
 def write_table(table: dict[str, dict]) -> None:
@@ -324,20 +330,22 @@ def write_table(table: dict[str, dict]) -> None:
     path.write_text(head + "\n".join([*lines, "}", ""]), encoding="utf-8")
 
 
-def write_probability(of_lines: logistic.Logistic) -> None:
+def write_probability(of_lines: logistic.Logistic, of_maps: logistic.Logistic) -> None:
     path = Path(linecad.ties.probability.__file__)
-    names = linecad.ties.probability.LOG_ODDS
-    slopes = "".join(
-        f'    "{name}": {value:.4f},\n' for name, value in zip(names, of_lines.slope.tolist(), strict=True)
-    )
-    table = f"AT_ONCE = {of_lines.at_once:.4f}\nLOG_ODDS: dict[str, float] = {{\n{slopes}}}\n"
-    text = re.sub(
-        r"^AT_ONCE = .*?^}\n",
-        lambda _: table,
-        path.read_text(encoding="utf-8"),
-        count=1,
-        flags=re.DOTALL | re.MULTILINE,
-    )
+    text = path.read_text(encoding="utf-8")
+    now = linecad.ties.probability
+    for prefix, names, fitted in (("", now.LOG_ODDS, of_lines), ("WITH_MAP_", now.WITH_MAP_LOG_ODDS, of_maps)):
+        slopes = "".join(
+            f'    "{name}": {value:.4f},\n' for name, value in zip(names, fitted.slope.tolist(), strict=True)
+        )
+        table = f"{prefix}AT_ONCE = {fitted.at_once:.4f}\n{prefix}LOG_ODDS: dict[str, float] = {{\n{slopes}}}\n"
+        text = re.sub(
+            rf"^{prefix}AT_ONCE = .*?^}}\n",
+            lambda _, table=table: table,
+            text,
+            count=1,
+            flags=re.DOTALL | re.MULTILINE,
+        )
     path.write_text(text, encoding="utf-8")
 
 
