@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, freeze
+from linecad.depth.normals import Normals
 from linecad.errors import DepthMapError
 from linecad.scene import DEPTH_KINDS, DepthKind
 
@@ -38,7 +39,7 @@ class DepthMap:
     valid: Bool  # (H, W)
     kind: Kind | None  # None: the file does not tell
     intrinsics: Float | None = None  # (3, 3) K in px of this map, as the file counts them; None: not in the file
-    normals: Single | None = None  # (H, W, 3) of length 1, camera frame; 0 where there is none; None: not in the file
+    normals: Normals | None = None  # of the same pixels; None: not in the file
 
     def __post_init__(self) -> None:
         freeze(self, "values", np.float32, (None, None))
@@ -50,8 +51,8 @@ class DepthMap:
             raise ValueError("DepthMap.values are not above 0 where valid and 0 elsewhere")
         if self.intrinsics is not None:
             freeze(self, "intrinsics", np.float64, (3, 3))
-        if self.normals is not None:
-            freeze(self, "normals", np.float32, (*shape, 3))
+        if self.normals is not None and self.normals.shape != shape:
+            raise ValueError(f"DepthMap.normals has shape {self.normals.shape}, expected {shape}")
 
     @property
     def width(self) -> int:
@@ -80,7 +81,7 @@ class Content:
     values: NDArray[Any]  # (H, W)
     kind: Kind | None = None
     intrinsics: Float | None = None  # (3, 3) px of the map
-    normals: NDArray[Any] | None = None  # (H, W, 3)
+    normals: NDArray[Any] | None = None  # (H, W, 3); bytes are MoGe's colours
     mask: Bool | None = None  # (H, W) false where the network says that there is nothing; None: it does not say
 
 

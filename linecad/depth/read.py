@@ -10,7 +10,8 @@ from linecad.arrays import Float
 from linecad.depth.arrays_in_files import NPY_MAGIC, ZIP_MAGIC
 from linecad.depth.depth_map import MOST_BYTES, WHAT_TO_GIVE, Content, DepthMap, Reading, check_size
 from linecad.depth.intrinsics import matrix_of_angles
-from linecad.depth.normals import read_normal_picture, unit_normals
+from linecad.depth.normal_picture import read_normal_picture
+from linecad.depth.normals import Normals
 from linecad.depth.numpy_files import read_npy_depth, read_npz_depth
 from linecad.depth.pfm import MAGICS as PFM_MAGICS
 from linecad.depth.pfm import read_pfm
@@ -44,7 +45,7 @@ def read_depth_map(path: Path, reading: Reading | None = None) -> DepthMap:
         check_size(width, height, path)
         content = _with_files_beside(content, path)
         values, valid = valid_depths(content.values, content.mask)
-        normals = None if content.normals is None else unit_normals(content.normals)
+        normals = None if content.normals is None else Normals(content.normals)
     if not valid.any():
         raise DepthMapError(f"{path} holds no depth: all its values are 0, negative or not finite; make it again")
     return DepthMap(path.name, values, valid, content.kind, content.intrinsics, normals)

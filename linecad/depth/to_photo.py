@@ -11,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.camera.intrinsics import places_taken
+from linecad.camera.intrinsics import Calibration, places_taken
 from linecad.camera.photo import Photo
-from linecad.depth.depth_map import DepthMap
+from linecad.depth.depth_map import DepthMap, Single
+from linecad.depth.normals import OUTSIDE, Normals
 from linecad.errors import DepthMapError
 
 SAME_SHAPE = 0.02  # share by which the ratios of two sides may differ through rounding and multiples of 14 px
+STRIP = 32  # rows
 OTHER_SHAPE = 0.1  # from which share on they do not
 
 
@@ -29,20 +31,31 @@ def map_to_photo(depth: DepthMap, photo: Photo, is_of_undistorted: bool = False)
     """
     _check_upright(depth, photo)
     if photo.undistortion is None or is_of_undistorted:
-        y = np.arange(photo.height)
-        x = np.arange(photo.width)
-        chosen = np.ix_(_index(y, photo.height, depth.height), _index(x, photo.width, depth.width))
-        values, valid = depth.values[chosen], depth.valid[chosen]
-        normals = None if depth.normals is None else depth.normals[chosen]
+        row = _index(np.arange(photo.height), photo.height, depth.height)
+        column = _index(np.arange(photo.width), photo.width, depth.width)
+        values = depth.values.take(column, axis=1).take(row, axis=0)  # a third of the time of np.ix_
+        normals = None if depth.normals is None else depth.normals.laid(row[:, None], column[None])
     else:
-        x_taken, y_taken = places_taken(photo.undistortion)
-        inside = (x_taken >= -0.5) & (x_taken < photo.width - 0.5) & (y_taken >= -0.5) & (y_taken < photo.height - 0.5)
-        flat = _index(y_taken, photo.height, depth.height) * depth.width
-        flat += _index(x_taken, photo.width, depth.width)
-        values = depth.values.ravel().take(flat) * inside
-        valid = values > 0
-        normals = None if depth.normals is None else depth.normals.reshape(-1, 3)[flat] * inside[..., None]
-    return DepthMap(depth.name, values, valid, depth.kind, _matrix_in_photo(depth, photo), normals)
+        values, normals = _straightened(depth, photo.undistortion)
+    return DepthMap(depth.name, values, values > 0, depth.kind, _matrix_in_photo(depth, photo), normals)
+
+
+def _straightened(depth: DepthMap, undistortion: Calibration) -> tuple[Single, Normals | None]:
+    """Values and normals of a map on the pixels of the photo that was straightened by that; 0 where that shows none."""
+    x_taken, y_taken = places_taken(undistortion)
+    width, height = undistortion.width, undistortion.height
+    values, taken = np.empty((height, width), np.float32), depth.values.ravel()
+    row_of, column_of = np.empty((2, *((height, width) if depth.normals is not None else (0, 0))), np.int16)
+    # Strip by strip: what is made on the way stays in the processor's cache, which halves the time.
+    for start in range(0, height, STRIP):
+        strip = slice(start, start + STRIP)
+        x, y = x_taken[strip], y_taken[strip]
+        inside = (x >= -0.5) & (x < width - 0.5) & (y >= -0.5) & (y < height - 0.5)
+        row, column = _index(y, height, depth.height), _index(x, width, depth.width)
+        values[strip] = taken.take(row * depth.width + column) * inside
+        if depth.normals is not None:
+            row_of[strip], column_of[strip] = np.where(inside, row, OUTSIDE), column
+    return values, None if depth.normals is None else depth.normals.laid(row_of, column_of)
 
 
 def _index(place: NDArray[Any], length: int, own: int) -> Int:

@@ -6,6 +6,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int, Text
 from linecad.decide.decision import Decision
+from linecad.depth.normals import Normals
 from linecad.errors import ReconstructionError
 from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Solution
@@ -99,7 +100,7 @@ def build_scene(
         depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
     offset = (found.lifted.offset * scale[:, None])[kept]
     planes = find_planes(offset, found.lifted.shared[kept], lines.id)
-    planes = find_faces(planes, lines, view.camera, view.frame.rotation)
+    planes = find_faces(planes, lines, view.camera, view.frame.rotation, _normals(placed))
     new_id = np.cumsum(found.kept) - 1
     pairs = _renumbered(decision.planar_pairs, found.component, new_id)
     return Scene(
@@ -184,6 +185,14 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     own = component[pairs[:, :2]]
     inside = pairs[(own[:, 0] >= 0) & (own[:, 0] == own[:, 1])]
     return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
+
+
+def _normals(placed: Placed | None) -> Normals | None:
+    """The normals of a depth map that was not left out."""
+    depth = None if placed is None else placed.setting.sight.depth
+    if depth is None or placed is None or placed.depth_map is None or placed.depth_map.left_out:
+        return None
+    return depth.normals
 
 
 def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int], are_placed: bool) -> Float:

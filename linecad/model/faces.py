@@ -4,7 +4,8 @@ A cell between the lines of a plane may be wall where lines close it in; a wall 
 reaches into the sky. Where the cells of several planes cover a pixel, it belongs to the plane with the nearest line,
 and to none whose nearest line is further than a line that is seen behind it: a face hides nothing that is seen. A
 window set back behind a facade takes its pixels from it, and becomes a hole with a face of its own behind. What two
-faces still share in the photo stays with the one that has more of these pixels.
+faces still share in the photo stays with the one that has more of these pixels. A pixel that faces along another axis
+than a plane, as a depth map tells, does not belong to it.
 """
 
 from dataclasses import dataclass, replace
@@ -13,6 +14,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
+from linecad.depth.normals import Normals
 from linecad.geometry import PhotoLength, project, world_rays
 from linecad.model.outlines import outlines, without_slivers
 from linecad.model.plane_cells import PlaneCells, Samples, build_plane_cells, take_samples
@@ -29,9 +31,14 @@ LEAST_CORNERS = 3
 GRAZING = 1e-6  # relative; computed corners so near to a line's coordinate are on it
 
 
-def find_faces(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float) -> tuple[Plane, ...]:
-    """The planes with their faces, which do not overlap in the photo. `rotation` (3, 3) takes world to camera."""
-    samples = take_samples(lines, camera, rotation)
+def find_faces(
+    planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, normals: Normals | None = None
+) -> tuple[Plane, ...]:
+    """The planes with their faces, which do not overlap in the photo. `rotation` (3, 3) takes world to camera.
+
+    `normals` are those of a depth map on the photo's pixels, where there is one that has them.
+    """
+    samples = take_samples(lines, camera, rotation, normals)
     row = {number: index for index, number in enumerate(lines.id.tolist())}
     cell_sets = []
     for plane in planes:

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.depth.normals import UNTOLD, Normals
 from linecad.geometry import PhotoLength, project, world_rays
 from linecad.model.outlines import Cells, Edges, build_cells
 from linecad.scene import Camera, Lines, Plane
@@ -38,6 +39,7 @@ class Samples:
     cell: Int  # (T,) sample in which it lies
     line_rays: Float  # (T, 3)
     line_depth: Float  # (T,)
+    facing: Int  # (S,) axis along which what it shows faces by a depth map, or UNTOLD
 
     def distance(self, sample: Int, points: Bool) -> Float:
         """Distance (M,) in samples from some of them to the nearest of the masked points on lines."""
@@ -63,7 +65,7 @@ class PlaneCells:
     kept: Bool  # (U, V)
     sample: Int  # (M,) ascending
     at: Int  # (M,) flat index of its cell
-    distance: Float  # (M,) to the nearest line, in samples; inf where a line behind is nearer
+    distance: Float  # (M,) to the nearest line, in samples; inf where a line behind is nearer, or it faces elsewhere
     depth: Float  # (M,)
     width: Float  # (U, V) px
     height: Float  # (U, V) px
@@ -84,8 +86,8 @@ class PlaneCells:
         return self.count(np.ones(len(self.at), bool))
 
 
-def take_samples(lines: Lines, camera: Camera, rotation: Float) -> Samples:
-    """A raster of COLUMNS across the photo, and the lines on it."""
+def take_samples(lines: Lines, camera: Camera, rotation: Float, normals: Normals | None) -> Samples:
+    """A raster of COLUMNS across the photo, and the lines and what a map of its pixels tells on it."""
     step = camera.width / COLUMNS
     shape = (int(np.ceil(camera.height / step)), COLUMNS)
     rows, columns = np.mgrid[: shape[0], : shape[1]]
@@ -105,7 +107,11 @@ def take_samples(lines: Lines, camera: Camera, rotation: Float) -> Samples:
     depth = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
     # By columns, as planes look at one coordinate of all.
     all_rays = np.asfortranarray(world_rays(pixels, camera.matrix, rotation))
-    return Samples(shape, step, all_rays, line, (below * shape[1] + column)[inside], rays, depth)
+    facing = np.full(len(pixels), UNTOLD)
+    if normals is not None:
+        at_x, at_y = np.minimum(np.rint(pixels).astype(np.int64), [camera.width - 1, camera.height - 1]).T
+        facing = normals.axes_at(at_y, at_x, rotation)
+    return Samples(shape, step, all_rays, line, (below * shape[1] + column)[inside], rays, depth, facing)
 
 
 def build_plane_cells(
@@ -145,6 +151,8 @@ def build_plane_cells(
     behind = _behind(plane, (u, v), grid, possible, samples, comparable & ~own)
     distance, speaks = samples.distance(sample, own), samples.distance(sample, behind)
     nearest = distance <= np.where(speaks <= SPEAKS, speaks, np.inf) + 0.5
+    facing = samples.facing[sample]
+    nearest &= (facing == plane.axis) | (facing == UNTOLD)
     return PlaneCells(
         plane=plane,
         flat=(u, v),

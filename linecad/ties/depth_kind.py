@@ -15,6 +15,7 @@ from linecad.errors import DepthMapError
 from linecad.ties.depth_samples import DepthSamples, log_scales
 
 LEAST_SAMPLES, LEAST_BODIES = 60, 2
+MOST_COUNTED = 100_000  # of the map's pixels, evenly taken, whose values tell whether they differ
 LEAST_SPREAD = 0.01  # log of the 95th over the 5th percentile of the map's values
 MOST_UNEVEN = 0.6  # share of the depth that walls span
 QUARTER, LEAST_OFF = 0.25, 0.03  # of samples; log depth off the middle of a body
@@ -31,7 +32,7 @@ class DepthReading:
 
     kind: Kind
     shift: float  # in units of the map's inverse depth; 0 but for affine-inverse
-    unevenness: float  # of the depth that walls span, how far off them the map is (`_unevenness`)
+    unevenness: float  # of the depth that walls span, how far off them the map is (`_Relief.unevenness`)
     spread: float  # log depth, the median by which samples are off the middle of their body
     log_scale: Float  # (B,) by which log the map asks each body to grow; NaN where it does not tell
 
@@ -44,10 +45,11 @@ def read_depth(depth: DepthMap, samples: DepthSamples) -> DepthReading | str:
     """
     if len(samples) < LEAST_SAMPLES or len(np.unique(samples.body)) < LEAST_BODIES:
         return "it covers too few walls of this photo"
-    low, high = np.quantile(depth.values[depth.valid], [0.05, 0.95])
+    low, high = np.quantile(depth.values[depth.valid][:: max(1, depth.values.size // MOST_COUNTED)], [0.05, 0.95])
     if np.log(high / low) < LEAST_SPREAD:
         return "it holds one depth throughout"
-    readings = [_best_reading(samples, kind) for kind in (UNTOLD if depth.kind is None else (depth.kind,))]
+    relief = _Relief(samples)
+    readings = [_best_reading(samples, relief, kind) for kind in (UNTOLD if depth.kind is None else (depth.kind,))]
     readings.sort(key=lambda reading: reading.unevenness)
     best = readings[0]
     usual = next(reading for reading in readings if reading.kind in (depth.kind, "z"))
@@ -62,50 +64,57 @@ def read_depth(depth: DepthMap, samples: DepthSamples) -> DepthReading | str:
     return best
 
 
-def _best_reading(samples: DepthSamples, kind: Kind) -> DepthReading:
-    shift = _best_shift(samples) if kind == "affine-inverse" else 0.0
+def _best_reading(samples: DepthSamples, relief: "_Relief", kind: Kind) -> DepthReading:
+    shift = _best_shift(samples, relief) if kind == "affine-inverse" else 0.0
     excess = samples.excess(kind, shift)
     known = np.isfinite(excess)
     off = np.abs(_off_middle(excess[known], samples.body[known]))
     spread = float(np.median(off)) if known.any() else float("inf")
-    return DepthReading(kind, shift, _unevenness(samples, excess), spread, log_scales(samples, excess))
+    return DepthReading(kind, shift, relief.unevenness(excess), spread, log_scales(samples, excess))
 
 
-def _best_shift(samples: DepthSamples) -> float:
+def _best_shift(samples: DepthSamples, relief: "_Relief") -> float:
     """What must be added to disparity for walls to be flattest."""
     unit = float(np.quantile(samples.value, 0.95))
     least = float(np.quantile(samples.value, 0.02))
 
     def best_of(shifts: Float) -> float:
-        found = [_unevenness(samples, samples.excess("affine-inverse", shift)) for shift in shifts]
+        found = [relief.unevenness(samples.excess("affine-inverse", shift)) for shift in shifts]
         return float(shifts[int(np.argmin(found))])
 
     coarse = best_of(SHIFTS * unit - least)
     return best_of((coarse + least) * REFINED - least)
 
 
-def _unevenness(samples: DepthSamples, excess: Float) -> float:
-    """How far the map is off the depths that vary inside bodies, as a share of how much they do.
+class _Relief:
+    """How depths vary inside bodies: what a map has to follow, whatever scale it gives each body."""
 
-    0 for a perfect map, 1 for one of one depth throughout; the median over the QUARTER of the samples that differ most
-    in depth from the middle of their body. Infinite where the map has no depth at most of them.
-    """
-    own = _off_middle(samples.log_depth, samples.body)
-    far = np.abs(own) >= max(LEAST_OFF, float(np.quantile(np.abs(own), 1 - QUARTER)))
-    known = np.isfinite(excess)
-    if not far.any() or known[far].mean() < 0.5:
-        return float("inf")
-    off = np.zeros(len(excess))
-    off[known] = _off_middle(excess[known], samples.body[known])
-    return float(np.median(np.abs(off[far & known]) / np.abs(own[far & known])))
+    def __init__(self, samples: DepthSamples) -> None:
+        self._body = samples.body
+        own = np.abs(_off_middle(samples.log_depth, samples.body))
+        self._far = own >= max(LEAST_OFF, float(np.quantile(own, 1 - QUARTER)))
+        self._own = own
+
+    def unevenness(self, excess: Float) -> float:
+        """How far a map of such an excess (S,) is off the depths that vary, as a share of how much they do.
+
+        0 for a perfect map, 1 for one of one depth throughout; the median over the QUARTER of the samples that differ
+        most in depth from the middle of their body. Infinite where the map has no depth at most of them.
+        """
+        known = np.isfinite(excess)
+        if not self._far.any() or known[self._far].mean() < 0.5:
+            return float("inf")
+        off = np.abs(_off_middle(excess[known], self._body[known]))[self._far[known]]
+        return float(np.median(off / self._own[self._far & known]))
 
 
 def _off_middle(values: Float, body: Int) -> Float:
     """Values (S,) less the median of those of their body (S,), whose numbers ascend."""
-    ordered = values[np.lexsort([values, body])]
-    starts = np.flatnonzero(np.diff(body, prepend=-1))
-    count = np.diff(starts, append=len(body))
-    off: Float = values - np.repeat(ordered[starts + count // 2], count)
+    off = values.copy()
+    starts = np.flatnonzero(np.diff(body, prepend=-1)).tolist()
+    for start, end in zip(starts, [*starts[1:], len(body)], strict=True):
+        middle = (end - start) // 2
+        off[start:end] -= np.partition(values[start:end], middle)[middle]
     return off
 
 

@@ -44,3 +44,14 @@ def refuse(read):
         return message
 
     return refuse_bytes
+
+
+@pytest.fixture
+def every_normal():
+    """The normals (H, W, 3) of all pixels of a map."""
+
+    def of_all(normals):
+        row, column = np.indices(normals.shape)
+        return normals.at(row.ravel(), column.ravel()).reshape(*normals.shape, 3)
+
+    return of_all

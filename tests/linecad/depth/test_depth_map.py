@@ -6,15 +6,16 @@ import numpy as np
 import pytest
 
 from linecad.depth.depth_map import LARGEST_SIDE, MOST_PIXELS, SMALLEST_SIDE, DepthMap, camera_depths, check_size
+from linecad.depth.normals import Normals
 from linecad.errors import DepthMapError
 
 
 def test_arrays_are_copies_that_nobody_can_change(depth):
-    record = DepthMap("map", depth, depth > 0, "z", np.eye(3), np.zeros((*depth.shape, 3)))
+    record = DepthMap("map", depth, depth > 0, "z", np.eye(3), Normals(np.zeros((*depth.shape, 3))))
     depth[0, 0] = 99
     assert record.values[0, 0] != 99
     assert (record.width, record.height) == (60, 40)
-    for array in (record.values, record.valid, record.intrinsics, record.normals):
+    for array in (record.values, record.valid, record.intrinsics, record.normals.vectors):
         with pytest.raises(ValueError, match="read-only"):
             array[0, 0] = 1
 
@@ -26,7 +27,7 @@ def test_arrays_are_copies_that_nobody_can_change(depth):
         ({"valid": np.ones((40, 61), bool)}, "valid has shape"),
         ({"kind": "metres"}, "kind is metres"),
         ({"intrinsics": np.eye(4)}, "intrinsics has shape"),
-        ({"normals": np.zeros((40, 60))}, "normals has shape"),
+        ({"normals": Normals(np.zeros((60, 40, 3)))}, "normals has shape"),
     ],
 )
 def test_what_does_not_fit_together_is_a_mistake(depth, changes, what):

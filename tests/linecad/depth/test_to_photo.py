@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from linecad.camera.intrinsics import Calibration, distort_points, undistort_photo
 from linecad.camera.photo import Photo, read_photo
 from linecad.depth.depth_map import DepthMap
+from linecad.depth.normals import Normals
 from linecad.depth.to_photo import map_to_photo
 from linecad.errors import DepthMapError
 
@@ -38,17 +39,17 @@ def test_every_pixel_has_the_number_of_the_place_it_lies_in(width, height, own_w
     assert np.abs((row + 0.5) / own_height - place_y[:, None]).max() <= 0.5 / own_height + 1e-9
 
 
-def test_the_same_size_changes_nothing(depth):
-    normals = np.zeros((*depth.shape, 3))
-    normals[..., 2] = -1
+def test_the_same_size_changes_nothing(depth, every_normal):
+    normals = np.random.default_rng(1).normal(size=(*depth.shape, 3))
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     depth[:4] = 0
-    given = map_of(depth, intrinsics=np.diag([70.0, 70, 1]), normals=normals)
+    given = map_of(depth, intrinsics=np.diag([70.0, 70, 1]), normals=Normals(normals))
     found = map_to_photo(given, photo_of(60, 40))
     for one, other in (
         (found.values, given.values),
         (found.valid, given.valid),
         (found.intrinsics, given.intrinsics),
-        (found.normals, given.normals),
+        (every_normal(found.normals), every_normal(given.normals)),
     ):
         np.testing.assert_array_equal(one, other)
     assert (found.name, found.kind) == ("map.npz", "z")
@@ -85,9 +86,11 @@ def taken_places(calibration):
 
 @pytest.mark.parametrize("calibration", [BARREL, PINCUSHION], ids=["barrel", "pincushion"])
 @pytest.mark.parametrize("size", [(300, 200), (150, 50)])
-def test_a_map_goes_where_the_undistorted_pixels_went(calibration, size):
+def test_a_map_goes_where_the_undistorted_pixels_went(calibration, size, every_normal):
     y, x = np.mgrid[: size[1], : size[0]]
-    depth = map_of(1 + x + 1000.0 * y, normals=np.tile([0.0, 0, -1], (size[1], size[0], 1)))
+    vectors = np.stack([x, y, np.full(x.shape, -300.0)], axis=-1)
+    vectors /= np.linalg.norm(vectors, axis=2, keepdims=True)
+    depth = map_of(1 + x + 1000.0 * y, normals=Normals(vectors))
     found = map_to_photo(depth, photo_of(300, 200, calibration))
     places = taken_places(calibration)
     inside = ((places >= -0.5) & (places < [299.5, 199.5])).all(axis=2)
@@ -98,8 +101,9 @@ def test_a_map_goes_where_the_undistorted_pixels_went(calibration, size):
     middle = (np.stack([column, row], axis=-1) + 0.5) * [300 / size[0], 200 / size[1]] - 0.5
     reach = np.array([150 / size[0], 100 / size[1]]) + 1e-3
     assert (np.abs(middle - places) <= reach)[inside].all()
-    assert (found.normals[inside] == [0, 0, -1]).all()
-    assert not found.normals[~inside].any()
+    normals = every_normal(found.normals)
+    np.testing.assert_allclose(normals[inside], vectors[row[inside], column[inside]])
+    assert not normals[~inside].any()
 
 
 def test_the_map_and_the_photo_agree_after_the_undistortion():

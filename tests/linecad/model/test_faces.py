@@ -8,7 +8,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.geometry import project
+from linecad.depth.normals import Normals
+from linecad.geometry import project, rotation_about
 from linecad.model.faces import find_faces
 from linecad.model.planes import find_planes
 from linecad.scene import Camera, Lines
@@ -38,7 +39,7 @@ def edge(axis, start, length):
     return (axis, ends)
 
 
-def faces_of(edges, rotation=AHEAD):
+def faces_of(edges, rotation=AHEAD, normals=None):
     """Planes with faces of the distinct edges, whose equal coordinates are shared."""
     edges = list({(axis, ends.tobytes()): (axis, ends) for axis, ends in edges}.values())
     axis = np.array([each[0] for each in edges])
@@ -55,7 +56,7 @@ def faces_of(edges, rotation=AHEAD):
     for number in range(3):
         rest = ~own[:, number]
         shared[rest, number] = np.unique(offset[rest, number], return_inverse=True)[1] + 1000 * number
-    return find_faces(find_planes(offset, shared, lines.id), lines, CAMERA, rotation)
+    return find_faces(find_planes(offset, shared, lines.id), lines, CAMERA, rotation, normals)
 
 
 def at(planes, axis, offset):
@@ -144,6 +145,52 @@ def test_no_face_hides_a_line_that_is_seen_behind_it():
     bars = [edge(2, (x, 10, -2), 5) for x in (-3, -2, -1, 0, 1, 2, 3)]
     planes = faces_of(walls + courses + bars)
     assert [plane.axis for plane, _ in every(planes)].count(2) == 0
+
+
+def facing(rotation, axis, elsewhere=None, shape=None):
+    """Normals along a world axis, and along `elsewhere` where the photo shows `shape`."""
+    vectors = np.empty((CAMERA.height, CAMERA.width, 3))
+    vectors[:] = -rotation[:, axis]
+    if shape is not None:
+        row, column = np.indices(vectors.shape[:2])
+        inside = shapely.contains_xy(shape, column.ravel(), row.ravel()).reshape(row.shape)
+        vectors[inside] = elsewhere
+    return Normals(vectors)
+
+
+@pytest.mark.parametrize("rotation", [AHEAD, TURNED], ids=["ahead", "turned"])
+def test_a_wall_is_kept_where_normals_say_its_axis(rotation):
+    def outlines_of(normals):
+        return [face.outline.tolist() for face in at(faces_of(WALL, rotation, normals), 1, 10)]
+
+    without = outlines_of(None)
+    assert len(without) == 1
+    for degrees, others in ((0, without), (25, without), (35, without)):  # a normal near no axis says nothing
+        turned = rotation_about(np.radians(degrees) * rotation[:, 2]) @ rotation[:, 1]
+        bent = Normals(np.broadcast_to(turned, (CAMERA.height, CAMERA.width, 3)))
+        assert outlines_of(bent) == others
+    assert outlines_of(Normals(np.zeros((CAMERA.height, CAMERA.width, 3)))) == without
+    assert outlines_of(facing(rotation, 0)) == outlines_of(facing(rotation, 2)) == []
+
+
+def test_a_part_of_a_wall_that_faces_elsewhere_is_cut_out():
+    window = rectangle(1, 10.0, (-1, 1), (0, 1.5))
+    ring = np.array([[-1, 10, 0], [1, 10, 0], [1, 10, 1.5], [-1, 10, 1.5]], float)
+    shape = shapely.Polygon(project(ring, CAMERA.matrix, AHEAD))
+    (wall,) = at(faces_of(WALL + window, AHEAD, facing(AHEAD, 1, AHEAD[:, 2], shape)), 1, 10)
+    (hole,) = wall.holes
+    assert corners(hole) == set(map(tuple, ring.tolist()))
+    assert corners(wall.outline) == {(-4, 10, -2), (4, 10, -2), (4, 10, 3), (-4, 10, 3)}
+
+
+def test_a_wall_in_front_yields_to_the_one_that_faces_as_its_pixels():
+    front, side = WALL, rectangle(0, 4.0, (6, 10), (-2, 3))
+    both = faces_of(front + side)
+    assert at(both, 1, 10)
+    assert at(both, 0, 4)
+    alone = faces_of(front + side, AHEAD, facing(AHEAD, 0))
+    assert at(alone, 1, 10) == []
+    assert at(alone, 0, 4)
 
 
 def test_ids_of_faces_are_unique_and_planes_keep_what_they_have():
