@@ -7,7 +7,14 @@ import pytest
 
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.depth_ties import MapPlaces
-from linecad.ties.probability import AT_ONCE, LARGEST_MARGIN, LOG_ODDS, features, probabilities
+from linecad.ties.probability import (
+    AT_ONCE,
+    LARGEST_MARGIN,
+    LOG_ODDS,
+    WITH_MAP_LOG_ODDS,
+    features,
+    probabilities,
+)
 from solver.bodies.ties import Placement
 
 NO_BODY = 3  # the first lines of the second wall
@@ -134,10 +141,10 @@ def by_map(*misfit, width=0.02, worth=3.0):
     return MapPlaces(np.zeros(2), 0.0, np.zeros(2, bool), np.array(misfit), width, worth)
 
 
-def test_without_a_map_it_says_nothing(placed):
-    found = known(placed)
-    assert not found["map's word"].any()
-    assert not found["off the map"].any()
+def test_every_feature_has_log_odds_with_a_map_too(placed):
+    found = features(placed, placement(6.0, 2.0), 0, placed.log_depth, by_map(0.0, 0.0))
+    assert list(found) == list(WITH_MAP_LOG_ODDS)
+    assert set(found) - set(known(placed)) == {"map's word", "off the map"}
 
 
 def test_a_map_speaks_of_the_bodies_that_it_tells_of(placed):
@@ -165,13 +172,13 @@ def test_how_far_off_the_map_counts_up_to_an_end(placed):
 
 def test_the_map_counts_as_the_table_says(placed, monkeypatch):
     places, second = placement(6.0, 2.0, 1.0), placed.bodies.body == 1
-    monkeypatch.setitem(LOG_ODDS, "map's word", 0.5)
-    monkeypatch.setitem(LOG_ODDS, "off the map", -0.4)
-    without, near, far = (
+    monkeypatch.setitem(WITH_MAP_LOG_ODDS, "map's word", 0.5)
+    monkeypatch.setitem(WITH_MAP_LOG_ODDS, "off the map", -0.4)
+    silent, near, far = (
         probabilities(placed, places, 0, placed.log_depth, mapped)
-        for mapped in (None, by_map(0.0, 0.0), by_map(0.0, 0.08))
+        for mapped in (by_map(np.nan, np.nan), by_map(0.0, 0.0), by_map(0.0, 0.08))
     )
-    assert (without < near)[placed.bodies.body >= 0].all()
+    assert (silent < near)[placed.bodies.body >= 0].all()
     assert (far < near)[second].all()
     assert (far == near)[~second].all()
 
