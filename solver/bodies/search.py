@@ -98,10 +98,10 @@ def _step(ties: Ties, log_scale: Float, part: Int) -> Float:
     if not len(ties):
         return np.zeros(len(log_scale))
     first, second = ties.bodies.T
-    rows, at = np.zeros((len(ties), int(part.max()) + 1)), np.arange(len(ties))
-    np.add.at(rows, (at, part[first]), 1.0)
-    np.subtract.at(rows, (at, part[second]), 1.0)
+    rows, at = np.zeros((len(ties), len(log_scale))), np.arange(len(ties))
+    rows[at, first], rows[at, second] = 1.0, -1.0
     weight = np.sqrt(ties.weight) / ties.tolerance
-    missed = ties.log_ratio - log_scale[first] + log_scale[second]
-    step: Float = np.linalg.lstsq(weight[:, None] * rows, weight * missed)[0][part]
+    missed = weight * (ties.log_ratio - rows @ log_scale)
+    of_parts = rows @ (part[:, None] == np.arange(part.max() + 1)).astype(np.float64)
+    step: Float = np.linalg.lstsq(weight[:, None] * of_parts, missed)[0][part]
     return step
