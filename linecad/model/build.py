@@ -12,6 +12,7 @@ from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
+from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
 from linecad.model.planes import find_planes
@@ -88,6 +89,8 @@ def build_scene(
 
     Where bodies were `placed`, all components have one scale. Else each is put at the depth of its neighbours.
     """
+    if placed is not None:
+        found = replace(found, lifted=join_planes(found.lifted, found.component, graph.axis))
     kept = np.flatnonzero(found.kept)
     scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
     scale = scales[found.component]

@@ -15,6 +15,7 @@ from linecad.errors import DepthMapError
 from linecad.ties.depth_samples import DepthSamples, log_scales
 
 LEAST_SAMPLES, LEAST_BODIES = 60, 2
+LEAST_FAR = 15  # samples that differ in depth from the middle of their body
 MOST_COUNTED = 100_000  # of the map's pixels, evenly taken, whose values tell whether they differ
 LEAST_SPREAD = 0.01  # log of the 95th over the 5th percentile of the map's values
 MOST_UNEVEN = 0.6  # share of the depth that walls span
@@ -49,6 +50,8 @@ def read_depth(depth: DepthMap, samples: DepthSamples) -> DepthReading | str:
     if np.log(high / low) < LEAST_SPREAD:
         return "it holds one depth throughout"
     relief = _Relief(samples)
+    if relief.count < LEAST_FAR:
+        return "the walls of this photo span too little depth to tell whether it follows them"
     readings = [_best_reading(samples, relief, kind) for kind in (UNTOLD if depth.kind is None else (depth.kind,))]
     readings.sort(key=lambda reading: reading.unevenness)
     best = readings[0]
@@ -95,6 +98,11 @@ class _Relief:
         self._far = own >= max(LEAST_OFF, float(np.quantile(own, 1 - QUARTER)))
         self._own = own
 
+    @property
+    def count(self) -> int:
+        """How many samples tell."""
+        return int(self._far.sum())
+
     def unevenness(self, excess: Float) -> float:
         """How far a map of such an excess (S,) is off the depths that vary, as a share of how much they do.
 
@@ -102,7 +110,7 @@ class _Relief:
         most in depth from the middle of their body. Infinite where the map has no depth at most of them.
         """
         known = np.isfinite(excess)
-        if not self._far.any() or known[self._far].mean() < 0.5:
+        if known[self._far].mean() < 0.5:
             return float("inf")
         off = np.abs(_off_middle(excess[known], self._body[known]))[self._far[known]]
         return float(np.median(off / self._own[self._far & known]))

@@ -129,6 +129,18 @@ def test_a_map_of_other_walls_is_left_out(avenue_walls, build_facade, build_grou
     assert "off the photo's walls by" in said
 
 
+def test_walls_that_face_the_camera_tell_nothing_of_a_map(
+    build_wall, build_town, build_setting, build_facade, build_depth_map, small_camera
+):
+    heights = np.array([-2.0, -0.4, 0.9, 2.1])
+    walls = [build_wall(1, place, np.arange(at, at + 3.1, 0.6), heights) for place, at in ((12.0, -4.0), (18.0, 2.0))]
+    seen = build_town(*walls, camera=small_camera)
+    surfaces = [build_facade(1, 12.0, (-5.0, 0.0), (-3.0, 3.0)), build_facade(1, 18.0, (1.0, 6.0), (-3.0, 3.0))]
+    depth = build_depth_map(seen.sight, surfaces)
+    said = read_depth(depth, sample_walls(build_setting(seen), depth))
+    assert said == "the walls of this photo span too little depth to tell whether it follows them"
+
+
 @pytest.mark.parametrize("shown", [0, 1])
 def test_a_map_that_shows_too_few_walls_is_left_out(avenue_walls, build_depth_map, moved, shown):
     seen, surfaces = avenue_walls
