@@ -37,6 +37,14 @@ def central_camera(focal: float, width: int, height: int) -> Float:
     return np.array([[focal, 0.0, (width - 1) / 2], [0.0, focal, (height - 1) / 2], [0.0, 0.0, 1.0]])
 
 
+def resized_camera(matrix: Float, scale: Float) -> Float:
+    """The camera matrix (3, 3) of a picture that was resized by `scale` (2,), across and down."""
+    resized = matrix.copy()
+    resized[:2] *= scale[:, None]
+    resized[:2, 2] += (scale - 1) / 2  # pixels are counted by their middles
+    return resized
+
+
 def world_rays(pixels: Float, K: Float, R: Float) -> Float:
     """World rays (..., 3) of pixels (..., 2), scaled so that their camera depth is 1."""
     rays: Float = homogeneous(pixels) @ np.linalg.inv(K).T @ R

@@ -22,8 +22,6 @@ from solver.options import (
 
 Weights = Literal["odds", "junctions", "ones"]
 Joins = Literal["stable", "biconnected", "all"]
-# What a depth map measures: along the optical axis, along the ray of its pixel, 1 / z but for its scale, or but for
-# scale and shift.
 WEIGHTS: tuple[Weights, ...] = get_args(Weights)
 JOINS: tuple[Joins, ...] = get_args(Joins)
 PROGRAMS: tuple[Program, ...] = get_args(Program)

@@ -15,6 +15,7 @@ from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.dataset.walls import walls_of_quads
 from linecad.depth.depth_map import SMALLEST_SIDE, Single
+from linecad.geometry import resized_camera
 
 MapKind = Literal["z", "affine-inverse"]
 LONGEST_SIDE = 768  # px, as networks work in; larger photos get smaller maps
@@ -77,10 +78,7 @@ def map_arrays(found: Single, kind: MapKind, matrix: Float, width: int, height: 
     if kind == "affine-inverse":
         return {"disparity": found}
     scale = np.array([found.shape[1] / width, found.shape[0] / height])
-    own = matrix.copy()
-    own[:2] *= scale[:, None]
-    own[:2, 2] += (scale - 1) / 2  # pixels are counted by their middles
-    return {"depth": found, "intrinsics": own}
+    return {"depth": found, "intrinsics": resized_camera(matrix, scale)}
 
 
 def draw_depth_map(truth: Truth, width: float, kind: MapKind, rng: Generator) -> dict[str, NDArray[Any]]:

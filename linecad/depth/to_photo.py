@@ -16,6 +16,7 @@ from linecad.camera.photo import Photo
 from linecad.depth.depth_map import DepthMap, Single
 from linecad.depth.normals import OUTSIDE, Normals
 from linecad.errors import DepthMapError
+from linecad.geometry import resized_camera
 
 SAME_SHAPE = 0.02  # share by which the ratios of two sides may differ through rounding and multiples of 14 px
 STRIP = 32  # rows
@@ -80,7 +81,4 @@ def _matrix_in_photo(depth: DepthMap, photo: Photo) -> Float | None:
     if depth.intrinsics is None:
         return None
     scale = np.array([photo.width / depth.width, photo.height / depth.height])
-    matrix = depth.intrinsics.copy()
-    matrix[:2] *= scale[:, None]
-    matrix[:2, 2] += (scale - 1) / 2  # pixels are counted by their middles
-    return matrix
+    return resized_camera(depth.intrinsics, scale)

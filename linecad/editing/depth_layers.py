@@ -15,7 +15,7 @@ from exporters.textures.nearest import nearest_of, shape_of
 from linecad.arrays import Float
 from linecad.depth.depth_map import DepthMap, Kind, camera_depths
 from linecad.editing.session import Now
-from linecad.geometry import homogeneous
+from linecad.geometry import homogeneous, resized_camera
 from linecad.scene import Camera, Scene
 
 MOST_SIDE = 1600  # px of a picture; networks write no more, and the browser scales it to the photo
@@ -93,10 +93,7 @@ def _view_of(camera: Camera, rotation: Float) -> View:
     share = min(1.0, MOST_SIDE / max(camera.width, camera.height))
     size = np.maximum(np.rint(np.array([camera.width, camera.height]) * share), 1)
     scale = size / (camera.width, camera.height)
-    matrix = camera.matrix.copy()
-    matrix[:2] *= scale[:, None]
-    matrix[:2, 2] += (scale - 1) / 2  # pixels are counted by their middles
-    return View(matrix @ rotation, int(size[0]), int(size[1]))
+    return View(resized_camera(camera.matrix, scale) @ rotation, int(size[0]), int(size[1]))
 
 
 def _depths_of_map(depth: DepthMap, view: View, kind: Kind, shift: float) -> Float:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.depth.depth_map import DepthMap, Kind
+from linecad.depth.depth_map import DepthMap, Kind, camera_depths
 from linecad.geometry import world_rays
 from linecad.ties.planes import BodyPlane, find_planes_of_bodies
 from linecad.ties.setting import Setting, densest_groups
@@ -41,13 +41,7 @@ class DepthSamples:
 
     def excess(self, kind: Kind, shift: float = 0.0) -> Float:
         """(S,) log of the map's depth over the wall's; NaN where a map of that kind and shift has no depth."""
-        value = self.value + shift if kind == "affine-inverse" else self.value
-        log_value = np.log(value, where=value > 0, out=np.full(len(value), np.nan))
-        if kind in ("inverse", "affine-inverse"):
-            log_value = -log_value
-        elif kind == "distance":
-            log_value = log_value - np.log(self.slant)
-        excess: Float = log_value - self.log_depth
+        excess: Float = np.log(camera_depths(self.value, self.slant, kind, shift)) - self.log_depth
         return excess
 
 

@@ -11,8 +11,8 @@ from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
 from linecad.ties.bodies import find_rigid_bodies
-from linecad.ties.candidates import find_candidates
-from linecad.ties.depth_ties import DepthWitness, follow_map, hear, report_of, ties_to_map
+from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, hear, report_of, ties_to_map
 from linecad.ties.probability import probabilities
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates
@@ -44,6 +44,18 @@ class Placed:
     depth_map: DepthMapReport | None  # its scale is that of the solution's depths; None where no map was given
 
 
+@dataclass(frozen=True, eq=False)
+class BodyPlaces:
+    """Bodies in their places."""
+
+    ties: Ties
+    placement: Placement
+    reference: int  # the body that the others are placed relative to
+    log_depth: Float  # (N,) of all lines there
+    heard: DepthWitness | str  # the depth map, or why it was left out
+    mapped: MapPlaces | None  # what it made of the places, where it was heard
+
+
 def place_lines(
     graph: LineGraph,
     sight: Sight,
@@ -64,24 +76,9 @@ def place_lines(
     on_stage("fitting depths, with and without some of the lines")
     setting = _setting(graph, sight, options, real, fake)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
-    candidates = find_candidates(setting)
-    size = setting.bodies.size
-    ties = _with_sure(weigh_candidates(candidates, size), setting, real)
-    heard = hear(setting, candidates, sight.depth)
-    if isinstance(heard, DepthWitness):
-        ties = ties.joined(ties_to_map(heard, size))
-    reference = int(size.argmax()) if setting.bodies.count else 0
-    on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
-    # The ground is one more body, and the map another where it ties any.
-    count = max(setting.bodies.count + 1, int(ties.bodies.max(initial=-1)) + 1)
-    placement = place(ties, count, reference, options, on_progress)
-    log_scale, mapped = placement.log_scale, None
-    if isinstance(heard, DepthWitness):
-        mapped = follow_map(heard, ties, placement, reference, size)
-        log_scale = mapped.log_scale
-    body = setting.bodies.body
-    log_depth = setting.log_depth + np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
-    log_depth = _kept_to(graph, log_depth, real, ratios)
+    found = place_bodies(setting, find_candidates(setting), real, options, on_progress, on_stage)
+    placement, body = found.placement, setting.bodies.body
+    log_depth = _kept_to(graph, found.log_depth, real, ratios)
     connected = (agreeing_with(graph, log_depth) & ~fake) | real
     solution = Solution(
         status=placement.status,
@@ -97,10 +94,39 @@ def place_lines(
         planar_pairs=np.zeros((0, 3), np.int64),
         log_depth=log_depth,
     )
-    probability = probabilities(setting, placement, reference, log_depth, mapped)
+    mapped = found.mapped
+    probability = probabilities(setting, placement, found.reference, log_depth, mapped)
     by_map = np.zeros(len(body), bool) if mapped is None else (body >= 0) & mapped.by_map[np.maximum(body, 0)]
-    told = None if sight.depth is None else report_of(sight.depth, heard, mapped)
-    return Placed(solution, setting, ties, placement, reference, probability, by_map, told)
+    told = None if sight.depth is None else report_of(sight.depth, found.heard, mapped)
+    return Placed(solution, setting, found.ties, placement, found.reference, probability, by_map, told)
+
+
+def place_bodies(
+    setting: Setting,
+    candidates: list[Candidate],
+    real: Bool,
+    options: SolveOptions,
+    on_progress: OnProgress = None,
+    on_stage: StageReport = silent,
+) -> BodyPlaces:
+    """The bodies where candidates, crossings that a person called `real` (E,) and the sight's depth map put them."""
+    size = setting.bodies.size
+    ties = _with_sure(weigh_candidates(candidates, size), setting, real)
+    heard = hear(setting, candidates, setting.sight.depth)
+    if isinstance(heard, DepthWitness):
+        ties = ties.joined(ties_to_map(heard, size))
+    reference = int(size.argmax()) if setting.bodies.count else 0
+    on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
+    # The ground is one more body, and the map another where it ties any.
+    count = max(setting.bodies.count + 1, int(ties.bodies.max(initial=-1)) + 1)
+    placement = place(ties, count, reference, options, on_progress)
+    log_scale, mapped = placement.log_scale, None
+    if isinstance(heard, DepthWitness):
+        mapped = follow_map(heard, ties, placement, reference, size)
+        log_scale = mapped.log_scale
+    body = setting.bodies.body
+    log_depth = setting.log_depth + np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
+    return BodyPlaces(ties, placement, reference, log_depth, heard, mapped)
 
 
 def _setting(graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool) -> Setting:

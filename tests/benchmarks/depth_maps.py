@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from ties import Places, place_bodies
+from ties import place_bodies
 from ties_truth import Judged, densest, judge
 
 from linecad.arrays import Bool
 from linecad.depth.depth_map import DepthMap
 from linecad.errors import DepthMapError
 from linecad.evaluation.datasets import find_dataset
-from linecad.ties.weights import weigh_candidates
+from linecad.ties.placing import BodyPlaces
 
 WIDTHS = (0.005, 0.012, 0.02, 0.035, 0.05, 0.08)
 EXACT = 0.02  # relative depth
@@ -76,7 +76,7 @@ def _outcome(photo: Judged, depth: DepthMap) -> Outcome:
     return Outcome(photo.score(found.log_depth), heard, width, (int(firm.sum()), int((firm & after).sum())), kind)
 
 
-def _exact(photo: Judged, places: Places) -> Bool:
+def _exact(photo: Judged, places: BodyPlaces) -> Bool:
     """Mask of the points seen whose depth is right within EXACT relative to the reference body."""
     line = photo.on[photo.seen]
     error = places.log_depth[line] + photo.log_factor[photo.seen] - photo.log_true[photo.seen]
@@ -85,10 +85,9 @@ def _exact(photo: Judged, places: Places) -> Bool:
     return np.asarray(np.abs(np.expm1(error - middle)) < EXACT)
 
 
-def _held(photo: Judged, places: Places) -> Bool:
+def _held(photo: Judged, places: BodyPlaces) -> Bool:
     """Mask of the points seen on lines of bodies that ties which count hold to the reference, without a map."""
-    ties = weigh_candidates(photo.candidates, photo.setting.bodies.size)
-    part = ties.parts(places.placement.counted, len(places.placement.log_scale))
+    part = places.ties.parts(places.placement.counted, len(places.placement.log_scale))
     return np.asarray((part == part[places.reference])[photo.setting.bodies.body[photo.on[photo.seen]]])
 
 

@@ -10,7 +10,7 @@ to all photos into linecad/ties/table.py and linecad/ties/probability.py.
 import argparse
 import re
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from unittest import mock
 
@@ -18,6 +18,7 @@ import logistic
 import numpy as np
 from ties_truth import Judged, densest, judge
 
+import linecad.ties.placing
 import linecad.ties.probability
 import linecad.ties.table
 import linecad.ties.weights
@@ -25,11 +26,8 @@ from linecad.arrays import Float, Int
 from linecad.depth.depth_map import DepthMap
 from linecad.evaluation.datasets import find_dataset
 from linecad.ties.candidates import KINDS, Candidate, Kind
-from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, hear, ties_to_map
+from linecad.ties.placing import BodyPlaces
 from linecad.ties.probability import features
-from linecad.ties.weights import weigh_candidates
-from solver.bodies.search import place
-from solver.bodies.ties import Placement
 from solver.options import SolveOptions
 
 RIGHT = 0.03  # log ratio of a candidate
@@ -124,34 +122,11 @@ def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
     return {"AT_ONCE": {kind: fitted.at_once for kind, fitted in fits.items()}, "LOG_ODDS": slopes}
 
 
-@dataclass(frozen=True, eq=False)
-class Places:
-    """Bodies in their places."""
-
-    placement: Placement
-    reference: int  # the body that others are placed relative to
-    log_depth: Float  # (N,)
-    heard: DepthWitness | str  # the depth map, or why it was left out
-    mapped: MapPlaces | None
-
-
-def place_bodies(photo: Judged, candidates: list[Candidate], depth: DepthMap | None = None) -> Places:
-    """The placement by some candidates and a depth map, as linecad.ties.placing has it."""
-    setting = photo.setting
-    body, size = setting.bodies.body, setting.bodies.size
-    reference = int(size.argmax()) if setting.bodies.count else 0
-    ties, count = weigh_candidates(candidates, size), setting.bodies.count + 1
-    heard, mapped = hear(setting, candidates, depth), None
-    if isinstance(heard, DepthWitness):
-        ties = ties.joined(ties_to_map(heard, size))
-        count = max(count, int(ties.bodies.max(initial=-1)) + 1)
-    placement = place(ties, count, reference, SolveOptions())
-    log_scale = placement.log_scale
-    if isinstance(heard, DepthWitness):
-        mapped = follow_map(heard, ties, placement, reference, size)
-        log_scale = mapped.log_scale
-    moved = np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
-    return Places(placement, reference, setting.log_depth + moved, heard, mapped)
+def place_bodies(photo: Judged, candidates: list[Candidate], depth: DepthMap | None = None) -> BodyPlaces:
+    """The placement by some candidates and a depth map."""
+    setting = replace(photo.setting, sight=replace(photo.setting.sight, depth=depth))
+    nothing_told = np.zeros(len(setting.graph.edges), bool)
+    return linecad.ties.placing.place_bodies(setting, candidates, nothing_told, SolveOptions())
 
 
 @dataclass(frozen=True, eq=False)
