@@ -91,7 +91,7 @@ def reconstruct_lines(
     decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
     notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
-    view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes)
+    view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels)
     lifted = lift(graph, decision.real, solution.log_depth)
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:

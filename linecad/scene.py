@@ -24,6 +24,7 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
+FaceKind = Literal["wall", "ground", "ceiling", "roof", "window", "door", "other"]
 DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]  # what a depth map measures (linecad.depth)
 # Why a crossing is real or not (linecad.decide.decision, docs/reference/scene-file.md). Real: annotated, chosen.
 Reason = Literal[
@@ -34,6 +35,7 @@ Reason = Literal[
 CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 CONFIDENCES: tuple[Confidence, ...] = get_args(Confidence)
 REASONS: tuple[Reason, ...] = get_args(Reason)
+FACE_KINDS: tuple[FaceKind, ...] = get_args(FaceKind)
 QUALITIES: tuple[Quality, ...] = get_args(Quality)
 DEPTH_KINDS: tuple[DepthKind, ...] = get_args(DepthKind)
 
@@ -176,17 +178,22 @@ class Face:
     id: int  # unique in the scene
     outline: Float  # (V, 3) world, not closed
     holes: tuple[Float, ...] = ()  # each (H, 3) world, not closed
+    kind: FaceKind = "other"
+    hidden: tuple[Float, ...] = ()  # each (H, 3) world, not closed: parts of it that something hides in the photo
 
     def __post_init__(self) -> None:
         freeze(self, "outline", np.float64, (None, 3))
-        rings = [np.array(hole, np.float64) for hole in self.holes]
-        for ring in (self.outline, *rings):
-            if ring.ndim != 2 or ring.shape[1] != 3 or len(ring) < 3:
-                raise ValueError(f"Face {self.id} has a ring of shape {ring.shape}, expected at least 3 points")
-            if not np.isfinite(ring).all():
-                raise ValueError(f"Face {self.id} holds a number that is not finite")
-            ring.flags.writeable = False
-        object.__setattr__(self, "holes", tuple(rings))
+        for name in ("holes", "hidden"):
+            rings = [np.array(ring, np.float64) for ring in getattr(self, name)]
+            for ring in (self.outline, *rings):
+                if ring.ndim != 2 or ring.shape[1] != 3 or len(ring) < 3:
+                    raise ValueError(f"Face {self.id} has a ring of shape {ring.shape}, expected at least 3 points")
+                if not np.isfinite(ring).all():
+                    raise ValueError(f"Face {self.id} holds a number that is not finite")
+                ring.flags.writeable = False
+            object.__setattr__(self, name, tuple(rings))
+        if self.kind not in FACE_KINDS:
+            raise ValueError(f"Face {self.id} is a {self.kind!r}, expected one of {', '.join(FACE_KINDS)}")
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,7 +96,13 @@ def _plane_record(plane: Plane) -> dict[str, object]:
         "offset": float(plane.offset),
         "lines": [int(line) for line in plane.lines],
         "faces": [
-            {"id": int(face.id), "outline": face.outline.tolist(), "holes": [hole.tolist() for hole in face.holes]}
+            {
+                "id": int(face.id),
+                "kind": face.kind,
+                "outline": face.outline.tolist(),
+                "holes": [hole.tolist() for hole in face.holes],
+                **({"hidden": [part.tolist() for part in face.hidden]} if face.hidden else {}),
+            }
             for face in plane.faces
         ],
     }

@@ -14,6 +14,7 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     DEPTH_KINDS,
+    FACE_KINDS,
     QUALITIES,
     REASONS,
     Camera,
@@ -22,6 +23,7 @@ from linecad.scene import (
     DepthKind,
     DepthMapReport,
     Face,
+    FaceKind,
     Intersections,
     Lines,
     Plane,
@@ -215,6 +217,8 @@ def _face(node: Node) -> Face:
         id=node["id"].integer(),
         outline=_ring(node["outline"]),
         holes=tuple(_ring(hole) for hole in _optional_items(node, "holes")),
+        kind="other" if (kind := node.get("kind")) is None else cast(FaceKind, kind.one_of(FACE_KINDS)),
+        hidden=tuple(_ring(part) for part in _optional_items(node, "hidden")),
     )
 
 
@@ -287,7 +291,7 @@ def _line_ids(node: Node, known: set[int]) -> list[int]:
 
 def _check_flatness(scene: Scene) -> None:
     """JsonError where a face leaves its plane by more than FLATNESS of the diagonal of the box around the scene."""
-    rings = [(plane, face, ring) for plane, face in scene.faces for ring in (face.outline, *face.holes)]
+    rings = [(plane, face, ring) for plane, face in scene.faces for ring in (face.outline, *face.holes, *face.hidden)]
     if not rings:
         return
     points = np.concatenate([scene.lines.ends.reshape(-1, 3), *(ring for _, _, ring in rings)])

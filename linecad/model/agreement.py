@@ -47,6 +47,8 @@ def bounding(planes: tuple[Plane, ...], lines: Lines) -> tuple[Bool, Bool]:
     touched = np.zeros((len(lines), 3), bool)
     for plane in planes:
         members = np.array([row[number] for number in plane.lines], np.int64)
+        if len(members) == 0:
+            continue
         flat = [axis for axis in range(3) if axis != plane.axis]
         pieces = shapely.linestrings(lines.ends[members][:, :, flat])
         reach = ON_FACE * float(np.ptp(lines.ends[members][:, :, flat], axis=(0, 1)).max())

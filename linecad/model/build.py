@@ -3,6 +3,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, Text
 from linecad.decide.decision import Decision
@@ -16,6 +17,8 @@ from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
 from linecad.model.planes import find_planes
+from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Scene, SolveReport
@@ -35,6 +38,7 @@ class View:
     certainty: Certainty | None  # of both
     lines: int  # that were found in it, also those that are not in the solved graph
     notes: tuple[str, ...]  # what is known so far
+    pixels: NDArray[np.uint8] | None = None  # (H, W, 3) RGB, as straight as the lines; None: nothing to look at
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +107,9 @@ def build_scene(
         depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
     offset = (found.lifted.offset * scale[:, None])[kept]
     planes = find_planes(offset, found.lifted.shared[kept], lines.id)
-    planes = find_faces(planes, lines, view.camera, view.frame.rotation, _normals(placed))
+    look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
+    regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
+    planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
     new_id = np.cumsum(found.kept) - 1
     pairs = _renumbered(decision.planar_pairs, found.component, new_id)
     return Scene(
@@ -196,6 +202,12 @@ def _normals(placed: Placed | None) -> Normals | None:
     if depth is None or placed is None or placed.depth_map is None or placed.depth_map.left_out:
         return None
     return depth.normals
+
+
+def _ground_of_feet(placed: Placed | None, scale: float) -> GroundOfFeet | None:
+    """The ground where the feet of walls put it, in a scene of which the placed lines are `scale` times as far."""
+    ground = None if placed is None else placed.ground
+    return None if ground is None else GroundOfFeet(float(np.exp(ground[0])) * scale, ground[1])
 
 
 def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int], are_placed: bool) -> Float:

@@ -43,6 +43,18 @@ class Placed:
     by_map: Bool  # (N,) lines of bodies that a depth map alone ties to the reference
     depth_map: DepthMapReport | None  # its scale is that of the solution's depths; None where no map was given
 
+    @property
+    def ground(self) -> tuple[float, float] | None:
+        """Log height of the camera above the ground on which walls stand, and the log-odds of all that says so.
+
+        The unit is that of the solution's depths; None where no wall shows its foot.
+        """
+        number = self.setting.bodies.count
+        says_so = self.placement.counted & (self.ties.bodies == number).any(axis=1)
+        if not says_so.any():
+            return None
+        return float(self.placement.log_scale[number]), float(self.ties.weight[says_so].sum())
+
 
 @dataclass(frozen=True, eq=False)
 class BodyPlaces:

@@ -1,0 +1,222 @@
+"""What the photo says about what each part of it shows: a cost of every label, for each sample and for each cell.
+
+Costs are in units of one sample that is as unlikely as a wall's own without a line anywhere near. Labels are the K
+surfaces, then SKY and CLUTTER, which is what has no plane: trees, cars, people.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.depth.normals import UNTOLD
+from linecad.model.regions.raster import Raster
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Lines
+
+SKY, CLUTTER = -2, -1  # columns of costs
+
+NEVER = 50.0
+NEAR, FAR = 18.0, 70.0  # samples from a surface's lines, in which its cost rises
+NEAR_COST, FAR_COST = 1.0, 0.6
+BEHIND = 1.03  # times a surface's depth; a line further away is behind it
+SEEN_THROUGH, REACH = 2.0, 8.0  # samples from such a line, in which the surface is not, or hardly
+THROUGH_COST, BESIDE_COST = 1.2, 0.5
+OUTSIDE_COST, MOST_OUTSIDE = 1.5, 1.5  # for each length of a surface beyond its lines
+UNDERGROUND, BURIED = 1.03, 2.5  # times the ground's depth below the camera, and the cost of what is lower
+TURNED_COST = 0.8  # of a surface along another axis than a depth map says
+NARROWEST = 0.02  # of its offset, of a surface: what is less is relief
+FURTHEST = 1.5  # times the depth of the furthest of a surface's lines; it does not go on for ever
+LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
+COVERED = 8  # samples on lines
+CLUTTER_COST, SMOOTH_COST, GREEN_GAIN = 1.2, 0.4, 0.5
+FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
+GREEN = (118, 134)  # of CIE a* and b*, in bytes: less of the first and more of the second is green
+AROUND = 9  # samples
+
+# Shares of edges that run along x, y, z and along none, of surfaces by their axis, of the ground, of clutter.
+DIRECTIONS = np.array([[0.05, 0.33, 0.33, 0.29], [0.33, 0.05, 0.33, 0.29], [0.30, 0.30, 0.08, 0.32]])
+OF_GROUND = np.array([0.24, 0.24, 0.08, 0.44])
+OF_CLUTTER = np.array([0.11, 0.11, 0.11, 0.67])
+OF_EDGE = 0.3  # weight of the votes: the pixels of one edge are no witnesses apart
+SKY_EDGE = 0.15  # cost of an edge in the sky
+
+SMOOTH = 0.30  # gradient of the sky
+LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
+MOST_LINES = 0.02  # share of samples on lines inside the sky
+BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
+DARKEST = 0.75  # times the lightness of its brightest part, of the sky
+SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.3
+
+COLOUR_WEIGHT = 0.25
+MOST_BY_COLOUR = 2.0  # log-odds
+SHARE_OF_ALL = 0.05  # of the photo's colours in those of a label, for what it has not shown yet
+
+
+@dataclass(frozen=True, eq=False)
+class Heaven:
+    """What is above the lines."""
+
+    seed: Bool  # (S,) sky for sure: smooth, open to the top of the photo, of its colour
+    is_sky: bool  # by its colour
+    is_ceiling: bool
+
+
+def look_up(raster: Raster) -> Heaven:
+    """Whether the smooth parts at the top of the photo are sky or ceiling."""
+    up = raster.rays[:, 2] > 0
+    smooth = ((raster.gradient < SMOOTH) & up).reshape(raster.shape).astype(np.uint8)
+    _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
+    on_line = raster.marked(np.ones(len(raster.at), bool)).reshape(raster.shape)
+    pieces = []
+    for number in np.unique(piece[0][piece[0] > 0]).tolist():
+        own = piece == number
+        inside = cv2.erode(own.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
+        if own.sum() >= LEAST_PIECE * raster.size and inside.any() and on_line[inside].mean() <= MOST_LINES:
+            pieces.append(own)
+    nothing = np.zeros(raster.size, bool)
+    if not pieces:
+        return Heaven(nothing, is_sky=False, is_ceiling=False)
+    colours = [np.median(raster.colour[own], axis=0) for own in pieces]
+    brightest = max(light for light, _, _ in colours)
+    rest = up.reshape(raster.shape) & ~np.any(pieces, axis=0)
+    usual = float(np.median(raster.colour[rest][:, 0])) if rest.any() else 0.0
+    sky = [
+        own for own, (light, _, blue) in zip(pieces, colours, strict=True)
+        if light >= DARKEST * brightest and (blue < BLUE or light >= BRIGHT or light > BRIGHTER * usual)
+    ]  # fmt: skip
+    seed = np.any(sky or pieces, axis=0).ravel()
+    return Heaven(seed if sky else nothing, bool(sky), is_ceiling=not sky and seed.mean() > LEAST_CEILING)
+
+
+def depths(raster: Raster, surfaces: list[Surface]) -> Float:
+    """Camera depth (S, K) of each surface on the ray of each sample; infinite where it does not meet it."""
+    found = np.empty((raster.size, len(surfaces)), order="F")
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for number, surface in enumerate(surfaces):
+            depth = surface.offset / raster.rays[:, surface.axis]
+            found[:, number] = np.where(np.isfinite(depth) & (depth > 0), depth, np.inf)
+    return found
+
+
+def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: Heaven, limit: float) -> Float:
+    """Costs (S, K + 2) of each label for each sample, but for colour and the directions of edges.
+
+    Ground and ceiling end at the depth `limit`.
+    """
+    costs = np.empty((raster.size, len(surfaces) + 2), order="F")  # each label by itself
+    depth = depths(raster, surfaces)
+    ground = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
+    for number, surface in enumerate(surfaces):
+        cost = _surface_cost(raster, lines, surface, depth[:, number])
+        if ground is not None and surface.kind != "ground":
+            cost = cost + BURIED * (raster.rays[:, 2] * depth[:, number] < UNDERGROUND * ground)
+        turned = (raster.facing != UNTOLD) & (raster.facing != surface.axis)
+        if surface.kind in ("ground", "ceiling"):
+            cost = cost + NEVER * (depth[:, number] > limit)
+        costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
+    edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
+    smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
+    costs[:, SKY] = _sky_cost(raster, heaven)
+    colour = raster.colour.reshape(-1, 3)
+    green = (colour[:, 1] < GREEN[0]) & (colour[:, 2] > GREEN[1])
+    costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth - GREEN_GAIN * green
+    return costs
+
+
+def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
+    """Cost (S,) of one surface by its lines, and by those that are behind it."""
+    is_own = np.zeros(len(lines), bool)
+    is_own[surface.lines] = True
+    own = is_own[raster.line]
+    near = raster.distance(raster.marked(own))
+    cost: Float = NEAR_COST * (1 - np.exp(-near / NEAR)) + FAR_COST * (1 - np.exp(-near / FAR))
+    if surface.kind in ("ground", "ceiling"):
+        cost = np.minimum(cost, LEVEL_COST + COVERED_COST * (_beyond(raster, surface.kind) > COVERED))
+    if len(surface.lines):
+        component = int(np.bincount(lines.component[surface.lines]).argmax())
+        with np.errstate(divide="ignore", invalid="ignore"):
+            before = surface.offset / raster.line_rays[:, surface.axis]
+        # Other components have scales of their own: what is behind what is less sure there.
+        behind = ~own & (lines.component[raster.line] == component) & (before > 0)
+        through = raster.distance(raster.marked(behind & (raster.line_depth > BEHIND * before)))
+        cost += THROUGH_COST * (through <= SEEN_THROUGH) + BESIDE_COST * np.exp(-through / REACH) * (through < near)
+    if surface.kind not in ("ground", "ceiling"):
+        cost += _outside(raster, lines, surface, depth)
+    return cost
+
+
+def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
+    """Cost (S,) of being outside the box of a surface's lines, and NEVER far behind all of them."""
+    ends = lines.ends[surface.lines].reshape(-1, 3)
+    seen = np.flatnonzero(np.isfinite(depth))
+    met = depth[seen]
+    over = np.zeros(len(seen))
+    for axis in range(3):
+        if axis != surface.axis:
+            low, high = np.percentile(ends[:, axis], [1, 99])
+            at = raster.rays[seen, axis] * met
+            over += np.maximum(np.maximum(low - at, at - high), 0) / max(high - low, NARROWEST * abs(surface.offset))
+    furthest = raster.line_depth[np.isin(raster.line, surface.lines)].max(initial=0.0)
+    cost = np.full(raster.size, NEVER)
+    cost[seen] = np.minimum(OUTSIDE_COST * over, MOST_OUTSIDE) + NEVER * (met > FURTHEST * furthest)
+    return cost
+
+
+def _beyond(raster: Raster, kind: str) -> Float:
+    """How many samples (S,) on lines there are on the far side in each column: below for ground, above for ceilings."""
+    on_line = raster.marked(np.ones(len(raster.at), bool)).reshape(raster.shape).astype(np.float64)
+    count = on_line.cumsum(axis=0) if kind == "ceiling" else on_line[::-1].cumsum(axis=0)[::-1]
+    beyond: Float = (count - on_line).ravel()
+    return beyond
+
+
+def _sky_cost(raster: Raster, heaven: Heaven) -> Float:
+    """Cost (S,) of being sky, by colour and smoothness."""
+    if not heaven.is_sky:
+        return np.full(raster.size, NEVER)
+    colour = raster.colour.reshape(-1, 3).astype(np.float64)
+    middle = np.median(colour[heaven.seed], axis=0)
+    spread = 1.4826 * np.median(np.abs(colour[heaven.seed] - middle), axis=0) + 6
+    strange = np.sqrt((((colour - middle) / spread) ** 2).mean(axis=1))
+    edges = (raster.gradient > 0.5).reshape(raster.shape).astype(np.float32)
+    rough = cv2.blur(edges, (7, 7)).ravel()
+    cost = SKY_COST + STRANGE_COST * np.minimum(strange / 2, 3) + ROUGH_COST * np.minimum(rough / 0.2, 1)
+    return np.where(raster.rays[:, 2] > 0, cost - SEED_GAIN * heaven.seed, NEVER)
+
+
+def sums(cell: Int, count: int, values: Float) -> Float:
+    """Sums (count, L) over the samples of each cell of values (S, L)."""
+    return np.column_stack([np.bincount(cell, column, count) for column in values.T])
+
+
+def direction_costs(raster: Raster, surfaces: list[Surface], cell: Int, count: int) -> Float:
+    """Costs (count, K + 2) for each cell, by the axes along which its edges run."""
+    votes = sums(cell, count, raster.votes)
+    shares = [OF_GROUND if surface.kind == "ground" else DIRECTIONS[surface.axis] for surface in surfaces]
+    costs = np.zeros((count, len(surfaces) + 2))
+    for number, own in enumerate(shares):
+        costs[:, number] = -OF_EDGE * (votes * np.log(own / OF_CLUTTER)).sum(axis=1)
+    costs[:, SKY] = SKY_EDGE * votes.sum(axis=1)
+    return costs
+
+
+def colour_costs(raster: Raster, cell: Int, label: Int, columns: int) -> Float:
+    """Costs (C, columns) for C cells with labels (C,), by the colours that each label has; 0 for labels that none has.
+
+    A wall that is plain between its windows is known by its colour, and so is the roof above it as another thing.
+    """
+    smooth = cv2.GaussianBlur(raster.colour, (0, 0), 1.0).reshape(-1, 3).astype(np.int64)
+    shades = np.clip((smooth[:, 1:] - 88) // 10, 0, 7)
+    colour = smooth[:, 0] // 32 * 64 + shades[:, 0] * 8 + shades[:, 1]
+    everywhere = np.bincount(colour, minlength=512) + 1.0
+    everywhere /= everywhere.sum()
+    shown = label[cell]
+    costs = np.zeros((len(label), columns))
+    for number in np.unique(label).tolist():
+        own = np.bincount(colour[shown == number], minlength=512)
+        share = own + (SHARE_OF_ALL * own.sum() + 1) * everywhere
+        odds = np.clip(np.log(share / share.sum() / everywhere), -MOST_BY_COLOUR, MOST_BY_COLOUR)
+        costs[:, number] = -COLOUR_WEIGHT * np.bincount(cell, odds[colour], len(label))
+    return costs

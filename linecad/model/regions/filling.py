@@ -1,0 +1,110 @@
+"""What stands behind trees, cars and people: the walls and the ground between their visible parts.
+
+Clutter that surfaces surround is given to them, cut along the lines in which they meet; what the sky or the photo's
+border surrounds as well stays clutter, since nothing tells what is behind it. Regions too small for a face go the same
+way.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import shapely
+
+from linecad.arrays import Bool, Float
+from linecad.model.regions import partition
+from linecad.model.regions.cuts import Borders, expand
+from linecad.model.regions.evidence import sums
+from linecad.model.regions.labelling import Labels
+from linecad.model.regions.raster import Raster
+from linecad.scene import Camera
+
+SURROUNDED = 0.5  # share of the outline of clutter that is along surfaces
+LEAST_AREA = 0.0015  # of the photo, of a region that becomes a face
+NEVER = 10**7  # cost of a label that a cell may not take
+TOUCH = 1e-3  # px
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """Labels with what is hidden between surfaces, and the clutter that hides it."""
+
+    labels: Labels
+    clutter: shapely.Geometry  # px, the union of all clutter that was seen
+
+
+def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
+    """Labels of cells that are cut along `meets` (N, 2, 2) px of surfaces too, with clutter between them filled in."""
+    clutter = shapely.union_all([region for number, region in found.regions if number == found.clutter])
+    open_regions = _to_fill(found, camera)
+    if not open_regions:
+        return Filled(found, clutter)
+    cells = _cut_along(found, meets, open_regions, camera, raster)
+    inside = _inside(cells, open_regions)
+    cell = partition.draw(cells, raster.shape, raster.step)
+    middle = shapely.point_on_surface(np.array(cells, object))
+    tree = shapely.STRtree([region for _, region in found.regions])
+    numbers = np.array([number for number, _ in found.regions])
+    point, region = tree.query(middle, predicate="within")
+    label = np.full(len(cells), found.clutter)
+    label[point] = numbers[region]
+    own = sums(cell, len(cells), found.of_samples)
+    whole = np.full(own.shape, NEVER, np.int64)
+    whole[np.arange(len(cells)), label] = 0
+    whole[inside] = np.minimum(np.rint(own[inside] * 100), NEVER)
+    small = inside & (label < found.sky)
+    whole[small, label[small]] = NEVER
+    whole[inside, found.clutter] = NEVER
+    started = np.where(inside, whole.argmin(axis=1), label)
+    borders = _neighbours(cells)
+    label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky])
+    return Filled(replace(found, cells=cells, cell=cell, label=label, costs=whole, borders=borders), clutter)
+
+
+def _to_fill(found: Labels, camera: Camera) -> list[shapely.Polygon]:
+    """Clutter that is surrounded by surfaces, and regions too small for a face, px."""
+    walls = shapely.union_all([region for number, region in found.regions if number < found.sky])
+    least = LEAST_AREA * camera.width * camera.height
+    return [
+        region for number, region in found.regions
+        if (number < found.sky and region.area < least)
+        or (number == found.clutter and _shared(region, walls) >= SURROUNDED)
+    ]  # fmt: skip
+
+
+def _shared(region: shapely.Polygon, others: shapely.Geometry) -> float:
+    """Share of the outline of a region that others touch."""
+    outline = region.exterior
+    return float(shapely.intersection(outline, others.buffer(TOUCH)).length / outline.length)
+
+
+def _cut_along(
+    found: Labels, meets: Float, regions: list[shapely.Polygon], camera: Camera, raster: Raster
+) -> list[shapely.Polygon]:
+    """The cells, those in some regions cut along image lines too."""
+    if len(meets) == 0:
+        return found.cells
+    lines, _ = partition.extended(meets, camera.width, camera.height, raster.step)
+    inside = _inside(found.cells, regions)
+    area = shapely.union_all([cell for cell, own in zip(found.cells, inside, strict=True) if own])
+    across = shapely.intersection(shapely.multilinestrings(list(lines[4:])), area)
+    outlines = shapely.boundary(np.array(found.cells, object))
+    # All of them once more: a cell has a corner where a line ends on its side.
+    return partition.cells_between([*outlines, across])
+
+
+def _inside(cells: list[shapely.Polygon], regions: list[shapely.Polygon]) -> Bool:
+    """Which cells lie in one of the regions."""
+    middle = shapely.point_on_surface(np.array(cells, object))
+    inside = np.zeros(len(cells), bool)
+    inside[shapely.STRtree(regions).query(middle, predicate="within")[0]] = True
+    return inside
+
+
+def _neighbours(cells: list[shapely.Polygon]) -> Borders:
+    """Cells that share a border, at a cost of its length in hundreds of px."""
+    one, other = shapely.STRtree(cells).query(cells, predicate="intersects")
+    pairs = np.column_stack([one, other])[one < other]
+    shapes = np.array(cells, object)
+    shared = shapely.length(shapely.intersection(shapes[pairs[:, 0]], shapes[pairs[:, 1]]))
+    touching = shared > TOUCH
+    return Borders(pairs[touching], np.rint(shared[touching] * 100).astype(np.int64))

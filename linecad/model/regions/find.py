@@ -1,0 +1,36 @@
+"""The stages of finding what the photo shows, in order."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Float
+from linecad.depth.normals import Normals
+from linecad.model.regions.evidence import look_up
+from linecad.model.regions.filling import Filled, fill
+from linecad.model.regions.labelling import find_labels
+from linecad.model.regions.raster import Picture, take_raster
+from linecad.model.regions.segments import View, find_meets, find_segments
+from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces
+from linecad.scene import Camera, Lines, Plane
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """What there is to look at beside the lines."""
+
+    photo: Picture | None  # (H, W, 3) RGB, as straight as the lines
+    feet: GroundOfFeet | None
+    normals: Normals | None  # of a depth map on the photo's pixels
+
+
+def find_regions(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, look: Look) -> Filled:
+    """What every part of the photo shows. `rotation` (3, 3) takes world to camera."""
+    view = View(camera, rotation, look.photo)
+    raster = take_raster(lines, camera, rotation, look.photo, look.normals)
+    heaven = look_up(raster)
+    surfaces = find_surfaces(planes, lines, camera, look.feet, heaven.is_ceiling)
+    found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view)
+    meets = find_meets(lines, found.surfaces, view).ends
+    length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
+    return fill(found, meets[np.argsort(-length, kind="stable")], raster, camera)

@@ -1,0 +1,203 @@
+"""One label for every cell of the photo: a surface, the sky or clutter.
+
+Labels are found by lines and edges first, then with the colours that this gives each label. A surface that wins less
+than it costs to have one more is left out. Then lines are taken away that only cut off steps, the shortest first, and
+of all answers on the way that one is taken whose labels and corners together cost least.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import cv2
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from linecad.arrays import Bool, Float, Int
+from linecad.model.regions import partition
+from linecad.model.regions.cuts import Borders, energy, expand
+from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
+from linecad.model.regions.raster import Raster
+from linecad.model.regions.segments import Meets, View, find_meets, limit_of_depth
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Lines
+
+UNIT = 100  # of whole costs, in one sample
+BORDER = 12.0  # cost of a border of one sample without a line or a change of colour
+ON_LINE, ALIKE = 0.25, 0.25  # what is left of it on a line, and where colours differ much
+COLOUR_STEP = 12.0  # CIE L*a*b*, by which the rest of it falls to 1 / e
+SURFACE = 0.006  # cost of one more surface, in samples of all
+DOUBTFUL = 3.0  # times that; surfaces that win more are kept without a question
+FEWEST_WINS = 6  # surfaces asked in one turn
+RUNS = (0.01, 0.02, 0.03, 0.04, 0.06)  # of the photo's width; lines of which no longer piece is a border are left out
+CORNER = 0.0004  # cost of one more corner of an outline, in samples of all
+ON_BORDER = 1e-3  # px
+STRAIGHT = 1e-6  # px; a corner nearer to the straight outline is none
+
+
+@dataclass(frozen=True, eq=False)
+class Labels:
+    """C cells of a photo with what they show, one of K surfaces, sky or clutter."""
+
+    surfaces: list[Surface]  # those that are shown
+    cells: list[shapely.Polygon]  # px
+    cell: Int  # (S,) of each sample
+    label: Int  # (C,) from 0: a surface, then the sky, then clutter
+    of_samples: Float  # (S, K + 2) costs of each sample by itself
+    costs: Int  # (C, K + 2)
+    borders: Borders
+
+    @property
+    def sky(self) -> int:
+        """The label of the sky."""
+        return len(self.surfaces)
+
+    @property
+    def clutter(self) -> int:
+        """The label of what has no plane."""
+        return len(self.surfaces) + 1
+
+    @cached_property
+    def regions(self) -> list[tuple[int, shapely.Polygon]]:
+        """Every connected union of cells with one label, px, with corners only where its outline turns."""
+        return [
+            (number, region)
+            for number in np.unique(self.label).tolist()
+            for region in united([cell for cell, own in zip(self.cells, self.label, strict=True) if own == number])
+        ]
+
+    @property
+    def price(self) -> float:
+        """What labels and corners cost, in samples."""
+        corners = sum(len(shapely.get_coordinates(region)) for _, region in self.regions)
+        return energy(self.costs, self.borders, self.label) / UNIT + CORNER * corners * len(self.cell)
+
+
+def find_labels(
+    segments: Float, lines: Lines, surfaces: list[Surface], raster: Raster, heaven: Heaven, view: View
+) -> Labels:
+    """What each cell shows, of cells that `segments` (N, 2, 2) px cut out of the photo, the strongest first."""
+    camera = view.camera
+    costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
+    drawn = _drawn(segments, raster)
+    border, _ = partition.extended(segments, camera.width, camera.height, raster.step)
+    found = _labels(partition.cut(border), costs, drawn, surfaces, raster)
+    shown = np.unique(found.label[found.label < len(surfaces)])
+    costs, surfaces = costs[:, [*shown.tolist(), SKY, CLUTTER]], [surfaces[number] for number in shown.tolist()]
+    meets = _meets_of_neighbours(found, shown, find_meets(lines, surfaces, view))
+    segments, count = np.concatenate([meets, segments]), len(meets)
+    answers = []
+    for run in (*RUNS, np.inf):
+        border, rows = partition.extended(segments, camera.width, camera.height, raster.step, count)
+        answers.append(_labels(partition.cut(border), costs, drawn, surfaces, raster))
+        used = np.unique(rows[_bordering(answers[-1], border, run * camera.width) & (rows >= 0)])
+        segments, count = segments[used], int((used < count).sum())
+    return min(answers, key=lambda answer: answer.price)
+
+
+def _meets_of_neighbours(found: Labels, shown: Int, meets: Meets) -> Float:
+    """The lines (M, 2, 2) px in which surfaces meet that are neighbours in the photo, by surfaces that are `shown`."""
+    labels = np.sort(found.label[found.borders.cells], axis=1)
+    beside = {(int(one), int(other)) for one, other in np.unique(labels, axis=0)}
+    pairs = np.sort(shown[meets.surfaces], axis=1).tolist()
+    kept = np.array([tuple(pair) in beside for pair in pairs], bool)
+    ends: Float = meets.ends[kept]
+    return ends
+
+
+def _labels(cells: list[shapely.Polygon], costs: Float, drawn: Bool, surfaces: list[Surface], raster: Raster) -> Labels:
+    cell = partition.draw(cells, raster.shape, raster.step)
+    count = len(cells)
+    own = sums(cell, count, costs) + direction_costs(raster, surfaces, cell, count)
+    borders = _borders(cell, drawn, raster)
+    label = own.argmin(axis=1)
+    candidates = np.unique(label).tolist()
+    label = expand(_whole(own), borders, label, candidates)
+    whole = _whole(own + colour_costs(raster, cell, label, own.shape[1]))
+    label = expand(whole, borders, label, candidates)
+    label = _without_doubtful(whole, borders, label, len(surfaces), SURFACE * raster.size * UNIT)
+    return Labels(surfaces, cells, cell, label, costs, whole, borders)
+
+
+def _whole(costs: NDArray[np.floating[Any]]) -> Int:
+    """Costs in whole units."""
+    whole: Int = np.rint(costs * UNIT).astype(np.int64)
+    return whole
+
+
+def _drawn(segments: Float, raster: Raster) -> Bool:
+    """Mask (H, W) of the samples on segments (N, 2, 2) px."""
+    image: NDArray[np.uint8] = np.zeros(raster.shape, np.uint8)
+    for start, end in np.rint(raster.samples_of(segments)).astype(np.int64).tolist():
+        cv2.line(image, start, end, 1, 1)
+    return image > 0
+
+
+def _borders(cell: Int, drawn: Bool, raster: Raster) -> Borders:
+    """Neighbouring cells, and what it costs to label them differently."""
+    height, width = raster.shape
+    image, colour = cell.reshape(raster.shape), raster.colour.astype(np.float64)
+    pairs, costs = [], []
+    for down, right in ((0, 1), (1, 0)):
+        here, there = np.s_[: height - down, : width - right], np.s_[down:, right:]
+        apart = image[here] != image[there]
+        step = np.linalg.norm(colour[here][apart] - colour[there][apart], axis=1)
+        on_line = (drawn[here] | drawn[there])[apart]
+        costs.append(np.where(on_line, ON_LINE, 1.0) * (ALIKE + (1 - ALIKE) * np.exp(-step / COLOUR_STEP)))
+        pairs.append(np.sort(np.column_stack([image[here][apart], image[there][apart]]), axis=1))
+    number = np.concatenate(pairs) @ [raster.size, 1]
+    number, index = np.unique(number, return_inverse=True)
+    cells = np.column_stack(np.divmod(number, raster.size))
+    return Borders(cells, _whole(BORDER * np.bincount(index, np.concatenate(costs), len(cells))))
+
+
+def _without_doubtful(costs: Int, borders: Borders, label: Int, surfaces: int, price: float) -> Int:
+    """Labels without the surfaces that are not worth their price, the least worth of them first."""
+    costs = costs.copy()
+    never = int(costs.max(initial=0)) + 1
+    while True:
+        worth = []
+        shown = np.unique(label)
+        for number in shown[shown < surfaces].tolist():
+            own = label == number
+            others = shown[shown != number]
+            if len(others):
+                worth.append((int((costs[own][:, others].min(axis=1) - costs[own, number]).sum()), number))
+        best = energy(costs, borders, label)
+        for gain, number in sorted(worth)[:FEWEST_WINS]:
+            if gain > DOUBTFUL * price:
+                continue
+            without = costs.copy()
+            without[:, number] = never
+            others = shown[shown != number]
+            moved = np.where(label == number, others[without[:, others].argmin(axis=1)], label)
+            moved = expand(without, borders, moved, others.tolist())
+            if energy(without, borders, moved) < best + price:
+                label, costs = moved, without
+                break
+        else:
+            return label
+
+
+def _bordering(found: Labels, lines: Float, least: float) -> Bool:
+    """Which lines (M, 2, 2) have a piece of `least` px or more that separates two labels."""
+    edges = np.concatenate(
+        [
+            np.stack([corners[:-1], corners[1:]], axis=1)
+            for _, region in found.regions
+            for corners in (shapely.get_coordinates(ring) for ring in (region.exterior, *region.interiors))
+        ]
+    )
+    edges = edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) >= least]
+    along = lines[:, 1] - lines[:, 0]
+    along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    off = np.abs(((edges[:, None] - lines[None, :, :1]) * across[None, :, None]).sum(axis=3)).max(axis=2)
+    return np.asarray((off < ON_BORDER).any(axis=0)) if len(edges) else np.zeros(len(lines), bool)
+
+
+def united(cells: list[shapely.Polygon]) -> list[shapely.Polygon]:
+    """The connected unions of cells, px, with corners only where their outlines turn."""
+    union = shapely.simplify(shapely.union_all(np.array(cells, object)), STRAIGHT)
+    return [part for part in shapely.get_parts(union) if isinstance(part, shapely.Polygon)]

@@ -1,0 +1,152 @@
+"""The photo on a coarse raster: rays, colours, the axes its edges run along, and the lines of the scene.
+
+What a part of the photo shows is asked of some hundred thousand samples and not of the pixels: the raster has COLUMNS
+across whatever the photo's size, so that lengths in samples mean the same in every photo.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from linecad.arrays import Bool, Float, Int
+from linecad.depth.normals import UNTOLD, Normals
+from linecad.geometry import directions_to, vanishing_points, world_rays
+from linecad.scene import Camera, Lines
+
+COLUMNS = 480  # of samples across the photo
+FINER = 2  # times as fine a raster is where the directions of edges are measured
+EDGE = 0.35  # gradient, in units of the noise that light itself has; a stronger one is an edge
+DARK = 8.0  # grey value that is added before the square root, so that black has some noise
+ALONG_AXIS = np.sin(np.radians(8.0))  # of the angle between an edge and an image line through a vanishing point
+NO_AXIS = 3  # column of the votes of edges that run along none
+
+Picture = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class Raster:
+    """S = H x W samples of a photo, row by row, and T points on the lines of the scene."""
+
+    shape: tuple[int, int]  # H, W
+    step: float  # px between samples
+    rays: Float  # (S, 3) world, camera depth 1
+    colour: Picture  # (H, W, 3) CIE L*a*b* as OpenCV has it in bytes
+    gradient: Float  # (S,) of the grey value, in units of its noise
+    votes: Float  # (S, 4) edge pixels along x, y, z and along none
+    facing: Int  # (S,) axis along which what it shows faces by a depth map, or UNTOLD
+    line: Int  # (T,) line of each point
+    at: Int  # (T,) sample in which the point lies
+    line_rays: Float  # (T, 3)
+    line_depth: Float  # (T,)
+
+    @property
+    def size(self) -> int:
+        """S."""
+        return self.shape[0] * self.shape[1]
+
+    def marked(self, points: Bool) -> Bool:
+        """Mask (S,) of the samples with one of the masked points (T,)."""
+        mask = np.zeros(self.size, bool)
+        mask[self.at[points]] = True
+        return mask
+
+    def distance(self, marked: Bool) -> Float:
+        """Distance (S,), in samples, to the nearest masked one (S,); inf where there is none."""
+        if not marked.any():
+            return np.full(self.size, np.inf)
+        image = np.where(marked, 0, 1).astype(np.uint8).reshape(self.shape)
+        return np.asarray(cv2.distanceTransform(image, cv2.DIST_L2, 5).ravel(), np.float64)
+
+    def samples_of(self, pixels: Float) -> Float:
+        """Places (..., 2) on the raster, in samples, of pixels (..., 2)."""
+        places: Float = (pixels + 0.5) / self.step - 0.5
+        return places
+
+
+def take_raster(
+    lines: Lines, camera: Camera, rotation: Float, photo: Picture | None, normals: Normals | None = None
+) -> Raster:
+    """The raster of a photo (H, W, 3) RGB as straight as the lines; without one no sample has an edge.
+
+    `rotation` (3, 3) takes world to camera; `normals` are those of a depth map on the photo's pixels.
+    """
+    step = camera.width / COLUMNS
+    shape = (max(1, round(camera.height / step)), COLUMNS)
+    pixels = _pixels(shape, step)
+    if photo is None:
+        photo = np.full((*shape, 3), 128, np.uint8)
+    facing = np.full(len(pixels), UNTOLD)
+    if normals is not None:
+        at_x, at_y = np.minimum(np.rint(pixels).astype(np.int64), [camera.width - 1, camera.height - 1]).T
+        facing = normals.axes_at(at_y, at_x, rotation)
+    small = np.asarray(cv2.resize(photo, shape[::-1], interpolation=cv2.INTER_AREA), np.uint8)
+    line, at, points = _points_on_lines(lines, shape, step)
+    rays = world_rays(points, camera.matrix, rotation)
+    across = np.stack([(lines.axis + 1) % 3, (lines.axis + 2) % 3], axis=1)
+    ray = np.take_along_axis(rays, across[line], axis=1)
+    fixed = np.take_along_axis(lines.ends[:, 0], across, axis=1)[line]
+    return Raster(
+        shape=shape,
+        step=step,
+        rays=np.asfortranarray(world_rays(pixels, camera.matrix, rotation)),  # planes look at one coordinate of all
+        colour=np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), np.uint8),
+        gradient=_gradients(_grey(small), 0.7)[2].ravel(),
+        votes=_votes(photo, shape, step, camera, rotation),
+        facing=facing,
+        line=line,
+        at=at,
+        line_rays=rays,
+        line_depth=(ray * fixed).sum(axis=1) / (ray**2).sum(axis=1),
+    )
+
+
+def _pixels(shape: tuple[int, int], step: float) -> Float:
+    """Pixels (H x W, 2) of the photo at the middles of samples of `step` px."""
+    rows, columns = np.mgrid[: shape[0], : shape[1]]
+    pixels: Float = np.column_stack([columns.ravel() + 0.5, rows.ravel() + 0.5]) * step - 0.5
+    return pixels
+
+
+def _points_on_lines(lines: Lines, shape: tuple[int, int], step: float) -> tuple[Int, Int, Float]:
+    """Points on all segments, closer than samples: the line (T,), the sample (T,) and the pixel (T, 2) of each."""
+    length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
+    count = np.ceil(1.5 * length / step).astype(np.int64) + 2
+    line = np.repeat(np.arange(len(lines)), count)
+    share = (np.arange(len(line)) - np.repeat(np.cumsum(count) - count, count)) / np.repeat(count - 1, count)
+    points = lines.segment[line, 0] + share[:, None] * (lines.segment[line, 1] - lines.segment[line, 0])
+    column, row = np.floor((points.T + 0.5) / step).astype(np.int64)
+    inside = (column >= 0) & (column < shape[1]) & (row >= 0) & (row < shape[0])
+    return line[inside], (row * shape[1] + column)[inside], points[inside]
+
+
+def _grey(photo: Picture) -> NDArray[np.uint8]:
+    return np.asarray(cv2.cvtColor(photo, cv2.COLOR_RGB2GRAY), np.uint8)
+
+
+def _gradients(grey: NDArray[np.uint8], blur: float) -> tuple[Float, Float, Float]:
+    """Gradients (H, W) of a grey picture across and down, and their length in units of the noise of its light."""
+    smooth = cv2.GaussianBlur(grey.astype(np.float32), (0, 0), blur)
+    across, down = (cv2.Sobel(smooth, cv2.CV_32F, *order, ksize=3) / 8 for order in ((1, 0), (0, 1)))
+    light = cv2.GaussianBlur(smooth, (0, 0), 6 * blur) + DARK
+    return across, down, np.asarray(np.hypot(across, down) / np.sqrt(light))
+
+
+def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, rotation: Float) -> Float:
+    """How many pixels (S, 4) of edges along each axis and along none a finer raster has in each sample."""
+    fine = (shape[0] * FINER, shape[1] * FINER)
+    resized = np.asarray(cv2.resize(photo, fine[::-1], interpolation=cv2.INTER_AREA), np.uint8)
+    across, down, strength = _gradients(_grey(resized), 0.8)
+    row, column = np.nonzero(strength > EDGE)
+    pixels = np.column_stack([column + 0.5, row + 0.5]) * (step / FINER) - 0.5
+    along = np.column_stack([-down[row, column], across[row, column]])
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    sines = np.empty((3, len(row)))
+    for axis, point in enumerate(vanishing_points(camera.matrix, rotation)):
+        to = directions_to(pixels, point)
+        sines[axis] = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0])
+    votes_for = np.where(sines.min(axis=0) < ALONG_AXIS, sines.argmin(axis=0), NO_AXIS)
+    sample = (row // FINER) * shape[1] + column // FINER
+    votes = np.bincount(sample * 4 + votes_for, minlength=shape[0] * shape[1] * 4)
+    return votes.reshape(-1, 4).astype(np.float64)

@@ -1,0 +1,122 @@
+"""What a part of the photo may show: the walls of the scene, its ground, its ceiling.
+
+Planes that a wall's relief puts a little before and behind it are one wall here: the one with the most lines stands for
+them. The ground is where the feet of walls put it, as far as the lines of the walls agree, else at the lowest of them.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.scene import Camera, Lines, Plane
+
+Kind = Literal["wall", "level", "ground", "ceiling"]
+
+RELIEF = 0.012  # log offset within which parallel planes are one wall
+GROUND_STEP = 0.12  # the same between the ground and a kerb or step, which are no ground of their own
+LEAST_LENGTH = 0.02  # of a surface's lines together, as a share of the photo's width
+MOST_SURFACES = 40
+NEARLY_ALL = 0.95  # of the length of the lines that reach below the horizon ends above the lowest level
+LEAST_ENDS = 3  # of lines on one side of the horizon, for a level there
+FURTHEST_FOOT = 1.5  # times the lowest level; the ground is no lower
+BELOW = 1.04  # times the ground's height; a line that ends lower contradicts it
+CONTRADICTION = 20.0  # log-odds against the ground of the feet, times the share of lines that contradict it
+
+
+@dataclass(frozen=True, eq=False)
+class Surface:
+    """All points whose coordinate `axis` is `offset`, with the rows of the lines that show it."""
+
+    kind: Kind
+    axis: int
+    offset: float
+    lines: Int  # (M,) rows of the scene's lines
+    plane: int | None  # id of the plane that stands for it; None for a ground or ceiling without lines of its own
+
+
+@dataclass(frozen=True)
+class GroundOfFeet:
+    """The ground as the feet of walls put it."""
+
+    height: float  # of the camera above it, in the scene's unit
+    log_odds: float  # of all that says so
+
+
+def find_surfaces(
+    planes: tuple[Plane, ...], lines: Lines, camera: Camera, feet: GroundOfFeet | None, has_ceiling: bool
+) -> list[Surface]:
+    """The walls and levels of a scene, those with the longest lines first, then its ground and its ceiling.
+
+    A scene whose lines all end above the horizon has no ground.
+    """
+    length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
+    row = {number: index for index, number in enumerate(lines.id.tolist())}
+    members = [np.array([row[number] for number in plane.lines], np.int64) for plane in planes]
+    order = sorted(range(len(planes)), key=lambda index: (-length[members[index]].sum(), index))
+    found: list[Surface] = []
+    for index in order:
+        plane, own = planes[index], members[index]
+        for number, wall in enumerate(found):
+            if wall.axis == plane.axis and _apart(wall.offset, plane.offset) < RELIEF:
+                both = np.union1d(wall.lines, own)
+                found[number] = Surface(wall.kind, wall.axis, wall.offset, both, wall.plane)
+                break
+        else:
+            kind: Kind = "level" if plane.axis == 2 else "wall"
+            found.append(Surface(kind, plane.axis, plane.offset, own, plane.id))
+    walls = [wall for wall in found if length[wall.lines].sum() >= LEAST_LENGTH * camera.width][:MOST_SURFACES]
+    ground = ground_height(lines, feet)
+    ceiling = level_of_ends(lines, above=True) if has_ceiling else None
+    for kind, height in (("ground", None if ground is None else -ground), ("ceiling", ceiling)):
+        if height is not None:
+            walls = _with_level(walls, kind, height)
+    return walls
+
+
+def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:
+    """Height of the camera above the ground; None where no line ends below the horizon."""
+    lowest = level_of_ends(lines, above=False)
+    if lowest is None or feet is None:
+        return lowest
+    weight, low = _weights(lines), -lines.ends[:, :, 2].min(axis=1)
+    contradicted = weight[low > feet.height * BELOW].sum() / weight[low > 0].sum()
+    if feet.height < FURTHEST_FOOT * lowest and feet.log_odds > CONTRADICTION * contradicted:
+        return feet.height
+    return lowest
+
+
+def level_of_ends(lines: Lines, above: bool) -> float | None:
+    """How far above or below the camera nearly all lines that reach there end; None where hardly any does."""
+    reach = lines.ends[:, :, 2].max(axis=1) if above else -lines.ends[:, :, 2].min(axis=1)
+    weight = np.where(reach > 0, _weights(lines), 0.0)
+    if (weight > 0).sum() < LEAST_ENDS:
+        return None
+    order = np.argsort(reach, kind="stable")
+    share = np.cumsum(weight[order]) / weight.sum()
+    return float(reach[order][min(int(np.searchsorted(share, NEARLY_ALL)), len(order) - 1)])
+
+
+def _weights(lines: Lines) -> Float:
+    """How much the end of each line (N,) says about levels: its length in the photo, less where its place is unsure."""
+    length: Float = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
+    if len(lines.probability) == 0:
+        return np.where(lines.component == 0, length, 0.0)
+    sure = np.asarray(lines.probability)
+    return length * sure**2
+
+
+def _with_level(walls: list[Surface], kind: Kind, height: float) -> list[Surface]:
+    """The surfaces with the ground or ceiling: the levels there that it is made one of, or one of its own."""
+    own = [wall for wall in walls if wall.axis == 2 and _apart(wall.offset, height) < GROUND_STEP]
+    others = [wall for wall in walls if all(wall is not one for one in own)]
+    if not own:
+        return [*others, Surface(kind, 2, height, np.zeros(0, np.int64), None)]
+    lines = np.unique(np.concatenate([wall.lines for wall in own]))
+    return [*others, Surface(kind, 2, own[0].offset, lines, own[0].plane)]
+
+
+def _apart(one: float, other: float) -> float:
+    """How far two offsets differ in their logarithms; infinite on two sides of the camera."""
+    return float(abs(np.log(one / other))) if one * other > 0 else float("inf")
