@@ -23,14 +23,15 @@ NEAR_COST, FAR_COST = 1.0, 0.6
 BEHIND = 1.03  # times a surface's depth; a line further away is behind it
 SEEN_THROUGH, REACH = 2.0, 8.0  # samples from such a line, in which the surface is not, or hardly
 THROUGH_COST, BESIDE_COST = 1.2, 0.5
-OUTSIDE_COST, MOST_OUTSIDE = 1.5, 1.5  # for each length of a surface beyond its lines
+OUTSIDE_COST, MOST_OUTSIDE = 4.0, 1.5  # for each length of a surface beyond its lines
 UNDERGROUND, BURIED = 1.03, 2.5  # times the ground's depth below the camera, and the cost of what is lower
 TURNED_COST = 0.8  # of a surface along another axis than a depth map says
 NARROWEST = 0.02  # of its offset, of a surface: what is less is relief
 FURTHEST = 1.5  # times the depth of the furthest of a surface's lines; it does not go on for ever
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
-CLUTTER_COST, SMOOTH_COST, GREEN_GAIN = 1.2, 0.4, 0.5
+CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
+GREEN_COST = 0.5  # of a wall; what is green grows
 FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
 GREEN = (118, 134)  # of CIE a* and b*, in bytes: less of the first and more of the second is green
 AROUND = 9  # samples
@@ -107,6 +108,8 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     """
     costs = np.empty((raster.size, len(surfaces) + 2), order="F")  # each label by itself
     depth = depths(raster, surfaces)
+    colour = raster.colour.reshape(-1, 3)
+    green = GREEN_COST * ((colour[:, 1] < GREEN[0]) & (colour[:, 2] > GREEN[1]))
     ground = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
     for number, surface in enumerate(surfaces):
         cost = _surface_cost(raster, lines, surface, depth[:, number])
@@ -115,13 +118,13 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
         turned = (raster.facing != UNTOLD) & (raster.facing != surface.axis)
         if surface.kind in ("ground", "ceiling"):
             cost = cost + NEVER * (depth[:, number] > limit)
+        else:
+            cost = cost + green
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
     costs[:, SKY] = _sky_cost(raster, heaven)
-    colour = raster.colour.reshape(-1, 3)
-    green = (colour[:, 1] < GREEN[0]) & (colour[:, 2] > GREEN[1])
-    costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth - GREEN_GAIN * green
+    costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth
     return costs
 
 
@@ -160,7 +163,8 @@ def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Fl
             over += np.maximum(np.maximum(low - at, at - high), 0) / max(high - low, NARROWEST * abs(surface.offset))
     furthest = raster.line_depth[np.isin(raster.line, surface.lines)].max(initial=0.0)
     cost = np.full(raster.size, NEVER)
-    cost[seen] = np.minimum(OUTSIDE_COST * over, MOST_OUTSIDE) + NEVER * (met > FURTHEST * furthest)
+    most = NEVER if surface.kind == "level" else MOST_OUTSIDE
+    cost[seen] = np.minimum(OUTSIDE_COST * over, most) + NEVER * (met > FURTHEST * furthest)
     return cost
 
 
