@@ -1,0 +1,46 @@
+"""A sheet of a model: the photo beside the exported file as its own camera sees it, and from where it was not."""
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from exporters.picture.canvas import Canvas
+from linecad.evaluation.turned.glb import GlbModel
+from linecad.evaluation.turned.raster import View, colour_of, draw_triangles, paint, visible_lines
+from linecad.evaluation.turned.views import views_of
+
+WIDTH = 720  # px of a picture
+COLUMNS, GAP, TITLE, TITLE_SIZE = 3, 8, 26, 17  # pictures beside each other; px
+PAPER, INK = (1.0, 1.0, 1.0), (0.15, 0.15, 0.17)
+SHIFT = 4  # bits after the point in OpenCV's coordinates
+
+
+def draw_view(model: GlbModel, view: View, with_lines: bool = True) -> NDArray[np.uint8]:
+    """One picture (H, W, 3) RGB of everything in a model."""
+    drawn = draw_triangles(model, view)
+    picture = paint(model, view, drawn)
+    if with_lines:
+        pieces, owner = visible_lines(model.lines, view, drawn)
+        fixed = np.round(pieces * 2**SHIFT).astype(int)
+        for (start, end), line in zip(fixed.tolist(), owner.tolist(), strict=True):
+            colour = colour_of(model.materials[model.line_material[line]])
+            cv2.line(picture, start, end, colour, 1, cv2.LINE_AA, SHIFT)
+    return picture
+
+
+def draw_sheet(model: GlbModel, photo: NDArray[np.uint8], name: str, with_lines: bool = True) -> Image.Image:
+    """The photo (H, W, 3) and five pictures of a model on one sheet."""
+    views = views_of(model, WIDTH)
+    height = views[0].height
+    size = (WIDTH, height)
+    pictures = [("the photo", np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), np.uint8))]
+    pictures += [(view.name, draw_view(model, view, with_lines)) for view in views]
+    rows = -(-len(pictures) // COLUMNS)
+    canvas = Canvas(COLUMNS * (WIDTH + GAP) + GAP, rows * (height + TITLE + GAP) + GAP, PAPER)
+    for number, (title, picture) in enumerate(pictures):
+        row, column = divmod(number, COLUMNS)
+        left, top = GAP + column * (WIDTH + GAP), GAP + row * (height + TITLE + GAP)
+        canvas.text(left, top + TITLE - 8, f"{name}: {title}" if number == 0 else title, TITLE_SIZE, INK)
+        canvas.window(left, top + TITLE, WIDTH, height).pixels[:] = picture
+    return canvas.image()
