@@ -14,6 +14,7 @@ from linecad.depth.for_photo import open_depth_map
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
+from linecad.evaluation.draughting.score import DrawingScore, score_drawing
 from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.gallery import draw_places
 from linecad.evaluation.labels import FAKE, REAL
@@ -58,6 +59,7 @@ class WholeResult:
     depth: SceneScore | None
     plane_score: PlaneScore | None  # of component 0
     marked: MarkedScore | None
+    drawing: DrawingScore
 
 
 @dataclass(frozen=True)
@@ -151,6 +153,7 @@ def _whole(
         depth=depth,
         plane_score=None if reference.truth is None or scale is None else score_planes(scene, reference.truth, scale),
         marked=None if reference.lines is None else _marked(reference, reference.lines, scene),
+        drawing=score_drawing(scene, reference, None if depth is None else depth.face_scale),
     )
     if not settings.pictures:
         return result, None, None

@@ -1,0 +1,53 @@
+"""All that is counted of a scene as a drawing, in one record."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.evaluation.depth import NO_FACE
+from linecad.evaluation.draughting.faces import FaceCounts, count_faces
+from linecad.evaluation.draughting.ground import GroundCounts, count_ground
+from linecad.evaluation.draughting.lines import LineCounts, count_lines
+from linecad.evaluation.draughting.shapes import seen_faces, shapes_of
+from linecad.evaluation.draughting.truth import Shown, TrueCounts, compare_faces
+from linecad.evaluation.references import Reference, pixel_grid
+from linecad.scene import Scene
+
+COLUMNS = 192  # of the grid of pixels that covered shares are counted on
+
+
+@dataclass(frozen=True)
+class DrawingScore:
+    """A scene as a drawing."""
+
+    photo_covered: float  # share of the photo that shows a face
+    known_covered: float | None  # share of what is neither sky nor clutter that does; None where that is not known
+    ground: GroundCounts
+    faces: FaceCounts
+    lines: LineCounts
+    truth: TrueCounts | None  # made photos alone
+
+
+def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> DrawingScore:
+    """Count what a draughtsman would object to; `scale` is found over true depth, None where it is not known.
+
+    What is neither sky nor clutter is known of made photos, and at the points of a survey elsewhere.
+    """
+    shapes = shapes_of(scene)
+    pixels = pixel_grid(scene.camera.width, scene.camera.height, COLUMNS)
+    face, depth = seen_faces(scene, pixels)
+    seen = np.bincount(face[face != NO_FACE], minlength=len(shapes))
+    truth, covered = None, None
+    if reference.truth is not None:
+        truth = compare_faces(scene, shapes, Shown(pixels, face, depth), reference.truth, scale)
+        covered = truth.covered / truth.pixels if truth.pixels else None
+    elif reference.dense is not None and len(reference.dense.pixels):
+        covered = float((seen_faces(scene, reference.dense.pixels)[0] != NO_FACE).mean())
+    return DrawingScore(
+        photo_covered=float((face != NO_FACE).mean()),
+        known_covered=covered,
+        ground=count_ground(scene, shapes, seen),
+        faces=count_faces(scene, shapes),
+        lines=count_lines(scene, shapes),
+        truth=truth,
+    )
