@@ -92,11 +92,14 @@ def _covered(outline: Float, width: int, height: int) -> Int:
         return np.zeros(0, np.int64)
     y = np.arange(top, bottom)
     start, end = outline, np.roll(outline, -1, axis=0)
+    # From the upper end, so that two triangles compute their common edge alike to the last digit.
+    turned = (start[:, 1] > end[:, 1])[:, None]
+    start, end = np.where(turned, end, start), np.where(turned, start, end)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = (y[:, None] - start[:, 1]) / (end[:, 1] - start[:, 1])
         at = start[:, 0] + share * (end[:, 0] - start[:, 0])
     # Half open, so that a corner counts once.
-    crossed = (np.minimum(start[:, 1], end[:, 1]) <= y[:, None]) & (y[:, None] < np.maximum(start[:, 1], end[:, 1]))
+    crossed = (start[:, 1] <= y[:, None]) & (y[:, None] < end[:, 1])
     left = np.clip(np.where(crossed, at, np.inf).min(axis=1), 0, width)
     right = np.clip(np.where(crossed, at, -np.inf).max(axis=1), 0, width)
     first = np.ceil(left).astype(np.int64)
