@@ -3,15 +3,15 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from linecad.arrays import Bool, Float, Int
+from linecad.evaluation.draughting.shapes import nearest_faces
 from linecad.geometry import segment_coordinates, world_rays
 from linecad.scene import Face, Plane, Scene
 
 REACH = 4.0  # px between a surveyed point and the line that is taken to show it
 LEAST_POINTS = 3  # for a median to be a scale: one point, or two, would always be right by their own
-NO_LINE = NO_FACE = -1
+NO_LINE = -1
 
 
 @dataclass(frozen=True)
@@ -68,22 +68,6 @@ def dense_depths(scene: Scene, pixels: Float, lines: Bool | None = None) -> Floa
 def face_depths(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> Float:
     """Camera depth (M,) of the nearest face on the ray of each pixel (M, 2), NaN where there is none."""
     return nearest_faces(scene, pixels, faces)[1]
-
-
-def nearest_faces(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> tuple[Int, Float]:
-    """Which of `faces` is nearest on the ray of each pixel (M, 2), NO_FACE for none, and its camera depth (M,), NaN."""
-    nearest, which = np.full(len(pixels), np.inf), np.full(len(pixels), NO_FACE)
-    rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
-    for number, (plane, face) in enumerate(faces):
-        flat = np.delete(np.arange(3), plane.axis)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            depth = plane.offset / rays[:, plane.axis]
-        points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
-        polygon = shapely.Polygon(face.outline[:, flat], [hole[:, flat] for hole in face.holes])
-        shapely.prepare(polygon)
-        hit = shapely.contains_xy(polygon, points) & (depth > 0) & (depth < nearest)
-        nearest[hit], which[hit] = depth[hit], number
-    return which, np.where(np.isfinite(nearest), nearest, np.nan)
 
 
 def line_depths(scene: Scene, pixels: Float, lines: Bool) -> Float:

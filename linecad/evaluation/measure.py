@@ -14,7 +14,7 @@ from linecad.depth.for_photo import open_depth_map
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
-from linecad.evaluation.draughting.score import DrawingScore, score_drawing
+from linecad.evaluation.drawing import DrawingScore, score_drawing
 from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.gallery import draw_places
 from linecad.evaluation.labels import FAKE, REAL

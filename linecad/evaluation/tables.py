@@ -7,7 +7,7 @@ from linecad.evaluation.bootstrap import Estimate, exact, mean, ratio_of_sums
 from linecad.evaluation.calibration import SURE, TENTHS
 from linecad.evaluation.decisions import Decisions
 from linecad.evaluation.depth import DepthScore
-from linecad.evaluation.draughting.tables import drawings
+from linecad.evaluation.drawing_tables import drawings
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, ROWS, Run, Settings
 from linecad.evaluation.scopes import SceneScore, ScopeScore

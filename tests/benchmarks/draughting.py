@@ -14,8 +14,8 @@ sys.path.insert(0, str(ROOT))
 
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.document import tables_as_markdown
-from linecad.evaluation.draughting.score import DrawingScore, score_drawing
-from linecad.evaluation.draughting.tables import drawing_means, drawings
+from linecad.evaluation.drawing import DrawingScore, score_drawing
+from linecad.evaluation.drawing_tables import drawing_means, drawings
 from linecad.evaluation.references import Reference, open_case
 from linecad.evaluation.scopes import score_scene
 from linecad.io.scene_file import read_scene

@@ -7,8 +7,7 @@ import shapely
 from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Float
-from linecad.evaluation.depth import NO_FACE, nearest_faces
-from linecad.evaluation.draughting.shapes import Shape
+from linecad.evaluation.draughting.shapes import NO_FACE, Shape, nearest_faces
 from linecad.geometry import project
 from linecad.scene import Scene
 

@@ -6,8 +6,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
-from linecad.evaluation.depth import face_depths
-from linecad.evaluation.draughting.shapes import Shape
+from linecad.evaluation.draughting.shapes import Shape, nearest_faces
 from linecad.geometry import project
 from linecad.scene import Scene
 
@@ -70,7 +69,7 @@ def _visible_foot(scene: Scene, shape: Shape) -> Float:
     inner = np.array([scene.camera.width, scene.camera.height]) - 1 - margin
     shown = ((pixels > margin) & (pixels < inner)).all(axis=1)
     # The ground before the foot hides only what is below it.
-    before = face_depths(scene, pixels, [(plane, face) for plane, face in scene.faces if plane.axis != 2])
+    _, before = nearest_faces(scene, pixels, [(plane, face) for plane, face in scene.faces if plane.axis != 2])
     shown &= ~(before < (1 - 2 * ENDS) * depth)
     kept: Float = points[shown if shown.mean() >= 0.5 else np.zeros(len(points), bool)]
     return kept

@@ -1,4 +1,4 @@
-"""The faces of a scene laid flat, and what a grid of pixels shows of them."""
+"""The faces of a scene laid flat, and which of them pixels show."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -7,9 +7,10 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
-from linecad.evaluation.depth import nearest_faces
+from linecad.geometry import world_rays
 from linecad.scene import Face, Plane, Scene
 
+NO_FACE = -1
 SAME_DIRECTION = 1e-9  # sine of the turn at a corner that is none
 
 
@@ -71,6 +72,17 @@ def corners_of(ring: Float) -> Float:
     return kept if len(kept) >= 3 else ring
 
 
-def seen_faces(scene: Scene, pixels: Float) -> tuple[Int, Float]:
-    """Which face, by its place in `scene.faces`, each pixel (M, 2) shows (NO_FACE for none), and its depth (M,)."""
-    return nearest_faces(scene, pixels, scene.faces)
+def nearest_faces(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> tuple[Int, Float]:
+    """Which of `faces` is nearest on the ray of each pixel (M, 2), NO_FACE for none, and its camera depth (M,), NaN."""
+    nearest, which = np.full(len(pixels), np.inf), np.full(len(pixels), NO_FACE)
+    rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
+    for number, (plane, face) in enumerate(faces):
+        flat = np.delete(np.arange(3), plane.axis)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depth = plane.offset / rays[:, plane.axis]
+        points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
+        polygon = shapely.Polygon(face.outline[:, flat], [hole[:, flat] for hole in face.holes])
+        shapely.prepare(polygon)
+        hit = shapely.contains_xy(polygon, points) & (depth > 0) & (depth < nearest)
+        nearest[hit], which[hit] = depth[hit], number
+    return which, np.where(np.isfinite(nearest), nearest, np.nan)

@@ -85,7 +85,9 @@ def test_the_samples_can_be_evaluated(tmp_path, capsys):
     assert main(["evaluate", str(samples), "--fast", "--limit", "1", "--report", str(tmp_path / "a.html")]) == 0
     out, err = capsys.readouterr()
     assert "courtyard: measured" in err
-    shown = {line.split(" | ")[0]: line for line in out.splitlines()}
+    depths = out[out.index("## Depths by photo") :].split("\n\n")[2]
+    shown = {line.split(" | ")[0]: line for line in depths.splitlines()}
+    assert "## Drawing: lines" in out
     assert float(shown["| courtyard"].split("|")[-2]) > 85  # %, precision of component 0
     assert "plan, as found" in (tmp_path / "a.html").read_text()
 

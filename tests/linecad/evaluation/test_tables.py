@@ -12,7 +12,7 @@ from linecad.evaluation.document import markdown, shown, write_json, write_markd
 from linecad.evaluation.draughting.faces import FaceCounts
 from linecad.evaluation.draughting.ground import GroundCounts
 from linecad.evaluation.draughting.lines import LineCounts
-from linecad.evaluation.draughting.score import DrawingScore
+from linecad.evaluation.drawing import DrawingScore
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, Run, Settings
 from linecad.evaluation.scopes import SceneScore, ScopeScore

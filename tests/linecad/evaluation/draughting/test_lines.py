@@ -76,14 +76,14 @@ def test_an_end_misses_a_line_by_less_than_a_hundredth(drawing, low, missing, in
     assert (found.missing, found.in_air) == (missing, in_air)
 
 
-def test_an_end_on_the_outline_of_a_face_is_not_in_the_air(drawing, rectangle):
+def test_an_end_on_the_outline_of_a_face_is_not_in_the_air(drawing, outline):
     lines = [level(0, 1, 0)]
     assert counted(drawing, lines).in_air == 2
-    assert counted(drawing, lines, [(1, 10.0, rectangle((-1, -1), (1, 1)))]).in_air == 1
+    assert counted(drawing, lines, [(1, 10.0, outline((-1, -1), (1, 1)))]).in_air == 1
     # Inside of a face is no outline, that of a hole is one.
-    assert counted(drawing, lines, [(1, 10.0, rectangle((-1, -1), (3, 1)))]).in_air == 2
-    hole = rectangle((-0.5, -0.2), (0, 0.2))
-    assert counted(drawing, lines, [(1, 10.0, rectangle((-1, -1), (3, 1)), hole)]).in_air == 1
+    assert counted(drawing, lines, [(1, 10.0, outline((-1, -1), (3, 1)))]).in_air == 2
+    hole = outline((-0.5, -0.2), (0, 0.2))
+    assert counted(drawing, lines, [(1, 10.0, outline((-1, -1), (3, 1)), hole)]).in_air == 1
 
 
 def test_an_end_where_the_photo_ends_is_not_in_the_air(drawing):

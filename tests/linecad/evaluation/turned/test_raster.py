@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from exporters.colours import line_colour, linear
-from linecad.evaluation.depth import nearest_faces
+from linecad.evaluation.draughting.shapes import nearest_faces
 from linecad.evaluation.turned.glb import Material
 from linecad.evaluation.turned.raster import (
     BACKGROUND,

@@ -3,8 +3,8 @@
 from collections.abc import Callable, Mapping
 
 from linecad.evaluation.bootstrap import Estimate, exact, mean
-from linecad.evaluation.draughting.score import DrawingScore
-from linecad.evaluation.draughting.truth import TrueCounts
+from linecad.evaluation.drawing import DrawingScore
+from linecad.evaluation.drawing_truth import TrueCounts
 from linecad.evaluation.table import Column, Row, Table
 
 MEAN = "mean"

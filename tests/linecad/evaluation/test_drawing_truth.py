@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.evaluation.draughting.score import score_drawing
-from linecad.evaluation.draughting.truth import is_clutter
+from linecad.evaluation.drawing import score_drawing
+from linecad.evaluation.drawing_truth import is_clutter
 from linecad.evaluation.references import reference_of
 from linecad.scene import Face, Intersections, Lines, Plane, Scene, SolveReport
 

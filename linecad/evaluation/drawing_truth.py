@@ -10,9 +10,8 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
-from linecad.evaluation.depth import NO_FACE
 from linecad.evaluation.draughting.ground import ground_rows
-from linecad.evaluation.draughting.shapes import Shape
+from linecad.evaluation.draughting.shapes import NO_FACE, Shape
 from linecad.evaluation.frames import true_axes
 from linecad.scene import Scene
 

@@ -4,12 +4,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.evaluation.depth import NO_FACE
+from linecad.evaluation.depth import face_depths
 from linecad.evaluation.draughting.faces import FaceCounts, count_faces
 from linecad.evaluation.draughting.ground import GroundCounts, count_ground
 from linecad.evaluation.draughting.lines import LineCounts, count_lines
-from linecad.evaluation.draughting.shapes import seen_faces, shapes_of
-from linecad.evaluation.draughting.truth import Shown, TrueCounts, compare_faces
+from linecad.evaluation.draughting.shapes import NO_FACE, nearest_faces, shapes_of
+from linecad.evaluation.drawing_truth import Shown, TrueCounts, compare_faces
 from linecad.evaluation.references import Reference, pixel_grid
 from linecad.scene import Scene
 
@@ -35,14 +35,14 @@ def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> Dr
     """
     shapes = shapes_of(scene)
     pixels = pixel_grid(scene.camera.width, scene.camera.height, COLUMNS)
-    face, depth = seen_faces(scene, pixels)
+    face, depth = nearest_faces(scene, pixels, scene.faces)
     seen = np.bincount(face[face != NO_FACE], minlength=len(shapes))
     truth, covered = None, None
     if reference.truth is not None:
         truth = compare_faces(scene, shapes, Shown(pixels, face, depth), reference.truth, scale)
         covered = truth.covered / truth.pixels if truth.pixels else None
     elif reference.dense is not None and len(reference.dense.pixels):
-        covered = float((seen_faces(scene, reference.dense.pixels)[0] != NO_FACE).mean())
+        covered = float(np.isfinite(face_depths(scene, reference.dense.pixels, scene.faces)).mean())
     return DrawingScore(
         photo_covered=float((face != NO_FACE).mean()),
         known_covered=covered,

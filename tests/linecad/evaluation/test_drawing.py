@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.evaluation.draughting.score import score_drawing
-from linecad.evaluation.draughting.tables import MEAN, drawing_means, drawings
-from linecad.evaluation.draughting.truth import TrueCounts
+from linecad.evaluation.drawing import score_drawing
+from linecad.evaluation.drawing_tables import MEAN, drawing_means, drawings
+from linecad.evaluation.drawing_truth import TrueCounts
 from linecad.evaluation.references import Points, Reference
 
 LINES = [
@@ -21,15 +21,15 @@ LINES = [
 
 
 @pytest.fixture(scope="module")
-def scene(drawing, rectangle):
+def scene(drawing, outline):
     wall = [(-4, -1.5), (4, -1.5), (4, 2.8), (3.8, 2.8), (3.8, 3), (-4, 3)]  # with a notch of two steps
     found, _ = drawing(
         LINES,
         [
-            (2, -1.5, rectangle((-9, 3), (9, 10))),
-            (1, 10.0, wall, rectangle((0, 0), (1, 1)), rectangle((2, 0), (3, 1))),
-            (1, 10.3, rectangle((0, 0), (1, 1))),  # in the first hole
-            (1, 10.0, rectangle((4.2, -1.5), (8, 3))),  # a piece of the wall
+            (2, -1.5, outline((-9, 3), (9, 10))),
+            (1, 10.0, wall, outline((0, 0), (1, 1)), outline((2, 0), (3, 1))),
+            (1, 10.3, outline((0, 0), (1, 1))),  # in the first hole
+            (1, 10.0, outline((4.2, -1.5), (8, 3))),  # a piece of the wall
         ],
     )
     return found
@@ -52,9 +52,9 @@ def test_every_defect_is_counted_as_by_hand(scene):
     assert found.truth is None
 
 
-def test_the_share_of_the_photo_is_counted_on_a_grid(drawing, rectangle):
+def test_the_share_of_the_photo_is_counted_on_a_grid(drawing, outline):
     quarter = 479.5 / 600 * 10, 319.5 / 600 * 10  # the corner of the photo, on the wall
-    scene, _ = drawing(faces=[(1, 10.0, rectangle((0, 0), quarter))])
+    scene, _ = drawing(faces=[(1, 10.0, outline((0, 0), quarter))])
     assert score_drawing(scene, Reference(), None).photo_covered == pytest.approx(0.25, abs=0.01)
 
 
