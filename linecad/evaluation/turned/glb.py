@@ -7,6 +7,7 @@ materials, sparse or packed numbers, extensions that the file requires.
 import json
 import struct
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,16 @@ class Material:
     picture: NDArray[np.uint8] | None  # (H, W, 3) RGB
     is_lit: bool
     is_double_sided: bool
+
+    @cached_property
+    def halvings(self) -> list[NDArray[np.uint8]]:
+        """The picture, and each time half as large, down to one texel across; nothing without a picture."""
+        pictures = [] if self.picture is None else [self.picture]
+        while pictures and min(pictures[-1].shape[:2]) > 1:
+            height, width = pictures[-1].shape[:2]
+            smaller = cv2.resize(pictures[-1], (width // 2, height // 2), interpolation=cv2.INTER_AREA)
+            pictures.append(np.asarray(smaller, np.uint8))
+        return pictures
 
 
 @dataclass(frozen=True, eq=False)

@@ -116,30 +116,29 @@ def paint(model: GlbModel, view: View, drawn: Drawn) -> NDArray[np.uint8]:
     for number in np.unique(material[shown]).tolist():
         own = material == number
         look = model.materials[number]
-        base: Float = np.ones((int(own.sum()), 3))
+        if look.picture is not None and not look.is_lit and (look.colour == 1).all():
+            colours[own] = _texels(look.halvings, drawn, own)  # through linear light and back it would be the same
+            continue
+        shade = _shade(model, view, drawn.triangle[own]) if look.is_lit else np.ones(int(own.sum()))
+        light = shade[:, None] * look.colour
         if look.picture is not None:
-            base = _linear_light(_texels(look.picture, drawn, own) / 255)
-        shade = _shade(model, view, drawn.triangle[own]) if look.is_lit else np.ones(len(base))
-        colours[own] = 255 * _srgb(base * look.colour * shade[:, None])
+            light = light * _linear_light(_texels(look.halvings, drawn, own) / 255)
+        colours[own] = 255 * _srgb(light)
     return np.asarray(np.round(np.clip(colours, 0, 255)), np.uint8)
 
 
-def _texels(picture: NDArray[np.uint8], drawn: Drawn, own: Bool) -> Float:
-    """The colours (M, 3) of the picture at the masked pixels, each from the halving that fits."""
+def _texels(halvings: list[NDArray[np.uint8]], drawn: Drawn, own: Bool) -> Float:
+    """The colours (M, 3) of a picture at the masked pixels, each from the halving that fits."""
     y, x = np.nonzero(own)
     rows = drawn.rows[drawn.triangle[own]]
     u, v, w = (rows[:, each, 0] * x + rows[:, each, 1] * y + rows[:, each, 2] for each in range(3))
     u, v = u / w, v / w
-    size = np.array([picture.shape[1], picture.shape[0]])
     steps = [(rows[:, each, axis] - at * rows[:, 2, axis]) / w for each, at in ((0, u), (1, v)) for axis in (0, 1)]
     # Texels a pixel: the mean of both directions, since one alone blurs or tears what is seen at a flat angle.
-    area = np.abs(steps[0] * steps[3] - steps[1] * steps[2]) * size[0] * size[1]
-    level = np.maximum(np.round(np.log2(np.maximum(area, 1.0)) / 2), 0).astype(np.int64)
+    area = np.abs(steps[0] * steps[3] - steps[1] * steps[2]) * halvings[0].shape[0] * halvings[0].shape[1]
+    level = np.minimum(np.round(np.log2(np.maximum(area, 1.0)) / 2).astype(np.int64), len(halvings) - 1)
     found = np.zeros((len(x), 3))
-    for step in range(int(level.max(initial=0)) + 1):
-        if step:
-            smaller = (max(1, picture.shape[1] // 2), max(1, picture.shape[0] // 2))
-            picture = np.asarray(cv2.resize(picture, smaller, interpolation=cv2.INTER_AREA), np.uint8)
+    for step, picture in enumerate(halvings):
         which = np.flatnonzero(level == step)
         if len(which):
             found[which] = _sampled(picture, u[which], v[which])

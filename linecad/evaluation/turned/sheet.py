@@ -23,9 +23,9 @@ def draw_view(model: GlbModel, view: View, with_lines: bool = True) -> NDArray[n
     if with_lines:
         pieces, owner = visible_lines(model.lines, view, drawn)
         fixed = np.round(pieces * 2**SHIFT).astype(int)
-        for (start, end), line in zip(fixed.tolist(), owner.tolist(), strict=True):
-            colour = colour_of(model.materials[model.line_material[line]])
-            cv2.line(picture, start, end, colour, 1, cv2.LINE_AA, SHIFT)
+        colours = [colour_of(material) for material in model.materials]
+        for (start, end), material in zip(fixed.tolist(), model.line_material[owner].tolist(), strict=True):
+            cv2.line(picture, start, end, colours[material], 1, cv2.LINE_AA, SHIFT)
     return picture
 
 
