@@ -15,6 +15,7 @@ from linecad.io.files import write_text_atomically
 
 FORMAT, VERSION = "linecad-evaluation", 1
 NOTHING = "-"
+OUTPUTS = ("pictures", "sheets")  # settings that change no figure
 
 
 def write_json(
@@ -26,7 +27,7 @@ def write_json(
         "version": VERSION,
         "linecad": __version__,
         "dataset": dataset,
-        "settings": {name: value for name, value in asdict(settings).items() if name != "pictures"},
+        "settings": {name: value for name, value in asdict(settings).items() if name not in OUTPUTS},
         "tables": [asdict(table) for table in tables],
         "photos": [result.document() for result in results],
     }

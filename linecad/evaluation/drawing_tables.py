@@ -70,16 +70,5 @@ def drawings(scores: Mapping[str, DrawingScore]) -> list[Table]:
     return tables
 
 
-def drawing_means(datasets: Mapping[str, Mapping[str, DrawingScore]]) -> list[Table]:
-    """The same tables with a row of means for each dataset."""
-    tables: dict[str, Table] = {}
-    for name, scores in datasets.items():
-        for table in drawings(scores):
-            before = tables[table.title].rows if table.title in tables else ()
-            row = Row(f"{name}, {len(table.rows) - 1} photos", table.rows[-1].cells)
-            tables[table.title] = Table(table.title, table.note, table.columns, (*before, row))
-    return list(tables.values())
-
-
 def _cell(value: float | None) -> Estimate | None:
     return None if value is None else exact(float(value))

@@ -1,18 +1,25 @@
 """A sheet of a model: the photo beside the exported file as its own camera sees it, and from where it was not."""
 
+import tempfile
+from pathlib import Path
+
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
 from exporters.picture.canvas import Canvas
-from linecad.evaluation.turned.glb import GlbModel
+from linecad.evaluation.turned.glb import GlbModel, read_glb
 from linecad.evaluation.turned.raster import View, colour_of, draw_triangles, paint, visible_lines
 from linecad.evaluation.turned.views import views_of
+from linecad.io.files import write_atomically
+from linecad.outputs import write_outputs
+from linecad.scene import Scene
 
 WIDTH = 720  # px of a picture
 COLUMNS, GAP, TITLE, TITLE_SIZE = 3, 8, 26, 17  # pictures beside each other; px
 PAPER, INK = (1.0, 1.0, 1.0), (0.15, 0.15, 0.17)
+QUALITY = 88  # of 100, where a sheet is written as JPEG
 SHIFT = 4  # bits after the point in OpenCV's coordinates
 
 
@@ -27,6 +34,18 @@ def draw_view(model: GlbModel, view: View, with_lines: bool = True) -> NDArray[n
         for (start, end), material in zip(fixed.tolist(), model.line_material[owner].tolist(), strict=True):
             cv2.line(picture, start, end, colours[material], 1, cv2.LINE_AA, SHIFT)
     return picture
+
+
+def write_sheet(scene: Scene, photo: NDArray[np.uint8], name: str, path: Path) -> None:
+    """Write the scene as GLB with the photo (H, W, 3) on its faces, and the sheet of that file to `path`.
+
+    The suffix of `path` chooses the format of the picture. Raises OutputError.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        glb = Path(folder) / "model.glb"
+        write_outputs(scene, photo, [glb], {})
+        sheet = draw_sheet(read_glb(glb), photo, name)
+    write_atomically(path, lambda file: sheet.save(file, quality=QUALITY))
 
 
 def draw_sheet(model: GlbModel, photo: NDArray[np.uint8], name: str, with_lines: bool = True) -> Image.Image:

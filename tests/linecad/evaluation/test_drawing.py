@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.drawing import score_drawing
-from linecad.evaluation.drawing_tables import MEAN, drawing_means, drawings
+from linecad.evaluation.drawing_tables import MEAN, drawings
 from linecad.evaluation.drawing_truth import TrueCounts
 from linecad.evaluation.references import Points, Reference
 
@@ -86,11 +86,3 @@ def test_truth_has_a_table_where_there_is_any(scene):
     assert [cell.value for cell in table.rows[0].cells] == [0.6, 0.3, 0.9, 1, 1]
     assert table.rows[1].cells[2:] == (None, None, None)
     assert table.rows[2].cells[0].value == pytest.approx(0.7)
-
-
-def test_datasets_have_a_row_of_means_each(scene):
-    score = score_drawing(scene, Reference(), None)
-    other = replace(score, lines=replace(score.lines, lines=10))
-    _, lines = drawing_means({"first": {"a": score, "b": other}, "second": {"c": other}})
-    assert [row.name for row in lines.rows] == ["first, 2 photos", "second, 1 photos"]
-    assert [row.cells[0].value for row in lines.rows] == [8, 10]
