@@ -36,7 +36,7 @@ def add_to(commands: "Commands") -> None:
         "--report", type=Path, metavar="OUT", help="write a page (HTML) with plots and the worst photos"
     )
     command.add_argument(
-        "--sheets", type=Path, metavar="DIR", help="write a picture of each model from where the camera was not"
+        "--turned", type=Path, metavar="DIR", help="write a picture of each model from where the camera was not"
     )
     command.add_argument("--workers", type=count, default=1, metavar="N", help="photos measured at a time (1)")
     command.add_argument("--limit", type=count, metavar="N", help="only the first N photos")
@@ -55,11 +55,11 @@ def run(parsed: argparse.Namespace) -> int:
     """Measure the photos of a dataset."""
     outputs = [path for path in (parsed.json, parsed.markdown, parsed.report) if path is not None]
     check_outputs(outputs, [])
-    if parsed.sheets is not None and not parsed.sheets.is_dir():
-        raise OutputError(f"{parsed.sheets} is not a folder; make it first")
+    if parsed.turned is not None and not parsed.turned.is_dir():
+        raise OutputError(f"{parsed.turned} is not a folder; make it first")
     from linecad.depth.for_photo import check_depth_options
     from linecad.evaluation.datasets import find_dataset
-    from linecad.evaluation.measure import SHEET
+    from linecad.evaluation.measure import TURNED
     from linecad.evaluation.methods import Settings
     from linecad.evaluation.run import evaluate
 
@@ -68,14 +68,14 @@ def run(parsed: argparse.Namespace) -> int:
         ablation=parsed.ablation,
         reconstruction=reconstruction_of(parsed, parsed.option),
         pictures=parsed.report is not None,
-        sheets=parsed.sheets,
+        turned=parsed.turned,
     )
     check_depth_options(settings.reconstruction, parsed.depth_maps)
     dataset = find_dataset(parsed.dataset)
     if parsed.depth_maps:
         dataset = dataset.with_depth_maps()
-    sheets = [] if parsed.sheets is None else [parsed.sheets / f"{case.name}{SHEET}" for case in dataset.cases]
-    check_kept([*outputs, *sheets], [file for case in dataset.cases for file in case.files])
+    pictures = [] if parsed.turned is None else [parsed.turned / f"{case.name}{TURNED}" for case in dataset.cases]
+    check_kept([*outputs, *pictures], [file for case in dataset.cases for file in case.files])
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage(f"measuring {len(dataset.cases[: parsed.limit])} photos of {dataset.name}")
         results = evaluate(

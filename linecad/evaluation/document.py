@@ -15,7 +15,7 @@ from linecad.io.files import write_text_atomically
 
 FORMAT, VERSION = "linecad-evaluation", 1
 NOTHING = "-"
-OUTPUTS = ("pictures", "sheets")  # settings that change no figure
+OUTPUTS = ("pictures", "turned")  # settings that change no figure
 
 
 def write_json(

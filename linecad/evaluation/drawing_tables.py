@@ -26,10 +26,11 @@ FACES: dict[Column, Reader] = {
     Column("ground faces", ""): lambda score: score.ground.faces,
     Column("walls on the ground", "%"): lambda score: _share(score.ground.walls_on_ground, score.ground.walls),
     Column("faces", ""): lambda score: score.faces.faces,
+    Column("of openings", ""): lambda score: score.faces.of_openings,
     Column("too many", ""): lambda score: score.faces.too_many,
     Column("alone", ""): lambda score: score.faces.alone,
     Column("steps", ""): lambda score: score.faces.steps,
-    Column("without a line", ""): lambda score: score.faces.steps_without_line,
+    Column("steps without a line", ""): lambda score: score.faces.steps_without_line,
     Column("slivers", ""): lambda score: score.faces.slivers,
     Column("small", ""): lambda score: score.faces.small,
     Column("holes", ""): lambda score: score.faces.holes,
@@ -37,6 +38,7 @@ FACES: dict[Column, Reader] = {
 }
 LINES: dict[Column, Reader] = {
     Column("lines", ""): lambda score: score.lines.lines,
+    Column("details", ""): lambda score: score.lines.details,
     Column("too many", ""): lambda score: score.lines.too_many,
     Column("parallel pairs", ""): lambda score: score.lines.parallel_pairs,
     Column("ends", ""): lambda score: score.lines.ends,

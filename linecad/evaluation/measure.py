@@ -23,7 +23,7 @@ from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.evaluation.scopes import SceneScore, score_scene
-from linecad.evaluation.turned.sheet import write_sheet
+from linecad.evaluation.turned.panels import write_panels
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.geometry import angle_between_frames
 from linecad.line_graph import Formulation, LineGraph
@@ -32,7 +32,7 @@ from linecad.scene import Scene
 
 MARKED_REACH = 3.0  # px between a line marked by hand and a reconstructed one
 MARKED_ANGLE = np.radians(3.0)
-SHEET = ".jpg"
+TURNED = ".jpg"
 PICTURE_WIDTH = 720  # px
 PICTURE_QUALITY = 75
 
@@ -157,8 +157,8 @@ def _whole(
         marked=None if reference.lines is None else _marked(reference, reference.lines, scene),
         drawing=score_drawing(scene, reference, None if depth is None else depth.face_scale),
     )
-    if settings.sheets is not None:
-        write_sheet(scene, photo.pixels, name, settings.sheets / f"{name}{SHEET}")
+    if settings.turned is not None:
+        write_panels(scene, photo.pixels, name, settings.turned / f"{name}{TURNED}")
     if not settings.pictures:
         return result, None, None
     places = None if scale is None else draw_places(scene, reference, scale)

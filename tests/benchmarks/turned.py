@@ -2,10 +2,10 @@
 
 Writes each scene as GLB by the exporter, with the photo on its faces, reads that file, and draws what is in it, all of
 it and nothing else: as the photo's camera sees it, 30 degrees from the left and from the right, from above, and
-straight before the facade that fills most of the photo; one sheet a photo, DIR/NAME.png, with the photo beside them.
+straight before the facade that fills most of the photo; one picture a photo, DIR/NAME.png, with the photo beside them.
 The photo of a scene file lies beside it or in a folder of --photos (there also as NAME/photo.jpg for a scene file
 ...NAME.json, as in a made dataset); a JSON beside the photo with its camera matrix is its calibration. --keep leaves
-the GLB beside the sheet. Prints a line a photo with the seconds for writing and for drawing.
+the GLB beside the picture. Prints a line a photo with the seconds for writing and for drawing.
 """
 
 import argparse
@@ -24,7 +24,7 @@ from linecad.camera.photo import Photo
 from linecad.camera.reread import reread_photo
 from linecad.errors import LinecadError, PhotoError
 from linecad.evaluation.turned.glb import read_glb
-from linecad.evaluation.turned.sheet import draw_sheet
+from linecad.evaluation.turned.panels import draw_panels
 from linecad.io.scene_file import read_scene
 from linecad.outputs import write_outputs
 from linecad.pipeline import reconstruct
@@ -37,7 +37,7 @@ def main() -> None:
     parser.add_argument("-o", "--out", type=Path, required=True, metavar="DIR")
     parser.add_argument("--photos", type=Path, nargs="+", default=[], metavar="DIR", help="where the photos lie")
     parser.add_argument("--no-lines", action="store_true", help="faces alone")
-    parser.add_argument("--keep", action="store_true", help="leave the GLB beside each sheet")
+    parser.add_argument("--keep", action="store_true", help="leave the GLB beside each picture")
     parser.add_argument("--jpeg", action="store_true", help="JPEG, a fifth of the size")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
@@ -52,9 +52,9 @@ def main() -> None:
             began = time.perf_counter()
             write_outputs(scene, photo.pixels, [glb], {})
             written = time.perf_counter()
-            sheet = draw_sheet(read_glb(glb), photo.pixels, path.stem, not chosen.no_lines)
+            picture = draw_panels(read_glb(glb), photo.pixels, path.stem, not chosen.no_lines)
             drawn = time.perf_counter()
-        sheet.save(chosen.out / f"{path.stem}.{'jpg' if chosen.jpeg else 'png'}")
+        picture.save(chosen.out / f"{path.stem}.{'jpg' if chosen.jpeg else 'png'}")
         print(f"{path.stem}: {written - began:.2f} s to write, {drawn - written:.2f} s to draw", flush=True)
 
 

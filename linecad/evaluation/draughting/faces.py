@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from scipy.sparse.csgraph import connected_components
 
-from linecad.arrays import Float
+from linecad.arrays import Bool, Float
 from linecad.evaluation.draughting.shapes import NO_FACE, Shape, nearest_faces
 from linecad.geometry import project
 from linecad.scene import Scene
@@ -29,6 +29,7 @@ class FaceCounts:
     """Counts over all faces of a scene."""
 
     faces: int
+    of_openings: int  # panes and what is beside them, which are small, thin and near a wall by right
     too_many: int  # pieces that a larger face could be: one wall in one plane, and near each other
     alone: int  # that share no edge with another face
     steps: int  # of staircases, in outlines and holes
@@ -39,20 +40,23 @@ class FaceCounts:
     recesses: int  # holes in which a parallel face stands, a little behind
 
 
-def count_faces(scene: Scene, shapes: list[Shape]) -> FaceCounts:
-    """What a draughtsman would draw otherwise."""
+def count_faces(scene: Scene, shapes: list[Shape], of_openings: Bool) -> FaceCounts:
+    """What a draughtsman would draw otherwise; faces `of_openings` (F,) are neither pieces, slivers nor small."""
     area = np.array([shape.polygon.area for shape in shapes])
     largest = _largest(shapes, area)
     shape_number = np.array([_longest(shape) ** 2 for shape in shapes]) / np.maximum(area, np.finfo(float).tiny)
+    odd = (area < SLIVER_AREA * largest) | (shape_number > SLIVER_SHAPE)
+    walls = [shape for shape, is_part in zip(shapes, of_openings.tolist(), strict=True) if not is_part]
     steps = [step for shape in shapes for step in steps_of(shape)]
     return FaceCounts(
         faces=len(shapes),
-        too_many=_too_many(shapes),
+        of_openings=int(of_openings.sum()),
+        too_many=_too_many(walls),
         alone=_alone(shapes),
         steps=len(steps),
         steps_without_line=sum(not _follows_line(scene, step) for step in steps),
-        slivers=int(((area < SLIVER_AREA * largest) | (shape_number > SLIVER_SHAPE)).sum()),
-        small=int((area < SMALL_AREA * largest).sum()),
+        slivers=int((odd & ~of_openings).sum()),
+        small=int(((area < SMALL_AREA * largest) & ~of_openings).sum()),
         holes=sum(len(shape.face.holes) for shape in shapes),
         recesses=_recesses(scene, shapes),
     )

@@ -30,20 +30,21 @@ class LineCounts:
     """Counts over all lines of a scene."""
 
     lines: int
+    details: int  # of them, those on the layer of details
     too_many: int  # pieces that a longer line could be: collinear, and touching
-    parallel_pairs: int  # beside each other within TIGHT over half of the shorter
+    parallel_pairs: int  # beside each other within TIGHT over half of the shorter, neither a detail
     ends: int
     missing: int  # ends that miss a line of another axis by less than NEAR
     in_air: int  # ends at no line, no outline of a face, and not at the photo's border
 
 
-def count_lines(scene: Scene, shapes: list[Shape]) -> LineCounts:
-    """What a draughtsman would strike out or close."""
+def count_lines(scene: Scene, shapes: list[Shape], is_detail: Bool) -> LineCounts:
+    """What a draughtsman would strike out or close; `is_detail` (N,) tells what is drawn on a layer of its own."""
     count = len(scene.lines)
     if count == 0:
-        return LineCounts(0, 0, 0, 0, 0, 0)
+        return LineCounts(0, 0, 0, 0, 0, 0, 0)
     depth = np.maximum(scene.lines.ends @ scene.rotation[2], SMALLEST_DEPTH)  # (N, 2)
-    pairs = _parallel(scene, depth.mean(axis=1))
+    pairs = _parallel(scene, depth.mean(axis=1), ~is_detail)
     links = coo_array((np.ones(len(pairs.collinear)), pairs.collinear.T), (count, count))
     groups = connected_components(links, directed=False)[0]
     gap = _gaps(scene) / depth
@@ -55,6 +56,7 @@ def count_lines(scene: Scene, shapes: list[Shape]) -> LineCounts:
         free[free] = distances(scene.lines.ends[free], outlines) >= ON_OUTLINE * depth[free]
     return LineCounts(
         lines=count,
+        details=int(is_detail.sum()),
         too_many=count - groups,
         parallel_pairs=pairs.tight,
         ends=2 * count,
@@ -69,7 +71,7 @@ class _Pairs:
     collinear: Int  # (P, 2) rows of lines
 
 
-def _parallel(scene: Scene, depth: Float) -> _Pairs:
+def _parallel(scene: Scene, depth: Float, drawn: Bool) -> _Pairs:
     lines = scene.lines
     tight, found = 0, [np.zeros((0, 2), np.int64)]
     for axis in range(3):
@@ -82,7 +84,8 @@ def _parallel(scene: Scene, depth: Float) -> _Pairs:
         overlap = np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None])
         shorter = np.minimum((high - low)[:, None], (high - low)[None])
         once = np.triu(lines.component[rows][:, None] == lines.component[rows][None], 1)
-        tight += int((once & (apart < TIGHT) & (overlap > LEAST_OVERLAP * shorter)).sum())
+        both = drawn[rows][:, None] & drawn[rows][None]
+        tight += int((once & both & (apart < TIGHT) & (overlap > LEAST_OVERLAP * shorter)).sum())
         found.append(rows[np.argwhere(once & (apart < COLLINEAR) & (overlap > -NEAR * nearer))])
     return _Pairs(tight, np.concatenate(found))
 

@@ -23,8 +23,8 @@ def made_folder(drawn, made_truth, tmp_path_factory):
 
 def test_a_made_dataset_gives_all_tables(made_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
-    sheets = ["--sheets", str(tmp_path)]
-    assert main(["evaluate", str(made_folder), "--json", str(out), *sheets, "--time-limit", "20", "--quiet"]) == 0
+    pictures = ["--turned", str(tmp_path)]
+    assert main(["evaluate", str(made_folder), "--json", str(out), *pictures, "--time-limit", "20", "--quiet"]) == 0
     photo = json.loads(out.read_text())["photos"][0]
     assert photo["error"] is None
     assert photo["statistics"]["real"] > 20
@@ -39,8 +39,8 @@ def test_a_made_dataset_gives_all_tables(made_folder, tmp_path, capsys):
     assert drawing["truth"]["right_plane"] <= drawing["truth"]["right_axis"] <= drawing["truth"]["covered"]
     assert drawing["known_covered"] == drawing["truth"]["covered"] / drawing["truth"]["pixels"]
     name = json.loads(out.read_text())["photos"][0]["name"]
-    with Image.open(tmp_path / f"{name}.jpg") as sheet:
-        assert sheet.width > 3 * 700
+    with Image.open(tmp_path / f"{name}.jpg") as picture:
+        assert picture.width > 3 * 700
     printed = capsys.readouterr().out
     titles = ("Table 1, formulation paper", "Table 2", "planes: recall", "Drawing against truth")
     assert [title for title in titles if title not in printed] == []

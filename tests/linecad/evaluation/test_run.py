@@ -110,7 +110,7 @@ def test_one_photo_that_fails_does_not_stop_the_others(york_folder, tmp_path, ca
         (["."], 1, "no dataset"),
         ([".", "--json", "none/a.json"], 1, "none"),
         ([".", "--json", "a", "--report", "a"], 1, "named twice"),
-        ([".", "--sheets", "none"], 1, "not a folder"),
+        ([".", "--turned", "none"], 1, "not a folder"),
         ([".", "--workers", "0"], 2, "'0' is not a whole number"),
         ([".", "--limit", "x"], 2, "'x' is not a whole number"),
         ([".", "--time-limit", "0"], 2, "positive"),

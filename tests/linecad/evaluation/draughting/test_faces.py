@@ -9,8 +9,9 @@ WALL = ((-5, -2), (5, 3))
 STAIR = [(0, 0), (10, 0), (10, 5), (9.8, 5), (9.8, 5.2), (9.6, 5.2), (9.6, 5.4), (0, 5.4)]
 
 
-def counted(drawing, faces, lines=()):
-    return count_faces(*drawing(lines, faces))
+def counted(drawing, faces, lines=(), of_openings=()):
+    scene, shapes = drawing(lines, faces)
+    return count_faces(scene, shapes, np.isin(np.arange(len(faces)), of_openings))
 
 
 def test_one_rectangle_has_nothing_but_to_be_alone(drawing, outline):
@@ -111,3 +112,14 @@ def test_a_hole_with_a_parallel_face_a_little_behind_is_a_recess(drawing, outlin
         faces.append((1, behind, outline((-0.1, -0.1), (1.1, 1.6))))
     found = counted(drawing, faces)
     assert (found.holes, found.recesses) == (1, recesses)
+
+
+def test_a_pane_is_neither_a_piece_of_its_wall_nor_small(drawing, outline):
+    faces = [(1, 10.0, outline((-5, -2), (5, 3)), outline((0, 0), (0.5, 0.8))), (1, 10.1, outline((0, 0), (0.5, 0.8)))]
+    plain, told = counted(drawing, faces), counted(drawing, faces, of_openings=[1])
+    assert (plain.of_openings, plain.too_many, plain.small) == (0, 1, 1)
+    assert (told.of_openings, told.too_many, told.small) == (1, 0, 0)
+    assert told.recesses == 1
+    strip = [faces[0], (0, 0.0, outline((10, 0), (10.01, 0.8)))]
+    assert counted(drawing, strip).slivers == 1
+    assert counted(drawing, strip, of_openings=[1]).slivers == 0

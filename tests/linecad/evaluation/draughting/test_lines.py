@@ -14,8 +14,9 @@ def upright(x, low, high, y=10.0):
     return (x, y, low), (x, y, high)
 
 
-def counted(drawing, lines, faces=(), components=None):
-    return count_lines(*drawing(lines, faces, components))
+def counted(drawing, lines, faces=(), components=None, details=()):
+    scene, shapes = drawing(lines, faces, components)
+    return count_lines(scene, shapes, np.isin(np.arange(len(lines)), details))
 
 
 def test_a_clean_rectangle_has_nothing_to_strike_out(drawing):
@@ -53,6 +54,13 @@ def test_pieces_of_one_line_are_too_many(drawing, pieces, too_many):
 )
 def test_parallel_lines_that_the_eye_cannot_part_are_pairs(drawing, second, pairs):
     assert counted(drawing, [level(0, 2, 0), level(*second)]).parallel_pairs == pairs
+
+
+def test_a_detail_may_be_as_near_as_it_likes(drawing):
+    lines = [level(0, 2, 0), level(0, 2, 0.02), level(0, 2, 0.04)]
+    found = [counted(drawing, lines, details=details) for details in ((), (0,), (1,))]
+    assert [each.details for each in found] == [0, 1, 1]
+    assert [each.parallel_pairs for each in found] == [2, 1, 0]
 
 
 def test_lines_of_two_components_have_nothing_to_do_with_each_other(drawing):

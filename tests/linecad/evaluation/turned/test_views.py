@@ -1,4 +1,4 @@
-"""Where the cameras of the sheet stand, and that each holds what it looks at."""
+"""Where the cameras of the pictures stand, and that each holds what it looks at."""
 
 from dataclasses import replace
 
@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.turned.glb import read_glb
+from linecad.evaluation.turned.panels import COLUMNS, GAP, TITLE, WIDTH, draw_panels, draw_view
 from linecad.evaluation.turned.raster import NOTHING, draw_triangles
-from linecad.evaluation.turned.sheet import COLUMNS, GAP, TITLE, WIDTH, draw_sheet, draw_view
 from linecad.evaluation.turned.views import seen_points, views_of
 from linecad.outputs import write_outputs
 
@@ -61,11 +61,11 @@ def test_seen_points_lie_on_the_faces(model, views):
     assert np.min(on, axis=0).max() < 1e-5
 
 
-def test_a_sheet_has_the_photo_and_five_pictures(model, photo):
-    sheet = np.asarray(draw_sheet(model, photo, "a"))
+def test_the_panels_have_the_photo_and_five_pictures(model, photo):
+    picture = np.asarray(draw_panels(model, photo, "a"))
     height = WIDTH * 240 // 320
-    assert sheet.shape == (2 * (height + TITLE + GAP) + GAP, COLUMNS * (WIDTH + GAP) + GAP, 3)
-    first = sheet[GAP + TITLE : GAP + TITLE + height, GAP : GAP + WIDTH]
+    assert picture.shape == (2 * (height + TITLE + GAP) + GAP, COLUMNS * (WIDTH + GAP) + GAP, 3)
+    first = picture[GAP + TITLE : GAP + TITLE + height, GAP : GAP + WIDTH]
     middle = first[height // 2, WIDTH // 2]
     assert np.abs(middle.astype(int) - photo[120, 160]).max() <= 3
 

@@ -1,4 +1,4 @@
-"""A sheet of a model: the photo beside the exported file as its own camera sees it, and from where it was not."""
+"""One picture of a model: the photo beside the exported file as its own camera sees it, and from where it was not."""
 
 import tempfile
 from pathlib import Path
@@ -19,7 +19,7 @@ from linecad.scene import Scene
 WIDTH = 720  # px of a picture
 COLUMNS, GAP, TITLE, TITLE_SIZE = 3, 8, 26, 17  # pictures beside each other; px
 PAPER, INK = (1.0, 1.0, 1.0), (0.15, 0.15, 0.17)
-QUALITY = 88  # of 100, where a sheet is written as JPEG
+QUALITY = 88  # of 100, where it is written as JPEG
 SHIFT = 4  # bits after the point in OpenCV's coordinates
 
 
@@ -36,20 +36,20 @@ def draw_view(model: GlbModel, view: View, with_lines: bool = True) -> NDArray[n
     return picture
 
 
-def write_sheet(scene: Scene, photo: NDArray[np.uint8], name: str, path: Path) -> None:
-    """Write the scene as GLB with the photo (H, W, 3) on its faces, and the sheet of that file to `path`.
+def write_panels(scene: Scene, photo: NDArray[np.uint8], name: str, path: Path) -> None:
+    """Write the scene as GLB with the photo (H, W, 3) on its faces, and the pictures of that file to `path`.
 
     The suffix of `path` chooses the format of the picture. Raises OutputError.
     """
     with tempfile.TemporaryDirectory() as folder:
         glb = Path(folder) / "model.glb"
         write_outputs(scene, photo, [glb], {})
-        sheet = draw_sheet(read_glb(glb), photo, name)
-    write_atomically(path, lambda file: sheet.save(file, quality=QUALITY))
+        picture = draw_panels(read_glb(glb), photo, name)
+    write_atomically(path, lambda file: picture.save(file, quality=QUALITY))
 
 
-def draw_sheet(model: GlbModel, photo: NDArray[np.uint8], name: str, with_lines: bool = True) -> Image.Image:
-    """The photo (H, W, 3) and five pictures of a model on one sheet."""
+def draw_panels(model: GlbModel, photo: NDArray[np.uint8], name: str, with_lines: bool = True) -> Image.Image:
+    """The photo (H, W, 3) and five pictures of a model on one picture."""
     views = views_of(model, WIDTH)
     height = views[0].height
     size = (WIDTH, height)
