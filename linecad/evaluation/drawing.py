@@ -9,7 +9,7 @@ from linecad.evaluation.depth import face_depths
 from linecad.evaluation.draughting.faces import FaceCounts, count_faces
 from linecad.evaluation.draughting.ground import GroundCounts, count_ground
 from linecad.evaluation.draughting.lines import LineCounts, count_lines
-from linecad.evaluation.draughting.shapes import NO_FACE, Shape, nearest_faces, shapes_of
+from linecad.evaluation.draughting.shapes import NO_FACE, nearest_faces, shapes_of
 from linecad.evaluation.drawing_truth import Shown, TrueCounts, compare_faces
 from linecad.evaluation.references import Reference, pixel_grid
 from linecad.scene import Scene
@@ -50,7 +50,7 @@ def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> Dr
         photo_covered=float((face != NO_FACE).mean()),
         known_covered=covered,
         ground=count_ground(scene, shapes, seen),
-        faces=count_faces(scene, shapes, np.array([_is_of_opening(shape) for shape in shapes], bool)),
+        faces=count_faces(scene, shapes, np.array([shape.face.kind in OPENINGS for shape in shapes], bool)),
         lines=count_lines(scene, shapes, _details(scene)),
         truth=truth,
     )
@@ -60,8 +60,3 @@ def _details(scene: Scene) -> Bool:
     """Which lines (N,) are on the layer of details; none in scenes that do not tell."""
     role = getattr(scene.lines, "role", ())
     return np.array(role) == DETAIL if len(role) else np.zeros(len(scene.lines), bool)
-
-
-def _is_of_opening(shape: Shape) -> bool:
-    """Whether a face is a window or a door; never in scenes that do not tell."""
-    return getattr(shape.face, "kind", "") in OPENINGS

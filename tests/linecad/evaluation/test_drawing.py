@@ -9,6 +9,7 @@ from linecad.evaluation.drawing import score_drawing
 from linecad.evaluation.drawing_tables import MEAN, drawings
 from linecad.evaluation.drawing_truth import TrueCounts
 from linecad.evaluation.references import Points, Reference
+from linecad.scene import Face
 
 LINES = [
     ((-4, 10, -1.5), (1, 10, -1.5)),  # the foot of the wall, in two pieces ...
@@ -50,6 +51,16 @@ def test_every_defect_is_counted_as_by_hand(scene):
     assert faces.small == 0
     assert found.known_covered is None
     assert found.truth is None
+
+
+def test_windows_of_a_scene_are_told_by_their_kind(scene):
+    wall, pane = scene.planes[1], scene.planes[2]
+    window = replace(pane, offset=10.1, faces=(Face(2, pane.faces[0].outline - [0, 0.2, 0], kind="window"),))
+    plain = replace(window, faces=(replace(window.faces[0], kind="other"),))
+    found = [
+        score_drawing(replace(scene, planes=(wall, each)), Reference(), None).faces.too_many for each in (window, plain)
+    ]
+    assert found == [0, 1]
 
 
 def test_the_share_of_the_photo_is_counted_on_a_grid(drawing, outline):
