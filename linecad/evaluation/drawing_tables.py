@@ -49,6 +49,7 @@ LINES: dict[Column, Reader] = {
 TRUTH: dict[Column, Reader] = {
     Column("right axis", "%"): _of_truth(lambda truth: _share(truth.right_axis, truth.pixels)),
     Column("right plane", "%"): _of_truth(lambda truth: _share(truth.right_plane, truth.pixels)),
+    Column("sky covered", "%"): _of_truth(lambda truth: _share(truth.sky_covered, truth.sky)),
     Column("ground in one face", "%"): _of_truth(lambda truth: truth.ground_covered),
     Column("one ground", "%"): _of_truth(lambda truth: truth.has_one_ground),
     Column("ground height right", "%"): _of_truth(lambda truth: truth.has_right_height),

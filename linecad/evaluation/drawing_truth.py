@@ -31,6 +31,8 @@ class TrueCounts:
     covered: int  # that show any face
     right_axis: int
     right_plane: int  # right axis, and depth within RIGHT
+    sky: int  # pixels of the grid that show the sky
+    sky_covered: int  # of them, those that show a face, and should not
     ground_height: float | None  # found over true height of the camera above the ground, less 1; None: no pixel tells
     ground_covered: float | None  # of the largest true ground plane, by one face; None where no ground is seen
 
@@ -77,6 +79,8 @@ def compare_faces(scene: Scene, shapes: list[Shape], shown: Shown, truth: Truth,
         covered=int(has.sum()),
         right_axis=int(right_axis.sum()),
         right_plane=int(right_plane.sum()),
+        sky=int((quad == NOTHING).sum()),
+        sky_covered=int(((quad == NOTHING) & (shown.face != NO_FACE)).sum()),
         ground_height=height,
         ground_covered=covered,
     )

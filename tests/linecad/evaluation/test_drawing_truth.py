@@ -64,6 +64,14 @@ def test_a_face_of_another_axis_is_wrong(score):
     assert wall.right_axis / wall.covered < 0.1
 
 
+def test_a_face_in_the_sky_is_told(score):
+    sky = [(-30, 10), (30, 10), (30, 40), (-30, 40)]  # above the boxes
+    above = score([(1, 40.0, sky)]).truth
+    assert above.covered == 0
+    assert above.sky_covered > 0.3 * above.sky > 0
+    assert score([(2, -1.5, GROUND)]).truth.sky_covered == 0
+
+
 def test_without_a_scale_no_plane_is_right(score):
     truth = score([(2, -1.5, GROUND)], known=False).truth
     assert truth.right_axis > 0
