@@ -8,7 +8,7 @@ from linecad.cli.arguments import add_depth_maps, add_loudness, add_reconstructi
 from linecad.cli.checks import check_kept, check_outputs
 from linecad.cli.former import OBJECTIVE, add_former
 from linecad.cli.progress import ProgressDisplay
-from linecad.errors import LinecadError
+from linecad.errors import LinecadError, OutputError
 
 if TYPE_CHECKING:
     from linecad.cli.arguments import Commands
@@ -35,6 +35,9 @@ def add_to(commands: "Commands") -> None:
     command.add_argument(
         "--report", type=Path, metavar="OUT", help="write a page (HTML) with plots and the worst photos"
     )
+    command.add_argument(
+        "--turned", type=Path, metavar="DIR", help="write a picture of each model from where the camera was not"
+    )
     command.add_argument("--workers", type=count, default=1, metavar="N", help="photos measured at a time (1)")
     command.add_argument("--limit", type=count, metavar="N", help="only the first N photos")
     command.add_argument("--formulation", choices=["gain", "paper", "both"], default="both", help="for table 1 (both)")
@@ -52,8 +55,11 @@ def run(parsed: argparse.Namespace) -> int:
     """Measure the photos of a dataset."""
     outputs = [path for path in (parsed.json, parsed.markdown, parsed.report) if path is not None]
     check_outputs(outputs, [])
+    if parsed.turned is not None and not parsed.turned.is_dir():
+        raise OutputError(f"{parsed.turned} is not a folder; make it first")
     from linecad.depth.for_photo import check_depth_options
     from linecad.evaluation.datasets import find_dataset
+    from linecad.evaluation.measure import TURNED
     from linecad.evaluation.methods import Settings
     from linecad.evaluation.run import evaluate
 
@@ -62,12 +68,14 @@ def run(parsed: argparse.Namespace) -> int:
         ablation=parsed.ablation,
         reconstruction=reconstruction_of(parsed, parsed.option),
         pictures=parsed.report is not None,
+        turned=parsed.turned,
     )
     check_depth_options(settings.reconstruction, parsed.depth_maps)
     dataset = find_dataset(parsed.dataset)
     if parsed.depth_maps:
         dataset = dataset.with_depth_maps()
-    check_kept(outputs, [file for case in dataset.cases for file in case.files])
+    pictures = [] if parsed.turned is None else [parsed.turned / f"{case.name}{TURNED}" for case in dataset.cases]
+    check_kept([*outputs, *pictures], [file for case in dataset.cases for file in case.files])
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage(f"measuring {len(dataset.cases[: parsed.limit])} photos of {dataset.name}")
         results = evaluate(

@@ -32,7 +32,7 @@ def rasterise(quads: Float, matrix: Float, rotation: Float, width: int, height: 
         offset = normal @ camera[index, 0]
         if abs(offset) <= 1e-12 * np.abs(normal).sum():
             continue  # seen edge on
-        outline = _clipped(camera[index])
+        outline = clip_near(camera[index])
         if len(outline) < 3:
             continue
         image = outline @ matrix.T
@@ -52,16 +52,16 @@ def _in_view(camera: Float, matrix: Float, width: int, height: int) -> Int:
     return inside
 
 
-def _clipped(outline: Float) -> Float:
-    """The part of a convex polygon (N, 3) before the near plane."""
-    before = outline[:, 2] >= NEAR
+def clip_near(outline: Float, near: float = NEAR) -> Float:
+    """The part of a convex polygon (N, 3) of the camera frame before the plane of depth `near`."""
+    before = outline[:, 2] >= near
     if before.all():
         return outline
     kept = []
     for index, point in enumerate(outline):
         other = outline[index - 1]
         if before[index] != before[index - 1]:
-            kept.append(other + (NEAR - other[2]) / (point[2] - other[2]) * (point - other))
+            kept.append(other + (near - other[2]) / (point[2] - other[2]) * (point - other))
         if before[index]:
             kept.append(point)
     return np.array(kept).reshape(-1, 3)
@@ -96,7 +96,7 @@ def visible_pieces(edges: Float, quads: Float, matrix: Float, rotation: Float, i
     """
     height, width = ids.shape
     camera = edges @ rotation.T
-    image, depth, keep = _projected(camera, matrix, width, height)
+    image, depth, keep = project_edges(camera, matrix, width, height)
     length = np.linalg.norm(image[:, 1] - image[:, 0], axis=1)
     counts = np.maximum(np.ceil(length / SAMPLE).astype(np.int64), 1) + 1
     planes = _plane_table(quads)
@@ -122,14 +122,19 @@ def visible_pieces(edges: Float, quads: Float, matrix: Float, rotation: Float, i
     return np.array(pieces).reshape(-1, 2, 2), np.array(owners, np.int64)
 
 
-def _projected(camera: Float, matrix: Float, width: int, height: int) -> tuple[Float, Float, Int]:
-    """Ends (K, 2, 2), px, and depths (K, 2), m, of the edges inside the photo, and which of them (K,) these are."""
+def project_edges(
+    camera: Float, matrix: Float, width: int, height: int, near: float = NEAR
+) -> tuple[Float, Float, Int]:
+    """Ends (K, 2, 2), px, and depths (K, 2) of the edges inside the photo, and which of them (K,) these are.
+
+    The edges (M, 2, 3) are in the camera frame; `near` is the depth of the near plane, in their unit.
+    """
     ends = camera.copy()
-    keep = (ends[..., 2] > NEAR).any(axis=1)
-    for near, far in ((0, 1), (1, 0)):
-        behind = keep & (ends[:, near, 2] < NEAR)
-        share = (NEAR - ends[behind, near, 2]) / (ends[behind, far, 2] - ends[behind, near, 2])
-        ends[behind, near] += share[:, None] * (ends[behind, far] - ends[behind, near])
+    keep = (ends[..., 2] > near).any(axis=1)
+    for this, other in ((0, 1), (1, 0)):
+        behind = keep & (ends[:, this, 2] < near)
+        share = (near - ends[behind, this, 2]) / (ends[behind, other, 2] - ends[behind, this, 2])
+        ends[behind, this] += share[:, None] * (ends[behind, other] - ends[behind, this])
     ends[~keep] = (0.0, 0.0, 1.0)
     image = ends @ matrix.T
     image = image[..., :2] / image[..., 2:]

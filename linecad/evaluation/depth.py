@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 
 from linecad.arrays import Bool, Float, Int
+from linecad.evaluation.draughting.shapes import nearest_faces
 from linecad.geometry import segment_coordinates, world_rays
 from linecad.scene import Face, Plane, Scene
 
@@ -67,17 +67,7 @@ def dense_depths(scene: Scene, pixels: Float, lines: Bool | None = None) -> Floa
 
 def face_depths(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> Float:
     """Camera depth (M,) of the nearest face on the ray of each pixel (M, 2), NaN where there is none."""
-    nearest = np.full(len(pixels), np.inf)
-    rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
-    for plane, face in faces:
-        flat = np.delete(np.arange(3), plane.axis)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            depth = plane.offset / rays[:, plane.axis]
-        points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
-        polygon = shapely.Polygon(face.outline[:, flat], [hole[:, flat] for hole in face.holes])
-        hit = shapely.contains_xy(polygon, points) & (depth > 0) & (depth < nearest)
-        nearest[hit] = depth[hit]
-    return np.where(np.isfinite(nearest), nearest, np.nan)
+    return nearest_faces(scene, pixels, faces)[1]
 
 
 def line_depths(scene: Scene, pixels: Float, lines: Bool) -> Float:

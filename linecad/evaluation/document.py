@@ -10,11 +10,12 @@ from linecad import __version__
 from linecad.evaluation.bootstrap import Estimate
 from linecad.evaluation.measure import PhotoResult
 from linecad.evaluation.methods import Settings
-from linecad.evaluation.tables import Row, Table
+from linecad.evaluation.table import Row, Table
 from linecad.io.files import write_text_atomically
 
 FORMAT, VERSION = "linecad-evaluation", 1
 NOTHING = "-"
+OUTPUTS = ("pictures", "turned")  # settings that change no figure
 
 
 def write_json(
@@ -26,7 +27,7 @@ def write_json(
         "version": VERSION,
         "linecad": __version__,
         "dataset": dataset,
-        "settings": {name: value for name, value in asdict(settings).items() if name != "pictures"},
+        "settings": {name: value for name, value in asdict(settings).items() if name not in OUTPUTS},
         "tables": [asdict(table) for table in tables],
         "photos": [result.document() for result in results],
     }
@@ -42,8 +43,13 @@ def write_markdown(path: Path, dataset: str, results: Sequence[PhotoResult], tab
 
 
 def markdown(dataset: str, results: Sequence[PhotoResult], tables: Sequence[Table]) -> str:
-    """The tables as Markdown, with the intervals in brackets."""
-    parts = [f"# {dataset}\n\n{summary(results)}\n"]
+    """The tables as Markdown under what was measured, with the intervals in brackets."""
+    return f"# {dataset}\n\n{summary(results)}\n\n{tables_as_markdown(tables)}"
+
+
+def tables_as_markdown(tables: Sequence[Table]) -> str:
+    """Tables as Markdown, each with its title, with the intervals in brackets."""
+    parts = []
     for table in tables:
         heads = [f"{column.name}{' ' + column.unit if column.unit else ''}" for column in table.columns]
         lines = [

@@ -14,6 +14,7 @@ from linecad.depth.for_photo import open_depth_map
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
+from linecad.evaluation.drawing import DrawingScore, score_drawing
 from linecad.evaluation.frames import nearest_axes, true_axes
 from linecad.evaluation.gallery import draw_places
 from linecad.evaluation.labels import FAKE, REAL
@@ -22,6 +23,7 @@ from linecad.evaluation.overlap import find_overlaps, union_length
 from linecad.evaluation.planes import PlaneScore, score_planes
 from linecad.evaluation.references import MarkedLines, Reference, open_case
 from linecad.evaluation.scopes import SceneScore, score_scene
+from linecad.evaluation.turned.panels import write_panels
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.geometry import angle_between_frames
 from linecad.line_graph import Formulation, LineGraph
@@ -30,6 +32,7 @@ from linecad.scene import Scene
 
 MARKED_REACH = 3.0  # px between a line marked by hand and a reconstructed one
 MARKED_ANGLE = np.radians(3.0)
+TURNED = ".jpg"
 PICTURE_WIDTH = 720  # px
 PICTURE_QUALITY = 75
 
@@ -58,6 +61,7 @@ class WholeResult:
     depth: SceneScore | None
     plane_score: PlaneScore | None  # of component 0
     marked: MarkedScore | None
+    drawing: DrawingScore
 
 
 @dataclass(frozen=True)
@@ -124,13 +128,13 @@ def measure(
                 }
                 for formulation in settings.formulations
             }
-    whole, picture, places = _whole(photo, found, reference, settings, depth)
+    whole, picture, places = _whole(name, photo, found, reference, settings, depth)
     used = None if depth is None else depth.name
     return PhotoResult(name, None, statistics, methods, whole, picture, places, used)
 
 
 def _whole(
-    photo: Photo, found: FoundLines, reference: Reference, settings: Settings, depth_map: DepthMap | None
+    name: str, photo: Photo, found: FoundLines, reference: Reference, settings: Settings, depth_map: DepthMap | None
 ) -> tuple[WholeResult, Picture | None, str | None]:
     made = reconstruct_lines(photo.name, found, settings.reconstruction, depth=depth_map)
     graph, solution, scene = made.graph, made.solution, made.scene
@@ -151,7 +155,10 @@ def _whole(
         depth=depth,
         plane_score=None if reference.truth is None or scale is None else score_planes(scene, reference.truth, scale),
         marked=None if reference.lines is None else _marked(reference, reference.lines, scene),
+        drawing=score_drawing(scene, reference, None if depth is None else depth.face_scale),
     )
+    if settings.turned is not None:
+        write_panels(scene, photo.pixels, name, settings.turned / f"{name}{TURNED}")
     if not settings.pictures:
         return result, None, None
     places = None if scale is None else draw_places(scene, reference, scale)

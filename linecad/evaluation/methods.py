@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 
 import numpy as np
 
@@ -29,6 +30,7 @@ class Settings:
     ablation: bool = True  # solve all rows of table 1, or only the default settings
     reconstruction: Options = field(default_factory=Options)  # of the whole photo; of table 1 the weights and rewards
     pictures: bool = False  # keep what the report shows of each photo
+    turned: Path | None = None  # a folder for the turned pictures of each photo
 
     def options(self, formulation: Formulation, row: str) -> SolveOptions:
         """The solver's options for a row of table 1 that is no baseline."""

@@ -3,7 +3,7 @@
 from html import escape
 
 from linecad.evaluation.bootstrap import Estimate
-from linecad.evaluation.tables import Table
+from linecad.evaluation.table import Table
 
 BAR_WIDTH, BAR_HEIGHT, LABEL_WIDTH = 420, 18, 150  # px
 SIDE, LEFT, TOP, BELOW = 320, 50, 24, 40  # px, of the square of the calibration plot, and of the room for its labels

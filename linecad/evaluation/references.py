@@ -136,12 +136,18 @@ def _on_edges(truth: Truth) -> Points:
 
 
 def _on_grid(truth: Truth) -> Points:
-    step = truth.width / GRID
-    column, row = np.meshgrid(np.arange(step / 2, truth.width, step), np.arange(step / 2, truth.height, step))
-    pixels = np.floor(np.column_stack([column.ravel(), row.ravel()]))
+    pixels = pixel_grid(truth.width, truth.height, GRID)
     quads = truth.quad_at(pixels)
     shown = quads != NOTHING
     return Points(pixels[shown], truth.quad_depth(pixels[shown], quads[shown]))
+
+
+def pixel_grid(width: int, height: int, columns: int) -> Float:
+    """(M, 2) px, one pixel of each of `columns` columns of squares over a photo."""
+    step = width / columns
+    column, row = np.meshgrid(np.arange(step / 2, width, step), np.arange(step / 2, height, step))
+    pixels: Float = np.floor(np.column_stack([column.ravel(), row.ravel()]))
+    return pixels
 
 
 def _york_json(case: Case) -> tuple[Photo, Reference]:

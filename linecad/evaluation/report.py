@@ -7,7 +7,8 @@ from pathlib import Path
 from linecad.evaluation.document import cells_of, summary
 from linecad.evaluation.measure import PhotoResult, Picture, WholeResult
 from linecad.evaluation.plots import draw_bars, draw_calibration
-from linecad.evaluation.tables import CALIBRATION, Table
+from linecad.evaluation.table import Table
+from linecad.evaluation.tables import CALIBRATION
 from linecad.io import html
 from linecad.io.files import write_text_atomically
 

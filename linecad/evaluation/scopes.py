@@ -30,6 +30,11 @@ class SceneScore:
     component_0: ScopeScore  # both by the median ratio of its lines
     calibration: tuple[Tenth, ...] | None  # of all lines, by the scale of component 0; None as for `confidence`
 
+    @property
+    def face_scale(self) -> float | None:
+        """Found over true depth of everything, faces too where depths are known off the edges; None: not known."""
+        return (self.everything.dense or self.everything.lines).scale
+
 
 def score_scene(scene: Scene, edges: Points, dense: Points | None) -> SceneScore:
     """Score a scene against points of known depth on edges and, where there are such, anywhere."""

@@ -1,47 +1,21 @@
 """The results of all photos as tables: the paper's two, and the measures of the default settings."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 from linecad.evaluation.bootstrap import Estimate, exact, mean, ratio_of_sums
 from linecad.evaluation.calibration import SURE, TENTHS
 from linecad.evaluation.decisions import Decisions
 from linecad.evaluation.depth import DepthScore
+from linecad.evaluation.drawing_tables import drawings
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, ROWS, Run, Settings
 from linecad.evaluation.scopes import SceneScore, ScopeScore
+from linecad.evaluation.table import Column, Row, Table
 from linecad.line_graph import Formulation
 
 CALIBRATION = "Calibration"  # title
 CHOOSING = ("precision", "recall", "F1")  # columns that only a method that chooses crossings has
-
-
-@dataclass(frozen=True)
-class Column:
-    """A column of figures."""
-
-    name: str
-    unit: str  # "%": a share from 0 to 1, shown as a percentage; else a unit, or nothing
-
-
-@dataclass(frozen=True)
-class Row:
-    """A row; a cell is None where nothing is known."""
-
-    name: str
-    cells: tuple[Estimate | None, ...]
-    unit: str | None = None  # of this row's cells, where it is not the column's
-
-
-@dataclass(frozen=True)
-class Table:
-    """Figures with their intervals."""
-
-    title: str
-    note: str
-    columns: tuple[Column, ...]
-    rows: tuple[Row, ...]
 
 
 def all_tables(results: Sequence[PhotoResult], settings: Settings) -> list[Table]:
@@ -60,7 +34,7 @@ def all_tables(results: Sequence[PhotoResult], settings: Settings) -> list[Table
         tables.append(depths(list(scores.values())))
         tables += [calibration(list(scores.values()))] if any(score.calibration for score in scores.values()) else []
         tables.append(depths_by_photo(scores))
-    return tables
+    return tables + drawings({result.name: result.whole.drawing for result in good if result.whole})
 
 
 def table_1(results: Sequence[PhotoResult], formulation: Formulation) -> Table:

@@ -10,11 +10,12 @@ from scipy.io import savemat
 
 from linecad.camera.photo import Photo
 from linecad.dataset.truth import NOTHING, Truth
+from linecad.evaluation.draughting.shapes import shapes_of
 from linecad.geometry import project, world_rays
 from linecad.graph.build import build_line_graph
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.options import SHORT_REACH
-from linecad.scene import Camera, Intersections, Lines, Scene, SolveReport
+from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
 
 BIAS = 1e-3  # of the depth; a quad does not hide its own edges
 
@@ -216,3 +217,52 @@ def scene_of():
         return Scene("a.jpg", camera, frontal, replace(lines, **fields), none, (), report)
 
     return make
+
+
+LEVEL = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # world to camera
+DRAWN_BY = Camera(960, 640, [[600.0, 0, 479.5], [0, 600.0, 319.5], [0, 0, 1]], "file")
+
+
+def draw_scene(lines=(), faces=(), components=None):
+    """A scene before a level camera that looks along y.
+
+    Lines are (start, end), faces (axis, offset, outline, hole ...) with rings in the coordinates of their planes.
+    """
+    ends = np.array(lines, float).reshape(-1, 2, 3)
+    count = len(ends)
+    planes = []
+    for number, (axis, offset, *rings) in enumerate(faces):
+        world = [np.insert(np.array(ring, float), axis, offset, axis=1) for ring in rings]
+        planes.append(Plane(number, axis, offset, (), (Face(number, world[0], tuple(world[1:])),)))
+    return Scene(
+        "a.jpg", DRAWN_BY, LEVEL,
+        Lines(
+            range(count), np.abs(ends[:, 1] - ends[:, 0]).argmax(axis=1), project(ends, DRAWN_BY.matrix, LEVEL), ends,
+            [False] * count, [0] * count if components is None else components, ["proven"] * count,
+        ),
+        Intersections(np.zeros((0, 2)), [], np.zeros((0, 2)), [], [], []), tuple(planes),
+        SolveReport("none", "gain", "optimal", 0.0, 0.0, 0.0),
+    )  # fmt: skip
+
+
+def corners(low, high):
+    """Corners of a rectangle."""
+    (a, b), (c, d) = low, high
+    return [(a, b), (c, b), (c, d), (a, d)]
+
+
+@pytest.fixture(scope="session")
+def drawing():
+    """A function from lines and faces to a scene and its shapes."""
+
+    def build(lines=(), faces=(), components=None):
+        scene = draw_scene(lines, faces, components)
+        return scene, shapes_of(scene)
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def outline():
+    """A function from two opposite corners to the outline of a rectangle."""
+    return corners

@@ -23,7 +23,8 @@ def made_folder(drawn, made_truth, tmp_path_factory):
 
 def test_a_made_dataset_gives_all_tables(made_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
-    assert main(["evaluate", str(made_folder), "--json", str(out), "--time-limit", "20", "--quiet"]) == 0
+    pictures = ["--turned", str(tmp_path)]
+    assert main(["evaluate", str(made_folder), "--json", str(out), *pictures, "--time-limit", "20", "--quiet"]) == 0
     photo = json.loads(out.read_text())["photos"][0]
     assert photo["error"] is None
     assert photo["statistics"]["real"] > 20
@@ -33,10 +34,16 @@ def test_a_made_dataset_gives_all_tables(made_folder, tmp_path, capsys):
     assert sum(tenth["points"] for tenth in whole["depth"]["calibration"]) > 0
     assert whole["plane_score"]["right_lines"] == whole["plane_score"]["lines"] > 0
     assert whole["rotation_error"] < 0.2
+    drawing = whole["drawing"]
+    assert drawing["lines"]["ends"] == 2 * whole["lines"]
+    assert drawing["truth"]["right_plane"] <= drawing["truth"]["right_axis"] <= drawing["truth"]["covered"]
+    assert drawing["known_covered"] == drawing["truth"]["covered"] / drawing["truth"]["pixels"]
+    name = json.loads(out.read_text())["photos"][0]["name"]
+    with Image.open(tmp_path / f"{name}.jpg") as picture:
+        assert picture.width > 3 * 700
     printed = capsys.readouterr().out
-    assert [
-        title for title in ("Table 1, formulation paper", "Table 2", "planes: recall") if title not in printed
-    ] == []
+    titles = ("Table 1, formulation paper", "Table 2", "planes: recall", "Drawing against truth")
+    assert [title for title in titles if title not in printed] == []
 
 
 def test_a_photo_of_another_size_than_its_truth_is_refused(made_folder, drawn, tmp_path):

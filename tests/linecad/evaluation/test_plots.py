@@ -4,7 +4,7 @@ import re
 
 from linecad.evaluation.bootstrap import Estimate, exact
 from linecad.evaluation.plots import LEFT, SIDE, TOP, draw_bars, draw_calibration
-from linecad.evaluation.tables import Column, Row, Table
+from linecad.evaluation.table import Column, Row, Table
 
 COLUMNS = (Column("points", ""), Column("stated", "%"), Column("right", "%"))
 

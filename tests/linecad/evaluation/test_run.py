@@ -85,7 +85,9 @@ def test_the_samples_can_be_evaluated(tmp_path, capsys):
     assert main(["evaluate", str(samples), "--fast", "--limit", "1", "--report", str(tmp_path / "a.html")]) == 0
     out, err = capsys.readouterr()
     assert "courtyard: measured" in err
-    shown = {line.split(" | ")[0]: line for line in out.splitlines()}
+    depths = out[out.index("## Depths by photo") :].split("\n\n")[2]
+    shown = {line.split(" | ")[0]: line for line in depths.splitlines()}
+    assert "## Drawing: lines" in out
     assert float(shown["| courtyard"].split("|")[-2]) > 85  # %, precision of component 0
     assert "plan, as found" in (tmp_path / "a.html").read_text()
 
@@ -108,6 +110,7 @@ def test_one_photo_that_fails_does_not_stop_the_others(york_folder, tmp_path, ca
         (["."], 1, "no dataset"),
         ([".", "--json", "none/a.json"], 1, "none"),
         ([".", "--json", "a", "--report", "a"], 1, "named twice"),
+        ([".", "--turned", "none"], 1, "not a folder"),
         ([".", "--workers", "0"], 2, "'0' is not a whole number"),
         ([".", "--limit", "x"], 2, "'x' is not a whole number"),
         ([".", "--time-limit", "0"], 2, "positive"),

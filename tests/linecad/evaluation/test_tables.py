@@ -9,12 +9,19 @@ from linecad.evaluation.calibration import ConfidenceScore, Tenth
 from linecad.evaluation.decisions import Decisions, GraphStatistics
 from linecad.evaluation.depth import DepthScore
 from linecad.evaluation.document import markdown, shown, write_json, write_markdown
+from linecad.evaluation.draughting.faces import FaceCounts
+from linecad.evaluation.draughting.ground import GroundCounts
+from linecad.evaluation.draughting.lines import LineCounts
+from linecad.evaluation.drawing import DrawingScore
 from linecad.evaluation.measure import PhotoResult, WholeResult
 from linecad.evaluation.methods import BASELINE, Run, Settings
 from linecad.evaluation.scopes import SceneScore, ScopeScore
 from linecad.evaluation.tables import all_tables, calibration, depths, depths_by_photo, measures, table_1, table_2
 
 SETTINGS = Settings(formulations=("paper",))
+DRAWING = DrawingScore(
+    0.5, None, GroundCounts(1, 2, 1), FaceCounts(9, 0, 1, 2, 4, 3, 1, 2, 5, 4), LineCounts(20, 0, 3, 6, 40, 7, 10), None
+)
 ALL = DepthScore(10, 8, 0.3, 0.6, 0.375, 0.75, 1.0)
 LARGEST = DepthScore(10, 5, 0.2, 0.4, 0.5, 1.0, 1.0)
 NOTHING = DepthScore(10, 2, 0.0, 0.0, 0.0, 0.0, None)
@@ -24,7 +31,7 @@ def photo(name, real, fake, chosen_fake=0):
     decisions = Decisions(real, fake, real + 5, chosen_fake, 5, 50.0, 100.0)
     run = Run(decisions, 2.0, "optimal", 0.0)
     score = SceneScore(ScopeScore(ALL, None, None), ScopeScore(LARGEST, None, None), None)
-    whole = WholeResult(20, 3, 1.0, "time limit", 0.1, decisions, 0.5, score, None, None)
+    whole = WholeResult(20, 3, 1.0, "time limit", 0.1, decisions, 0.5, score, None, None, DRAWING)
     return PhotoResult(name, None, GraphStatistics(10, 20, 12, 6, 2), {"paper": {BASELINE: run, "B": run}}, whole)
 
 
