@@ -1,15 +1,15 @@
 """DXF R2010 or R2018, in metres: https://help.autodesk.com/view/OARX/2018/ENU/?guid=GUID-235B22E0-A567-4CF6-92D3-38A2306D73F3
 
-Lines are LINE entities on one layer a group. A face is there twice: as 3DFACE triangles with their inner edges
-hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because many programs ignore 3DFACE. What a
-line or face is stands in the extended data of each entity, under the application name LINECAD, for a line with the
-probability that its depth is right, where the scene tells it. DXF has no place for a camera with a principal point;
-its numbers are custom properties of the document.
+Lines are LINE entities on one layer a group, detail in the thinnest pen. A face is there twice: as 3DFACE triangles
+with their inner edges hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because many programs
+ignore 3DFACE. What a line or face is stands in the extended data of each entity, under the application name LINECAD,
+for a line with the probability that its depth is right, where the scene tells it. DXF has no place for a camera with a
+principal point; its numbers are custom properties of the document.
 """
 
 import contextlib
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from exporters.bands import BANDS
 from exporters.camera import principal_point
 from exporters.model import FlatFace, LineGroup, Model, build_model, group_name
 from exporters.triangulation import triangulate
-from linecad.scene import AXES, Scene
+from linecad.scene import AXES, DETAIL, OUTLINE, ROLES, Scene
 
 _APPLICATION = "LINECAD"
 _FACES, _OUTLINES = "FACES", "FACE_OUTLINES"  # layer names; ASCII, because FreeCAD replaces other characters
@@ -30,6 +30,7 @@ _FACES, _OUTLINES = "FACES", "FACE_OUTLINES"  # layer names; ASCII, because Free
 _COLOUR = {(0, True): 1, (0, False): 11, (1, True): 3, (1, False): 91, (2, True): 5, (2, False): 171}
 _FACE_COLOUR, _OUTLINE_COLOUR = 254, 8
 _LINEWEIGHT = {True: 35, False: 13}  # hundredths of a millimetre on paper, by boundary
+_DETAIL_LINEWEIGHT = 9
 
 _STRING, _REAL, _INT16, _INT32 = 1000, 1040, 1070, 1071  # group codes of extended data
 _LARGEST_INT32 = 2**31 - 1
@@ -37,10 +38,13 @@ _HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the 
 _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 
-def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = False) -> None:
-    """Write the scene as DXF of that AutoCAD release to `path`, its layers by band or not; OSError where that fails."""
+def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = False, roles: bool = True) -> None:
+    """Write the scene as DXF of that AutoCAD release to `path`; OSError where that fails.
+
+    Its layers are by band where `probability` asks for that, and by role.
+    """
     with _fixed_metadata():
-        document = _build_document(build_model(scene, probability), scene, version)
+        document = _build_document(build_model(scene, probability, roles), scene, version)
         text = io.StringIO()
         document.write(text)
     path.write_bytes(document.encode(text.getvalue()))
@@ -61,7 +65,7 @@ def _build_document(model: Model, scene: Scene, version: str) -> Drawing:
     document = new(version, units=units.M)
     document.header["$MEASUREMENT"] = 1  # metric
     document.appids.add(_APPLICATION)
-    _add_layers(document, BANDS if any(group.band for group in model.groups) else ("",))
+    _add_layers(document, model)
     for group in model.groups:
         _add_lines(document, group)
     for face in model.faces:
@@ -74,10 +78,14 @@ def _build_document(model: Model, scene: Scene, version: str) -> Drawing:
     return document
 
 
-def _add_layers(document: Drawing, bands: Sequence[str]) -> None:
-    for ((axis, is_boundary), colour), band in product(_COLOUR.items(), bands):
-        name = group_name(axis, is_boundary, band).upper()
-        document.layers.add(name, color=colour, lineweight=_LINEWEIGHT[is_boundary])
+def _add_layers(document: Drawing, model: Model) -> None:
+    bands = BANDS if any(group.band for group in model.groups) else ("",)
+    used = {group.role for group in model.groups}
+    roles = [role for role in ("", *ROLES) if role in used or (role == OUTLINE and "" not in used)]
+    for ((axis, is_boundary), colour), role, band in product(_COLOUR.items(), roles, bands):
+        name = group_name(axis, is_boundary, role, band).upper()
+        weight = _DETAIL_LINEWEIGHT if role == DETAIL else _LINEWEIGHT[is_boundary]
+        document.layers.add(name, color=colour, lineweight=weight)
     document.layers.add(_FACES, color=_FACE_COLOUR)
     document.layers.add(_OUTLINES, color=_OUTLINE_COLOUR)
 

@@ -44,6 +44,10 @@ class Format(NamedTuple):
 _BANDS = Option(
     "probability", False, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
 )
+_ROLES = Option(
+    "roles", True, "layers and groups of lines by what they are drawn for: those of openings end in ..._opening, those "
+    "of bars, panes, joints and courses in ..._detail",
+)  # fmt: skip
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
 _TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
@@ -56,38 +60,46 @@ _PAGES = Beside(folder=".textures", part=PAGE_NAME)
 _PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl")
 
 FORMATS: dict[str, Format] = {
-    ".dxf": Format("exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION, _BANDS)),
+    ".dxf": Format(
+        "exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION, _BANDS, _ROLES)
+    ),
     ".step": Format(
-        "exporters.step.write", "lines and faces as named and coloured parts", "millimetres", options=(_SEWN, _BANDS)
+        "exporters.step.write",
+        "lines and faces as named and coloured parts",
+        "millimetres",
+        options=(_SEWN, _BANDS, _ROLES),
     ),
     ".glb": Format(
         "exporters.gltf.write",
         "lines, faces, camera for viewers and Blender",
         "metres",
-        options=(_TUBES, _BANDS, *TEXTURES),
+        options=(_TUBES, _BANDS, _ROLES, *TEXTURES),
     ),
     ".usda": Format(
         "exporters.usd.write",
         "a USD stage as text: lines, faces, camera",
         "metres",
-        options=(_BANDS, *TEXTURES),
+        options=(_BANDS, _ROLES, *TEXTURES),
         beside=_PAGES,
     ),
     ".usdc": Format(
         "exporters.usd.write",
         "a USD stage, compact: lines, faces, camera",
         "metres",
-        options=(_BANDS, *TEXTURES),
+        options=(_BANDS, _ROLES, *TEXTURES),
         beside=_PAGES,
     ),
     ".usdz": Format(
-        "exporters.usd.write", "a USD stage as a package: lines, faces, camera", "metres", options=(_BANDS, *TEXTURES)
+        "exporters.usd.write",
+        "a USD stage as a package: lines, faces, camera",
+        "metres",
+        options=(_BANDS, _ROLES, *TEXTURES),
     ),
     ".obj": Format(
         "exporters.obj",
         "faces as triangles, and lines",
         "metres",
-        options=(_BANDS, *TEXTURES),
+        options=(_BANDS, _ROLES, *TEXTURES),
         beside=_PAGES_AND_MATERIALS,
     ),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres"),

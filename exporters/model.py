@@ -13,7 +13,7 @@ import numpy as np
 
 from exporters.bands import BANDS, bands_of
 from linecad.arrays import Float, Int, Text
-from linecad.scene import AXES, Face, Plane, Scene
+from linecad.scene import AXES, ROLES, Face, Plane, Scene
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
 
@@ -23,10 +23,11 @@ FREE_UNIT = "the scale of the photo is not known: 1 unit of the scene is written
 
 @dataclass(frozen=True, eq=False)
 class LineGroup:
-    """The lines of one axis that are all boundaries, or all not, and may be all in one band, in ascending id."""
+    """The lines, in ascending id, of one axis that are all boundaries, or all not, and may be of one role and band."""
 
     axis: int  # 0, 1, 2
     is_boundary: bool
+    role: str  # one of ROLES; "" for lines of all roles
     ids: Int  # (N,)
     ends: Float  # (N, 2, 3) m
     band: str  # one of BANDS; "" for lines of all bands, or where the scene does not tell
@@ -34,8 +35,8 @@ class LineGroup:
 
     @property
     def name(self) -> str:
-        """The group's name in every format, such as `lines_x_boundary` or `lines_x_boundary_sure`."""
-        return group_name(self.axis, self.is_boundary, self.band)
+        """The group's name in every format, such as `lines_x_boundary` or `lines_x_boundary_detail_sure`."""
+        return group_name(self.axis, self.is_boundary, self.role, self.band)
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +66,9 @@ class FlatFace:
 class Model:
     """The geometry of a scene as the formats write it."""
 
-    groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ..., each in the order of BANDS; none is empty
+    groups: tuple[
+        LineGroup, ...
+    ]  # x boundary, x nonboundary, y ..., each in the order of ROLES, then BANDS; none is empty
     faces: tuple[FlatFace, ...]  # in ascending id
     photo: str  # name of the photo without its folder: one line of valid Unicode
     unit_note: str  # one ASCII phrase that says what a unit is
@@ -77,20 +80,21 @@ class Model:
         return np.concatenate([np.zeros((0, 3)), *ends, *(face.vertices for face in self.faces)])
 
 
-def group_name(axis: int, is_boundary: bool, band: str) -> str:
-    """The name of the group of these lines; `band` may be empty."""
+def group_name(axis: int, is_boundary: bool, role: str, band: str) -> str:
+    """The name of the group of these lines; role and band may be empty. Outlines are what a name without a role has."""
     kind = "boundary" if is_boundary else "nonboundary"
-    return "_".join(["lines", AXES[axis], kind, *([band] if band else [])])
+    return "_".join(["lines", AXES[axis], kind, *(word for word in (role, band) if word not in ("", ROLES[0]))])
 
 
-def build_model(scene: Scene, by_band: bool = False) -> Model:
+def build_model(scene: Scene, by_band: bool = False, by_role: bool = True) -> Model:
     """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out.
 
-    `by_band` gives the lines of each band a group of their own, where the scene tells probabilities.
+    `by_role` gives the lines of each role a group of their own, `by_band` those of each band, where the scene tells
+    probabilities.
     """
     scale = metres_per_unit(scene)
     return Model(
-        groups=_line_groups(scene, scale, bands_of(scene.lines) if by_band else None),
+        groups=_line_groups(scene, scale, bands_of(scene.lines) if by_band else None, by_role),
         faces=tuple(_flat_face(plane, face, scale) for plane, face in scene.faces),
         photo=photo_name(scene),
         unit_note=FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT,
@@ -107,21 +111,24 @@ def photo_name(scene: Scene) -> str:
     return " ".join(Path(scene.photo).name.encode(errors="replace").decode().split())
 
 
-def _line_groups(scene: Scene, scale: float, bands: Text | None) -> tuple[LineGroup, ...]:
+def _line_groups(scene: Scene, scale: float, bands: Text | None, by_role: bool) -> tuple[LineGroup, ...]:
     lines = scene.lines
     order = np.argsort(lines.id)
     ends = lines.ends * scale
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST_LINE
     probability = np.asarray(lines.probability)
     groups = []
-    for axis, is_boundary, band in product(range(3), (True, False), ("",) if bands is None else BANDS):
+    words = (ROLES if by_role else ("",), ("",) if bands is None else BANDS)
+    for axis, is_boundary, role, band in product(range(3), (True, False), *words):
         wanted = long_enough & (lines.axis == axis) & (lines.is_boundary == is_boundary)
+        if by_role:
+            wanted &= lines.role == role
         if bands is not None:
             wanted &= bands == band
         chosen = order[wanted[order]]
         if len(chosen):
             told = probability[chosen] if len(probability) else probability
-            groups.append(LineGroup(axis, is_boundary, lines.id[chosen], ends[chosen], band, told))
+            groups.append(LineGroup(axis, is_boundary, role, lines.id[chosen], ends[chosen], band, told))
     return tuple(groups)
 
 

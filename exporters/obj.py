@@ -18,13 +18,18 @@ from linecad.scene import Scene
 
 
 def write(
-    scene: Scene, path: Path, names: Names, probability: bool = False, textures: Textures | None = None
+    scene: Scene,
+    path: Path,
+    names: Names,
+    probability: bool = False,
+    roles: bool = True,
+    textures: Textures | None = None,
 ) -> SideFiles:
     """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it.
 
-    `probability` parts the lines by band.
+    `probability` parts the lines by band, `roles` by role.
     """
-    model = build_model(scene, probability)
+    model = build_model(scene, probability, roles)
     rows = [f"# linecad: reconstruction of {model.photo}, z up; {model.unit_note}"]
     if textures is not None and model.faces:
         rows.append(f"mtllib {names.library}")

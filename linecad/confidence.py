@@ -1,7 +1,8 @@
 """A scene without the lines whose depth is not sure enough, by the probability that it is right."""
 
 from dataclasses import fields, replace
-from typing import TypeVar
+from itertools import compress
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -34,22 +35,29 @@ def keep_probable(scene: Scene, least: float) -> Scene:
             f"no line has a depth that is right with a probability of {least:g} or more, the highest is "
             f"{probability.max():.3g}; choose a smaller --confidence"
         )
-    ids = set(lines.id[kept].tolist())
+    rest = with_lines(scene, kept)
+    planes = tuple(plane for plane in rest.planes if plane.lines)
+    return replace(rest, planes=planes, notes=(*scene.notes, _note(scene, int(kept.sum()), len(planes), least)))
+
+
+def with_lines(scene: Scene, kept: Bool) -> Scene:
+    """The scene of the masked lines (N,), by their ids as before, with all planes and the crossings between them."""
+    ids = set(scene.lines.id[kept].tolist())
     crossings = scene.intersections
     both = np.asarray(np.isin(crossings.lines, list(ids)).all(axis=1))
-    planes = tuple(plane for plane in (_plane_of(each, ids) for each in scene.planes) if plane.lines)
-    return replace(
-        scene,
-        lines=_rows(lines, kept),
-        intersections=_rows(crossings, both),
-        planes=planes,
-        notes=(*scene.notes, _note(scene, int(kept.sum()), len(planes), least)),
-    )
+    planes = tuple(_plane_of(plane, ids) for plane in scene.planes)
+    return replace(scene, lines=_rows(scene.lines, kept), intersections=_rows(crossings, both), planes=planes)
 
 
 def _rows(record: Record, kept: Bool) -> Record:
-    """The masked entries of every field of a record of arrays."""
-    return replace(record, **{each.name: np.asarray(getattr(record, each.name))[kept] for each in fields(record)})
+    """The masked entries of every field of a record of arrays and tuples."""
+    return replace(record, **{each.name: _masked(getattr(record, each.name), kept) for each in fields(record)})
+
+
+def _masked(entries: Any, kept: Bool) -> Any:
+    if isinstance(entries, tuple):
+        return tuple(compress(entries, kept))
+    return entries[kept] if len(entries) else entries  # of what a scene does not tell there are none
 
 
 def _plane_of(plane: Plane, ids: set[int]) -> Plane:

@@ -14,6 +14,7 @@ from linecad.confidence import keep_probable
 from linecad.corrections.file import check_belongs, read_corrections
 from linecad.depth.for_photo import check_depth_options, open_depth_map
 from linecad.depth.read import check_depth_file
+from linecad.model.clean.choice import Detail, keep_drawn
 from linecad.model.scale import Known, set_scale
 from linecad.options import Options
 from linecad.outputs import write_outputs
@@ -34,6 +35,7 @@ class Conversion:
     corrections: Path | None = None  # a person's, of this one photo
     confidence: float | None = None  # 0 to 1; lines whose depth is right with a smaller probability are left out
     depth: Path | None = None  # a depth map of this one photo
+    detail: Detail = "all"  # which lines are written
 
     def checked(self, maps_come: bool = False) -> Self:
         """This conversion, once its files are known to be readable and its options to go together.
@@ -73,7 +75,9 @@ class Conversion:
         scene = linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections, depth)
         if self.known is not None:
             scene = set_scale(scene, self.known)  # first, because the known line itself may be left out
-        return scene if self.confidence is None else keep_probable(scene, self.confidence)
+        if self.confidence is not None:
+            scene = keep_probable(scene, self.confidence)
+        return keep_drawn(scene, self.detail)
 
     def write(
         self,

@@ -25,6 +25,7 @@ CameraSource = Literal["file", "focal option", "exif", "vanishing points", "defa
 Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
 FaceKind = Literal["wall", "ground", "ceiling", "roof", "window", "door", "other"]
+Role = Literal["outline", "opening", "detail"]  # what a line is drawn for (linecad.model.clean.roles)
 DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]  # what a depth map measures (linecad.depth)
 # Why a crossing is real or not (linecad.decide.decision, docs/reference/scene-file.md). Real: annotated, chosen.
 Reason = Literal[
@@ -36,6 +37,8 @@ CAMERA_SOURCES: tuple[CameraSource, ...] = get_args(CameraSource)
 CONFIDENCES: tuple[Confidence, ...] = get_args(Confidence)
 REASONS: tuple[Reason, ...] = get_args(Reason)
 FACE_KINDS: tuple[FaceKind, ...] = get_args(FaceKind)
+ROLES: tuple[Role, ...] = get_args(Role)
+OUTLINE, OPENING, DETAIL = ROLES
 QUALITIES: tuple[Quality, ...] = get_args(Quality)
 DEPTH_KINDS: tuple[DepthKind, ...] = get_args(DepthKind)
 
@@ -112,6 +115,9 @@ class Lines:
     # (N,) 0 to 1, that the depth relative to component 0 is right within 5 %; (0,) in scenes that do not tell
     probability: Float | tuple[()] = ()
     by_depth_map: Bool | tuple[()] = ()  # (N,) a depth map alone says where the line's body stands; left out: of none
+    role: Text | tuple[()] = ()  # (N,) one of ROLES; left out: all are outlines
+    # N: the segments (K, 2, 2) px that a line was joined from, (0, 2, 2) where it has one; left out: all have one
+    pieces: tuple[Float, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("id", "axis", "component"):
@@ -124,20 +130,37 @@ class Lines:
         if len(self.by_depth_map) == 0:
             object.__setattr__(self, "by_depth_map", np.zeros(len(self.id), bool))
         freeze(self, "by_depth_map", np.bool_, (None,))
-        same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map"]
+        if len(self.role) == 0:
+            object.__setattr__(self, "role", np.full(len(self.id), ROLES[0]))
+        freeze(self, "role", np.str_, (None,))
+        self._freeze_pieces()
+        same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map", "role", "pieces"]
         check_lengths(self, len(self.id), same)
         if len(self.probability):
             check_lengths(self, len(self.id), ["probability"])
         check_not_negative(self, ["id", "component"])
         check_words(self, "confidence", CONFIDENCES)
+        check_words(self, "role", ROLES)
         check_unique("Lines", self.id.tolist())
         if len(self.axis) and not (self.axis.min() >= 0 and self.axis.max() <= 2):
             raise ValueError("Lines.axis holds a number outside 0, 1, 2")
         if len(self.probability) and not (min(self.probability) >= 0 and max(self.probability) <= 1):
             raise ValueError("Lines.probability holds a number outside 0 to 1")
 
+    def _freeze_pieces(self) -> None:
+        """Make the pieces read-only, and none where they are left out."""
+        given = self.pieces or (np.zeros((0, 2, 2)),) * len(self.id)
+        frozen = tuple(np.array(each, np.float64).reshape(-1, 2, 2) for each in given)
+        for each in frozen:
+            each.flags.writeable = False
+        object.__setattr__(self, "pieces", frozen)
+
     def __len__(self) -> int:
         return len(self.id)
+
+    def segments_of(self, row: int) -> Float:
+        """The segments (K, 2, 2) px of the photo that show a line, one or its pieces."""
+        return self.pieces[row] if len(self.pieces[row]) else self.segment[row : row + 1]
 
 
 @dataclass(frozen=True, eq=False)

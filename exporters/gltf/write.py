@@ -45,13 +45,18 @@ _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
 def write(
-    scene: Scene, path: Path, tubes: bool = False, probability: bool = False, textures: Textures | None = None
+    scene: Scene,
+    path: Path,
+    tubes: bool = False,
+    probability: bool = False,
+    roles: bool = True,
+    textures: Textures | None = None,
 ) -> None:
     """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails.
 
-    `probability` parts the lines by band.
+    `probability` parts the lines by band, `roles` by role.
     """
-    model = build_model(scene, probability)
+    model = build_model(scene, probability, roles)
 
     def add_to_buffer(buffer: Any, _: _Tree) -> None:
         if textures is not None:
@@ -111,7 +116,8 @@ def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
 
 def _told(group: LineGroup) -> _Tree:
     told = {"probabilities": group.probability.tolist()} if len(group.probability) else {}
-    return {"axis": AXES[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist(), **told}
+    role = {"role": group.role} if group.role else {}
+    return {"axis": AXES[group.axis], "boundary": group.is_boundary, **role, "line_ids": group.ids.tolist(), **told}
 
 
 def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_line: int) -> None:

@@ -57,12 +57,12 @@ _CURVE, _SURFACE = XCAFDoc_ColorType.XCAFDoc_ColorCurv, XCAFDoc_ColorType.XCAFDo
 _OPTIONS = {"write.step.schema": "AP214IS", "write.step.unit": "MM", "write.step.product.name": "linecad"}
 
 
-def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = False) -> None:
+def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = False, roles: bool = True) -> None:
     """Write the scene as STEP to `path`, its faces sewn where that is asked for; OSError where that fails.
 
-    `probability` parts the lines by band.
+    `probability` parts the lines by band, `roles` by role.
     """
-    model = build_model(scene, probability)
+    model = build_model(scene, probability, roles)
     with _silence():
         try:
             data = _written(_build_document(model, sewn), model)

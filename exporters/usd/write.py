@@ -40,16 +40,17 @@ def write(
     scene: Scene,
     path: Path,
     probability: bool = False,
+    roles: bool = True,
     names: Names | None = None,
     textures: Textures | None = None,
 ) -> SideFiles:
     """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails.
 
-    `probability` parts the lines by band.
+    `probability` parts the lines by band, `roles` by role.
     The pages of the textures lie beside a stage, in the folder of `names`; without names, as a package, it holds them.
     """
     pages = {} if textures is None else textures.files
-    model = build_model(scene, probability)
+    model = build_model(scene, probability, roles)
     if names is not None:
         _save(_build_stage(model, scene, textures, names.folder), path)
         return SideFiles(pages)
@@ -145,6 +146,8 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
         told = variables.CreatePrimvar("linecad:probability", Sdf.ValueTypeNames.DoubleArray, UsdGeom.Tokens.uniform)
         told.Set(Vt.DoubleArray.FromNumpy(group.probability))
     _set(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
+    if group.role:
+        _set(curves.GetPrim(), "linecad:role", Sdf.ValueTypeNames.Token, group.role)
 
     material = _MATERIALS.AppendChild(group.name)
     add_material(stage, material, colour, emits=True)

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     Commands: TypeAlias = argparse._SubParsersAction["Parser"]
 
+DETAILS = ("none", "openings", "all")  # as linecad.model.clean.choice has them, which loads NumPy
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
 
@@ -61,9 +62,7 @@ def add_depth_maps(parser: argparse.ArgumentParser) -> None:
 
 def add_reconstruction(parser: argparse.ArgumentParser, options: str) -> None:
     """How a photo is reconstructed; `options` says whose keys --option takes."""
-    parser.add_argument(
-        "--fast", action="store_true", help="a robust fit in tenths of a second, without a search or a proof"
-    )
+    parser.add_argument("--fast", action="store_true", help="a robust fit in tenths of a second, nothing proven")
     parser.add_argument(
         "--time-limit", type=positive, metavar="S", help="seconds for the solver (none; formulation gain 10, paper 60)"
     )
@@ -100,7 +99,15 @@ def add_confidence(parser: argparse.ArgumentParser) -> None:
     """How sure a line must be to be written."""
     parser.add_argument(
         "--confidence", type=_probability, metavar="P",
-        help="leave out lines whose depth is right with a probability below P, 0 to 1",
+        help="leave out lines less likely right than P, 0 to 1",
+    )  # fmt: skip
+
+
+def add_detail(parser: argparse.ArgumentParser) -> None:
+    """Which lines are written."""
+    parser.add_argument(
+        "--detail", choices=DETAILS, default="all", metavar="WHAT",
+        help="lines beside outlines: none, openings or all (all)",
     )  # fmt: skip
 
 

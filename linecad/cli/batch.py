@@ -10,6 +10,7 @@ from linecad.cli.arguments import (
     add_camera_height,
     add_confidence,
     add_depth_maps,
+    add_detail,
     add_loudness,
     add_reconstruction,
     count,
@@ -45,6 +46,7 @@ def add_to(commands: "Commands") -> None:
     add_depth_maps(command)
     add_camera_height(command)
     add_confidence(command)
+    add_detail(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)
@@ -74,7 +76,9 @@ def run(parsed: argparse.Namespace) -> int:
 
     means = Means(parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit)
     options, values = options_of(parsed, [Path(f"photo{suffix}") for suffix in parsed.format])
-    conversion = Conversion(parsed.camera, parsed.focal, options, parsed.known, values, confidence=parsed.confidence)
+    conversion = Conversion(
+        parsed.camera, parsed.focal, options, parsed.known, values, confidence=parsed.confidence, detail=parsed.detail
+    )
     plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means, parsed.depth_maps)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"

@@ -9,6 +9,7 @@ from linecad.cli.arguments import (
     add_camera,
     add_confidence,
     add_depth,
+    add_detail,
     add_loudness,
     add_outputs,
     add_reconstruction,
@@ -42,6 +43,7 @@ def add_to(commands: "Commands") -> None:
     add_depth(command)
     add_scale(command)
     add_confidence(command)
+    add_detail(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)
@@ -55,8 +57,9 @@ def run(parsed: argparse.Namespace) -> int:
     from linecad.convert import Conversion
 
     conversion = Conversion(
-        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence, parsed.depth
-    ).checked()
+        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence, parsed.depth,
+        parsed.detail,
+    ).checked()  # fmt: skip
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the photo")
         photo = conversion.read(parsed.photo)

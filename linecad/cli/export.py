@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linecad.cli.arguments import add_confidence, add_loudness, add_option, add_outputs, add_scale
+from linecad.cli.arguments import add_confidence, add_detail, add_loudness, add_option, add_outputs, add_scale
 from linecad.cli.checks import check_outputs, check_some
 from linecad.cli.progress import ProgressDisplay
 from linecad.errors import OutputError
@@ -32,6 +32,7 @@ def add_to(commands: "Commands") -> None:
     )
     add_scale(command)
     add_confidence(command)
+    add_detail(command)
     add_option(command, "an option of a format")
     command.add_argument("--formats", action="store_true", help="list the formats and end")
     add_loudness(command)
@@ -46,6 +47,7 @@ def run(parsed: argparse.Namespace) -> int:
     check_some(parsed.output)
     from linecad.confidence import keep_probable
     from linecad.io.scene_file import read_scene
+    from linecad.model.clean.choice import keep_drawn
     from linecad.model.scale import set_scale
     from linecad.outputs import PhotoOfScene, format_values, pixels_for, write_outputs
 
@@ -58,6 +60,7 @@ def run(parsed: argparse.Namespace) -> int:
             scene = set_scale(scene, parsed.known)  # first, because the known line itself may be left out
         if parsed.confidence is not None:
             scene = keep_probable(scene, parsed.confidence)
+        scene = keep_drawn(scene, parsed.detail)
         photo = PhotoOfScene(parsed.photo, parsed.camera, parsed.scene)
         pixels = pixels_for(scene, parsed.output, values, photo, show.note)
         write_outputs(scene, pixels, parsed.output, values, show.stage)

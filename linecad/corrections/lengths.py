@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from linecad.arrays import Float
 from linecad.corrections.apply import CorrectedLines
+from linecad.geometry import world_rays
 from linecad.scene import Scene
 
 LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
@@ -17,8 +19,8 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     """
     if not corrected.lengths:
         return scene
-    seen = zip(scene.lines.axis.tolist(), scene.lines.segment, strict=True)
-    row = {(axis, ends.tobytes()): number for number, (axis, ends) in enumerate(seen)}
+    axes = enumerate(scene.lines.axis.tolist())
+    row = {(axis, ends.tobytes()): number for number, axis in axes for ends in scene.lines.segments_of(number)}
     scales, notes = [], []
     for number, metres in corrected.lengths.items():
         own = int(np.flatnonzero(corrected.ids == number)[0])
@@ -26,8 +28,7 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
         if key not in row or scene.lines.component[row[key]] != 0:
             notes.append(f"a line of known length ({metres:g} m) is not on component 0, so its length says nothing")
             continue
-        ends = scene.lines.ends[row[key]]
-        scales.append(metres / float(np.linalg.norm(ends[1] - ends[0])))
+        scales.append(metres / _length(scene, row[key], corrected.segments.ends[own]))
     if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
         notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
     metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
@@ -37,3 +38,15 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
         else ""
     )
     return replace(scene, metres_per_unit=metres_per_unit, scale_source=source, notes=scene.notes + tuple(notes))
+
+
+def _length(scene: Scene, row: int, segment: Float) -> float:
+    """How long a line is in units of the scene, of one joined from pieces what its piece `segment` (2, 2) px shows."""
+    ends, axis = scene.lines.ends[row], int(scene.lines.axis[row])
+    if not len(scene.lines.pieces[row]):
+        return float(np.linalg.norm(ends[1] - ends[0]))
+    rays = world_rays(segment, scene.camera.matrix, scene.rotation)
+    across = [each for each in range(3) if each != axis]
+    # Where each ray passes nearest to the line.
+    depth = (rays[:, across] * ends[0, across]).sum(axis=1) / (rays[:, across] ** 2).sum(axis=1)
+    return float(np.abs(np.diff(depth * rays[:, axis]))[0])

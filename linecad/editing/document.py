@@ -169,7 +169,10 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             now.lines.ids, now.lines.graph.axis.tolist(), now.lines.graph.segments.ends, strict=True
         )
     }
-    number_of = {int(scene.lines.id[row]): by_look[look] for look, row in _rows(scene).items() if look in by_look}
+    numbers: dict[int, list[int]] = {int(line): [] for line in scene.lines.id}
+    for look, row in _rows(scene).items():
+        if look in by_look:
+            numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[_is_guess(scene)].tolist())
     triangles = _triangles(scene)
     return [
@@ -177,7 +180,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             "id": plane.id,
             "axis": AXES[plane.axis],
             "offset": plane.offset,
-            "lines": [number_of[line] for line in plane.lines if line in number_of],
+            "lines": [number for line in plane.lines for number in numbers[line]],
             "faces": [
                 {**triangles[face.id], "guess": bool(plane.lines) and guesses.issuperset(plane.lines)}
                 for face in plane.faces
@@ -217,9 +220,9 @@ def _same_direction(ring: np.ndarray, turned: np.ndarray) -> bool:
 
 
 def _rows(scene: Scene) -> dict[tuple[int, bytes], int]:
-    """The row of each line of a scene by axis and segment."""
-    looks = zip(scene.lines.axis.tolist(), scene.lines.segment, strict=True)
-    return {(axis, ends.tobytes()): row for row, (axis, ends) in enumerate(looks)}
+    """The row of each line of a scene by axis and segment, that of a line joined from pieces by each of these."""
+    axes = enumerate(scene.lines.axis.tolist())
+    return {(axis, ends.tobytes()): row for row, axis in axes for ends in scene.lines.segments_of(row)}
 
 
 def _finite(number: float) -> float | None:

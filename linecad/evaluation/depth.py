@@ -76,16 +76,19 @@ def line_depths(scene: Scene, pixels: Float, lines: Bool) -> Float:
 
 
 def nearest_lines(scene: Scene, pixels: Float, lines: Bool) -> Int:
-    """Which of `lines` (N,) is nearest to each pixel (M, 2) within REACH: its row (M,), NO_LINE for none."""
+    """Which of `lines` (N,) is nearest to each pixel (M, 2) within REACH: its row (M,), NO_LINE for none.
+
+    A line that was joined from pieces is where they are, for its segment also covers what lies between them.
+    """
     nearest = np.full(len(pixels), REACH)
     which = np.full(len(pixels), NO_LINE)
-    for line in np.flatnonzero(lines):
-        start, end = segment = scene.lines.segment[line]
-        place, beside = segment_coordinates(pixels, segment)
-        distance = np.abs(beside)
-        hit = (place >= 0) & (place <= np.linalg.norm(end - start)) & (distance < nearest)
-        which[hit] = line
-        nearest[hit] = distance[hit]
+    for line in np.flatnonzero(lines).tolist():
+        for segment in scene.lines.segments_of(line):
+            place, beside = segment_coordinates(pixels, segment)
+            distance = np.abs(beside)
+            hit = (place >= 0) & (place <= np.linalg.norm(segment[1] - segment[0])) & (distance < nearest)
+            which[hit] = line
+            nearest[hit] = distance[hit]
     return which
 
 

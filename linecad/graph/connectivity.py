@@ -36,11 +36,16 @@ def spanning_tree(graph: LineGraph, chosen: Bool, residual: Float) -> Bool:
     first_named = np.zeros(count, np.int64)
     first_named[lines] = named
     edges = edges[np.lexsort([first_named[graph.edges[edges]].min(axis=1), residual[edges]])]
-    rank = np.arange(1, len(edges) + 1)  # instead of residuals, since SciPy takes 0 for no edge
-    forest = minimum_spanning_tree(csr_matrix((rank, tuple(graph.edges[edges].T)), (count, count)))
     tree = np.zeros(len(graph.edges), bool)
-    tree[edges[forest.data.astype(np.int64) - 1]] = True
+    tree[edges[spanning_forest(count, graph.edges[edges])]] = True
     return tree
+
+
+def spanning_forest(count: int, edges: Int) -> Int:
+    """Which of the edges (E, 2) between `count` lines form the spanning forest that prefers the first ones."""
+    rank = np.arange(1, len(edges) + 1)  # instead of weights, since SciPy takes 0 for no edge
+    forest = minimum_spanning_tree(csr_matrix((rank, (edges[:, 0], edges[:, 1])), (count, count)))
+    return np.asarray(forest.data.astype(np.int64) - 1)
 
 
 def in_no_block(count: int, edges: Int) -> Bool:

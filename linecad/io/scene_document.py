@@ -67,8 +67,10 @@ def _line_records(lines: Lines) -> list[dict[str, object]]:
             "boundary": bool(lines.is_boundary[row]),
             "component": int(lines.component[row]),
             "confidence": str(lines.confidence[row]),
+            "role": str(lines.role[row]),
             **({"probability": float(lines.probability[row])} if len(lines.probability) else {}),
             **({"by_depth_map": True} if lines.by_depth_map[row] else {}),
+            **({"pieces": lines.pieces[row].tolist()} if len(lines.pieces[row]) else {}),
         }
         for row in range(len(lines))
     ]

@@ -17,6 +17,7 @@ from linecad.scene import (
     FACE_KINDS,
     QUALITIES,
     REASONS,
+    ROLES,
     Camera,
     CameraSource,
     Certainty,
@@ -151,7 +152,20 @@ def _lines(nodes: list[Node]) -> Lines:
         confidence=np.array([node["confidence"].one_of(CONFIDENCES) for node in nodes], str),
         probability=_probabilities(nodes),
         by_depth_map=np.array([_optional_boolean(node, "by_depth_map") for node in nodes], bool),
+        role=np.array([_role(node.get("role")) for node in nodes], str),
+        pieces=tuple(_pieces(node) for node in nodes),
     )
+
+
+def _role(node: Node | None) -> str:
+    """What a line is drawn for; in files written before it was known all are outlines."""
+    return ROLES[0] if node is None else node.one_of(ROLES)
+
+
+def _pieces(node: Node) -> Float:
+    """The segments (K, 2, 2) that a line was joined from, none where it has one."""
+    pieces = [piece.array(2, 2, largest=LARGEST_NUMBER) for piece in _optional_items(node, "pieces")]
+    return np.array(pieces).reshape(-1, 2, 2)
 
 
 def _optional_boolean(node: Node, key: str) -> bool:

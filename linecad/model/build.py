@@ -13,6 +13,8 @@ from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
+from linecad.model.clean.clean import clean_lines
+from linecad.model.clean.roles import with_roles
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
@@ -105,25 +107,30 @@ def build_scene(
         depth_map = placed.depth_map
     if depth_map is not None and depth_map.scale is not None:
         depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
-    offset = (found.lifted.offset * scale[:, None])[kept]
-    planes = find_planes(offset, found.lifted.shared[kept], lines.id)
+    new_id = np.cumsum(found.kept) - 1
+    forward = view.frame.rotation[2]
+    cleaned = clean_lines(lines, _intersections(graph, decision, found, new_id), forward)
+    lines = cleaned.lines
+    planes = find_planes(lines.ends[:, 0], cleaned.shared, lines.id)
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
-    new_id = np.cumsum(found.kept) - 1
-    pairs = _renumbered(decision.planar_pairs, found.component, new_id)
+    lines = with_roles(lines, planes, forward)
+    pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
+    cleaning = cleaned.note(lines)
+    notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []))
     return Scene(
         photo=view.photo,
         camera=view.camera,
         rotation=view.frame.rotation,
         lines=lines,
-        intersections=_intersections(graph, decision, found, new_id),
+        intersections=cleaned.intersections,
         planes=planes,
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.cuts, solution.nodes,
         ),
-        notes=(*_notes(view, graph, solution, found, depth_map), *disagreements(planes, lines, pairs)),
+        notes=(*notes, *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
         depth_map=depth_map,
     )  # fmt: skip

@@ -64,6 +64,19 @@ def with_probabilities(scene):
     return scene
 
 
+def with_roles(scene):
+    """The scene with lines of all roles."""
+    for number, drawn in enumerate(scene["lines"]):
+        drawn["role"] = ("outline", "opening", "detail")[number % 3]
+    return scene
+
+
+@pytest.fixture
+def drawn():
+    """A scene file's content that tells what its lines are drawn for."""
+    return json.loads(json.dumps(with_roles(build_scene())))
+
+
 @pytest.fixture
 def told():
     """A scene file's content that tells how likely the depths of its lines are right."""

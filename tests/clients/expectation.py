@@ -35,6 +35,7 @@ def build_expectation(scene, by_band=False):
         ends = [_scaled(end, metres) for end in line["ends"]]
         if math.dist(*ends) > SHORTEST_LINE:
             group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
+            group += _role(line)
             group += _band(line) if by_band else ""
             pixels = [_project(end, camera) for end in ends]
             lines.append({"id": line["id"], "group": group, "ends": ends, "pixels": pixels})
@@ -50,6 +51,12 @@ def build_expectation(scene, by_band=False):
         "face_colour": {"srgb": FACE_COLOUR, "linear": [_linear(value) for value in FACE_COLOUR]},
         "box": [[choose(values) for values in zip(*points, strict=True)] for choose in (min, max)],
     }
+
+
+def _role(line):
+    """What the line is drawn for, as its group's name says it; of outlines it says nothing."""
+    role = line.get("role", "outline")
+    return "" if role == "outline" else f"_{role}"
 
 
 def _band(line):

@@ -109,3 +109,10 @@ def test_half_a_file_is_no_file(export_to, expected):
     path = export_to(".dxf")
     path.write_text(path.read_text()[: path.stat().st_size // 2])
     assert verdict(path, expected).startswith("CHECK FAILED: 1 problem; first: DXF")
+
+
+def test_an_export_by_role_is_right_and_one_without_is_noticed(export_to, drawn, expected):
+    told = json.loads(json.dumps(build_expectation(drawn)))
+    path = export_to(".dxf", drawn)
+    assert verdict(path, told).startswith("CHECK OK ezdxf")
+    assert verdict(path, expected).startswith("CHECK FAILED")

@@ -115,3 +115,10 @@ def test_a_change_is_noticed(export_to, expected, change, told):
     report = judge(lambda findings: check(findings, path, expected))
     assert report[-1].startswith("CHECK FAILED")
     assert any(told in line for line in report)
+
+
+def test_an_export_by_role_is_right_and_one_without_is_noticed(export_to, drawn, expected):
+    told = json.loads(json.dumps(build_expectation(drawn)))
+    path = export_to(".usda", drawn)
+    assert verdict(path, told).startswith("CHECK OK usd")
+    assert verdict(path, expected).startswith("CHECK FAILED")

@@ -1,4 +1,5 @@
 from collections import defaultdict
+from dataclasses import replace
 
 import ezdxf
 import numpy as np
@@ -173,3 +174,16 @@ def test_layers_are_those_of_a_scene_that_does_not_tell_and_each_line_has_the_nu
     probability = dict(zip(told.lines.id.tolist(), told.lines.probability.tolist(), strict=True))
     for line in plain.modelspace().query("LINE"):
         assert values(line, 1040) == [probability[values(line, 1071)[0]]]
+
+
+def test_detail_has_layers_of_the_thinnest_pen(scene, tmp_path):
+    lines = replace(scene.lines, role=np.resize(["outline", "detail"], len(scene.lines)))
+    export(replace(scene, lines=lines), tmp_path / "a.dxf")
+    document = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
+    weights = {layer.dxf.name: layer.dxf.lineweight for layer in document.layers if layer.dxf.name.startswith("LINES_")}
+    assert len(weights) == 12
+    assert {weight for name, weight in weights.items() if name.endswith("_DETAIL")} == {9}
+    assert min(weight for name, weight in weights.items() if not name.endswith("_DETAIL")) > 9
+    role = dict(zip(scene.lines.id.tolist(), lines.role.tolist(), strict=True))
+    for line in document.modelspace().query("LINE"):
+        assert line.dxf.layer.endswith("_DETAIL") == (role[values(line, 1071)[0]] == "detail")

@@ -374,3 +374,26 @@ def test_the_unit_is_told_and_the_scale_is_told_or_said_to_be_unknown(scene, fre
             data = Usd.Stage.Open(str(path)).ExportToString().encode()
         assert note in data
         assert UNITS.get(suffix, b"") in data
+
+
+BY_ROLE = [suffix for suffix, row in FORMATS.items() if "roles" in [option.key for option in row.options]]
+
+
+@pytest.mark.parametrize("suffix", BY_ROLE)
+def test_groups_by_role_are_there_unless_they_are_left_out(scene, tmp_path, suffix):
+    drawn = replace(
+        scene, lines=replace(scene.lines, role=np.resize(["outline", "opening", "detail"], len(scene.lines)))
+    )
+    by_role = written(drawn, tmp_path / f"a{suffix}")
+    export(drawn, tmp_path / f"b{suffix}", options={"roles": False})
+    plain = (tmp_path / f"b{suffix}").read_bytes().lower()
+    assert by_role != plain
+    if suffix not in (".usdc", ".usdz"):  # these are compressed
+        assert b"lines_x_boundary_detail" in by_role
+        assert b"lines_x_boundary_opening" in by_role
+        assert b"boundary_detail" not in plain
+        assert b"boundary_opening" not in plain
+
+
+def test_every_format_with_groups_has_those_of_roles():
+    assert BY_ROLE == BY_BAND != []

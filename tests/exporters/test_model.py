@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from exporters.model import FREE_UNIT, KNOWN_UNIT, SHORTEST_LINE, build_model, signed_area
+from linecad.scene import ROLES
 
 BANDS = {"sure": 0.99, "likely": 0.7, "guess": 0.2}  # the probabilities that the scene has
 
@@ -101,3 +102,33 @@ def test_bands_are_left_alone_where_nobody_asks_or_the_scene_does_not_tell(told,
     names = [group.name for group in model.groups]
     assert [group.name for group in build_model(told).groups] == names
     assert [group.name for group in build_model(scene, by_band=True).groups] == names
+
+
+@pytest.fixture
+def drawn(scene):
+    """The scene with lines of all roles."""
+    return replace(scene, lines=replace(scene.lines, role=np.resize(ROLES, len(scene.lines))))
+
+
+def test_lines_stand_in_the_group_of_their_role(drawn):
+    model = build_model(drawn)
+    role = dict(zip(drawn.lines.id.tolist(), drawn.lines.role.tolist(), strict=True))
+    assert sorted(number for group in model.groups for number in group.ids.tolist()) == sorted(role)
+    for group in model.groups:
+        assert {role[number] for number in group.ids.tolist()} == {group.role}
+        assert group.name.endswith("boundary" if group.role == "outline" else f"boundary_{group.role}")
+    names = [group.name for group in model.groups]
+    assert names[:3] == ["lines_x_boundary", "lines_x_boundary_opening", "lines_x_boundary_detail"]
+    assert len(set(names)) == len(names)
+
+
+def test_roles_and_bands_go_together(drawn, told):
+    both = replace(drawn, lines=replace(drawn.lines, probability=told.lines.probability))
+    names = {group.name for group in build_model(both, by_band=True).groups}
+    assert {"lines_x_boundary_sure", "lines_x_boundary_detail_guess", "lines_x_boundary_opening_likely"} <= names
+
+
+def test_roles_are_left_alone_where_that_is_asked_for(drawn, model):
+    plain = build_model(drawn, by_role=False)
+    assert [group.name for group in plain.groups] == [group.name for group in model.groups]
+    assert [group.ids.tolist() for group in plain.groups] == [group.ids.tolist() for group in model.groups]

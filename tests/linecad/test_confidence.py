@@ -95,3 +95,12 @@ def test_where_nothing_would_be_left_the_highest_is_named(scene):
 def test_what_is_left_is_a_scene_file(scene, tmp_path):
     write_scene(keep_probable(scene, 0.9), tmp_path / "a.json")
     assert read_scene(tmp_path / "a.json").lines.probability.tolist() == [0.97, 0.9]
+
+
+def test_pieces_and_roles_go_with_their_lines(scene):
+    pieces = tuple(np.full((number, 2, 2), float(number)) for number in range(4))
+    role = ["outline", "opening", "detail", "outline"]
+    lines = replace(scene.lines, probability=[0.9, 0.1, 0.8, 0.2], pieces=pieces, role=role)
+    found = keep_probable(replace(scene, lines=lines), 0.5).lines
+    assert found.role.tolist() == ["outline", "detail"]
+    assert [each.tolist() for each in found.pieces] == [pieces[row].tolist() for row in (0, 2)]

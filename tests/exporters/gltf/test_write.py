@@ -80,7 +80,9 @@ def test_every_line_is_at_its_place_with_its_id(glb, model):
         numbers = glb.array(primitive["attributes"]["_LINEID"]).ravel()
         np.testing.assert_array_equal(numbers, np.repeat(group.ids, 2))
         extras = glb.tree["meshes"][glb.node(group.name)["mesh"]]["extras"]
-        assert extras == {"axis": "xyz"[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist()}
+        assert extras == {
+            "axis": "xyz"[group.axis], "boundary": group.is_boundary, "role": "outline", "line_ids": group.ids.tolist(),
+        }  # fmt: skip
 
 
 def test_every_face_is_there_as_its_triangles_with_normals_towards_the_camera(glb, model):

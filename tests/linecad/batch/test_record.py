@@ -137,6 +137,7 @@ def test_options_hash_changes_with_everything_that_decides(tmp_path):
         options_hash(Conversion(), (".json", ".png")),
         options_hash(Conversion(focal=500.0), (".json",)),
         options_hash(Conversion(confidence=0.5), (".json",)),
+        options_hash(Conversion(detail="none"), (".json",)),
         options_hash(Conversion(camera=camera), (".json",)),
         options_hash(Conversion(camera=other), (".json",)),
         options_hash(Conversion(depth=camera), (".json",)),

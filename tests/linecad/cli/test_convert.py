@@ -304,3 +304,12 @@ def test_a_map_reaches_the_program(fails, folder, monkeypatch):
     monkeypatch.setattr(linecad.pipeline, "place_lines", look)
     arguments = ["convert", ROOM, "--depth", "map.npz", "--option", "depth-kind=distance", "-o", "a.json"]
     assert f"seen (1067, 1600) distance {DEPTHS.max()}" in fails(*arguments)
+
+
+def test_detail_filters_every_file_and_the_summary(folder, capsys):
+    assert main(["convert", str(ROOM), "-o", "a.json", "--fast", "--quiet"]) == 0
+    outlines = [line for line in read_scene(folder / "a.json").lines.role.tolist() if line == "outline"]
+    capsys.readouterr()
+    assert main(["convert", str(ROOM), "-o", "b.json", "--fast", "--detail", "none", "--quiet"]) == 0
+    assert read_scene(folder / "b.json").lines.role.tolist() == outlines != []
+    assert capsys.readouterr().out.startswith(f"{len(outlines)} lines, ")

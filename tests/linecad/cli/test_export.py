@@ -284,3 +284,35 @@ def test_a_scene_that_does_not_tell_has_no_confidence(fails, scene_file, folder)
         line.pop("probability", None)
     (folder / "silent.json").write_text(json.dumps(scene), encoding="utf-8")
     assert "leave out --confidence" in fails("export", "silent.json", "-o", "a.json", "--confidence", "0.5")
+
+
+@pytest.fixture
+def drawn(scene_file, folder):
+    """The scene with lines of all roles."""
+    scene = json.loads(scene_file.read_text(encoding="utf-8"))
+    for number, line in enumerate(scene["lines"]):
+        line["role"] = ("outline", "opening", "detail")[number % 3]
+    (folder / "drawn.json").write_text(json.dumps(scene), encoding="utf-8")
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("given", "roles"),
+    [
+        (["--detail", "none"], {"outline"}),
+        (["--detail", "openings"], {"outline", "opening"}),
+        (["--detail", "all"], {"outline", "opening", "detail"}),
+        ([], {"outline", "opening", "detail"}),
+    ],
+)
+def test_detail_chooses_the_lines_of_every_file(folder, drawn, given, roles):
+    outputs = ["-o", "a.json", "-o", "a.obj", "--option", "textures=off"]
+    assert main(["export", "drawn.json", *outputs, *given, "--quiet"]) == 0
+    kept = json.loads((folder / "a.json").read_text(encoding="utf-8"))
+    assert [line["id"] for line in kept["lines"]] == [line["id"] for line in drawn["lines"] if line["role"] in roles]
+    assert (folder / "a.obj").read_text().count("\nl ") == len(kept["lines"])
+
+
+@pytest.mark.usefixtures("drawn")
+def test_a_detail_that_is_none_of_the_words_is_wrong_usage(fails):
+    assert "'some'" in fails("export", "drawn.json", "-o", "a.json", "--detail", "some", code=2)

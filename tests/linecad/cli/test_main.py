@@ -126,7 +126,7 @@ def test_the_help_of_convert_fits_one_screen(help_of):
     flags = set(re.findall(r"--[a-z-]+", text.split("options:")[1].split("example:")[0])) - {"--formats"}
     assert flags == {
         "--help", "--output", "--camera", "--focal", "--corrections", "--depth", "--scale", "--camera-height",
-        "--confidence", "--fast", "--time-limit", "--option", "--quiet", "--verbose",
+        "--confidence", "--detail", "--fast", "--time-limit", "--option", "--quiet", "--verbose",
     }  # fmt: skip
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from exporters.formats import FORMATS
 from linecad.cli.main import main
+from linecad.confidence import with_lines
 from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.depth_layers import DIVERGING
 from linecad.editing.document import document_of
@@ -44,12 +45,31 @@ class TestState:
     def test_after_a_solve_it_tells_the_model(self, page, made_photo):
         state = page.solve()
         scene = reconstruct(made_photo, Options())
-        assert sum(line["ends"] is not None for line in state["lines"]) == len(scene.lines)
+        pieces = [len(scene.lines.segments_of(row)) for row in range(len(scene.lines))]
+        assert sum(line["ends"] is not None for line in state["lines"]) == sum(pieces)
         assert len(crossings(state, real=True)) == scene.intersections.real.sum()
         assert [plane["offset"] for plane in state["planes"]] == [plane.offset for plane in scene.planes]
         assert state["solve"]["state"] == "idle"
         assert (state["solve"]["status"], state["solve"]["gap"]) == ("optimal", 0.0)
         assert state["solve"]["seconds"] > 0
+
+    def test_pieces_of_one_line_stand_where_it_does(self, page):
+        page.solve()
+        now = page.session.now()
+        scene = now.model.scene
+        plane = scene.planes[0]
+        first, second = [line for line in plane.lines if scene.lines.axis[line] == (plane.axis + 1) % 3][:2]
+        joined = with_lines(scene, scene.lines.id != second)
+        row = int(np.flatnonzero(joined.lines.id == first)[0])
+        pieces = [np.zeros((0, 2, 2))] * len(joined.lines)
+        pieces[row] = scene.lines.segment[[first, second]]
+        joined = replace(joined, lines=replace(joined.lines, pieces=tuple(pieces)))
+        document = document_of(replace(now, model=replace(now.model, scene=joined)), 1, True)
+        segments = pieces[row].tolist()
+        ids = [line["id"] for line in document["lines"] if line["segment"] in segments]
+        ends = [line["ends"] for line in document["lines"] if line["segment"] in segments]
+        assert ends == [joined.lines.ends[row].tolist()] * 2
+        assert set(ids) <= set(document["planes"][0]["lines"])
 
     def test_it_tells_how_likely_the_depth_of_each_line_is_right(self, page):
         page.solve()

@@ -122,3 +122,14 @@ def test_faces_fill_where_no_line_is_and_those_of_other_lines_do_not(scene_of):
     assert dense_depths(scene, pixels) == pytest.approx([4, 8])
     assert dense_depths(scene, pixels, np.array([True, False, True])) == pytest.approx([4, 8])
     assert dense_depths(scene, pixels, np.array([True, True, False])) == pytest.approx([4, np.nan], nan_ok=True)
+
+
+def test_a_line_joined_from_pieces_is_where_they_are(scene_of):
+    """Not where nothing was seen between them, and also where a piece is that its segment does not lie on."""
+    scene = scene_of([4])
+    (left, row), (right, _) = scene.lines.segment[0]
+    pieces = np.array([[[left, row], [left + 100, row]], [[left + 200, row + 6], [right, row + 6]]])
+    joined = replace(scene, lines=replace(scene.lines, pieces=(pieces,)))
+    pixels = np.array([[left + 50, row], [left + 150, row], [left + 250, row + 8]])
+    assert nearest_lines(scene, pixels, np.ones(1, bool)).tolist() == [0, 0, NO_LINE]
+    assert nearest_lines(joined, pixels, np.ones(1, bool)).tolist() == [0, NO_LINE, 0]

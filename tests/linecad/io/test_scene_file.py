@@ -25,6 +25,7 @@ from linecad.scene import (
     DEPTH_KINDS,
     QUALITIES,
     REASONS,
+    ROLES,
     Camera,
     Certainty,
     DepthMapReport,
@@ -96,6 +97,9 @@ def depth_map_reports(draw: st.DrawFn) -> DepthMapReport:
     )
 
 
+pieces = st.lists(st.tuples(*[numbers] * 4), max_size=3).map(lambda rows: np.array(rows).reshape(-1, 2, 2))
+
+
 @st.composite
 def rings(draw: st.DrawFn, axis: int, offset: float) -> np.ndarray:
     ring = np.array(draw(st.lists(st.tuples(*[coordinates] * 3), min_size=3, max_size=6)))
@@ -143,6 +147,8 @@ def scenes(draw: st.DrawFn) -> Scene:
             confidence=several(n, st.sampled_from(CONFIDENCES)),
             probability=several(n, st.floats(0, 1)) if draw(st.booleans()) else (),
             by_depth_map=several(n, st.booleans()) if draw(st.booleans()) else (),
+            role=several(n, st.sampled_from(ROLES)) if draw(st.booleans()) else (),
+            pieces=tuple(draw(pieces) for _ in range(n)) if draw(st.booleans()) else (),
         ),
         intersections=Intersections(
             lines=several(m, st.lists(st.sampled_from(line_ids if m else [0, 1]), min_size=2, max_size=2, unique=True)),
@@ -285,6 +291,7 @@ OPTIONAL = [
     *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
     *("depth_map", "depth_map.left_out", "lines[2].by_depth_map"),
+    *("lines[0].role", "lines[0].pieces"),
 ]
 
 
@@ -396,6 +403,9 @@ WRONG = [
     ("lines[0].boundary", 1, "lines[0].boundary is 1, expected true or false"),
     ("lines[0].component", -1, "lines[0].component is -1, expected a whole number from 0"),
     ("lines[0].confidence", "sure", 'lines[0].confidence is "sure", expected one of proven, supported, weak'),
+    ("lines[0].role", "edge", 'lines[0].role is "edge", expected one of outline, opening, detail'),
+    ("lines[0].pieces", [[[0, 1]]], "lines[0].pieces[0] is a list of 1, expected a list of 2"),
+    ("lines[0].pieces", None, "lines[0].pieces is null, expected a list"),
     ("intersections[0].lines", [0, 3], "intersections[0].lines[1] is 3, but no line has this id"),
     ("intersections[0].lines", [0, -1], "intersections[0].lines[1] is -1, expected a whole number from 0"),
     ("intersections[0].lines", [0, 0], "intersections[0].lines[1] is 0, as is intersections[0].lines[0]"),
@@ -556,6 +566,16 @@ def test_a_scene_without_a_depth_map_says_nothing_of_one() -> None:
     assert "depth_map" not in scene_to_json(scene)
 
 
+def test_a_scene_of_an_earlier_version_has_outlines_alone() -> None:
+    document = json.loads(EXAMPLE)
+    for line in document["lines"]:
+        line.pop("role")
+        line.pop("pieces", None)
+    lines = scene_from_json(json.dumps(document)).lines
+    assert lines.role.tolist() == ["outline"] * 3
+    assert [len(each) for each in lines.pieces] == [0] * 3
+
+
 def test_lines_that_others_place_do_not_name_the_depth_map() -> None:
     text = changed("lines[0].by_depth_map", False)
     assert scene_to_json(scene_from_json(text)) == EXAMPLE
@@ -695,7 +715,7 @@ def named_in_tables(heading: str) -> list[str]:
         ("The top object", "", ()),
         ("`camera`", "camera", CAMERA_SOURCES),
         ("`certainty`", "certainty", QUALITIES),
-        ("`lines[]`", "lines[2]", CONFIDENCES),
+        ("`lines[]`", "lines[2]", (*CONFIDENCES, *ROLES, "pieces")),
         ("`intersections[]`", "intersections[0]", REASONS),
         ("`planes[]`", "planes[0]", ()),
         ("`planes[].faces[]`", "planes[0].faces[0]", ()),

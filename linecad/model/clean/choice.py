@@ -1,0 +1,31 @@
+"""Which lines are written, by what they are drawn for: --detail of the command line."""
+
+from dataclasses import replace
+from typing import Literal, get_args
+
+import numpy as np
+
+from linecad.confidence import with_lines
+from linecad.scene import DETAIL, OPENING, OUTLINE, Scene
+
+Detail = Literal["none", "openings", "all"]
+DETAILS: tuple[Detail, ...] = get_args(Detail)
+_ROLES: dict[Detail, tuple[str, ...]] = {
+    "none": (OUTLINE,),
+    "openings": (OUTLINE, OPENING),
+    "all": (OUTLINE, OPENING, DETAIL),
+}
+
+
+def keep_drawn(scene: Scene, detail: Detail) -> Scene:
+    """The scene with the lines that `detail` asks for, and with all planes and faces.
+
+    A note counts what was left out; where that is nothing, the scene comes back as it is.
+    """
+    kept = np.isin(scene.lines.role, _ROLES[detail])
+    if kept.all():
+        return scene
+    rest = with_lines(scene, kept)
+    what = "detail" if detail == "openings" else "openings and detail"
+    note = f"{len(scene.lines) - len(rest.lines)} of {len(scene.lines)} lines are left out: they are {what}"
+    return replace(rest, notes=(*scene.notes, note))
