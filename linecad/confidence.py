@@ -16,8 +16,9 @@ def keep_probable(scene: Scene, least: float) -> Scene:
     """The scene of the lines whose probability is at least `least` (0 to 1), everything else by its id as before.
 
     With a line go its crossings and its place in planes. A plane goes, with its faces, where none of its lines stays;
-    where one stays, all its faces do. A note counts what was left out; where that is nothing, the scene comes back as
-    it is. Raises ConfidenceError where the scene tells no probabilities, or no line is left.
+    where one stays, all its faces do. Openings go with the planes of their walls.
+    A note counts what was left out; where that is nothing, the scene comes back as it is. Raises ConfidenceError where
+    the scene tells no probabilities, or no line is left.
     """
     lines = scene.lines
     if not len(lines.probability):
@@ -43,6 +44,7 @@ def keep_probable(scene: Scene, least: float) -> Scene:
         lines=_rows(lines, kept),
         intersections=_rows(crossings, both),
         planes=planes,
+        openings=tuple(opening for opening in scene.openings if opening.plane in {plane.id for plane in planes}),
         notes=(*scene.notes, _note(scene, int(kept.sum()), len(planes), least)),
     )
 

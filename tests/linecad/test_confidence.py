@@ -8,7 +8,7 @@ import pytest
 from linecad.confidence import keep_probable
 from linecad.errors import ConfidenceError
 from linecad.io.scene_file import read_scene, write_scene
-from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.scene import Camera, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport
 
 RING = np.array([[0, 4, 0], [1, 4, 0], [0, 4, 1]])
 
@@ -95,3 +95,9 @@ def test_where_nothing_would_be_left_the_highest_is_named(scene):
 def test_what_is_left_is_a_scene_file(scene, tmp_path):
     write_scene(keep_probable(scene, 0.9), tmp_path / "a.json")
     assert read_scene(tmp_path / "a.json").lines.probability.tolist() == [0.97, 0.9]
+
+
+def test_openings_go_with_the_planes_of_their_walls(scene):
+    windows = tuple(Opening(wall, wall, 0.0, 1.0, 0.0, 1.0, "window") for wall in (0, 3))
+    left = keep_probable(replace(scene, openings=windows), 0.5)
+    assert [each.plane for each in left.openings] == [0]
