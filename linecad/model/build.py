@@ -16,6 +16,7 @@ from linecad.model.body_scales import join_bodies
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
+from linecad.model.openings.find import find_openings
 from linecad.model.planes import find_planes
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet
@@ -111,6 +112,8 @@ def build_scene(
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
     new_id = np.cumsum(found.kept) - 1
+    pixels = None if placed is None else placed.setting.sight.pixels
+    openings = find_openings(planes, lines, view.camera, view.frame.rotation, pixels)
     pairs = _renumbered(decision.planar_pairs, found.component, new_id)
     return Scene(
         photo=view.photo,
@@ -126,6 +129,7 @@ def build_scene(
         notes=(*_notes(view, graph, solution, found, depth_map), *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
         depth_map=depth_map,
+        openings=openings,
     )  # fmt: skip
 
 
