@@ -112,8 +112,7 @@ def build_scene(
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
     new_id = np.cumsum(found.kept) - 1
-    pixels = None if placed is None else placed.setting.sight.pixels
-    openings = find_openings(planes, lines, view.camera, view.frame.rotation, pixels)
+    openings = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
     pairs = _renumbered(decision.planar_pairs, found.component, new_id)
     return Scene(
         photo=view.photo,
