@@ -17,8 +17,9 @@ def keep_probable(scene: Scene, least: float) -> Scene:
     """The scene of the lines whose probability is at least `least` (0 to 1), everything else by its id as before.
 
     With a line go its crossings and its place in planes. A plane goes, with its faces, where none of its lines stays;
-    where one stays, all its faces do. A note counts what was left out; where that is nothing, the scene comes back as
-    it is. Raises ConfidenceError where the scene tells no probabilities, or no line is left.
+    where one stays, all its faces do. Openings go with the planes of their walls.
+    A note counts what was left out; where that is nothing, the scene comes back as it is. Raises ConfidenceError where
+    the scene tells no probabilities, or no line is left.
     """
     lines = scene.lines
     if not len(lines.probability):
@@ -36,8 +37,11 @@ def keep_probable(scene: Scene, least: float) -> Scene:
             f"{probability.max():.3g}; choose a smaller --confidence"
         )
     rest = with_lines(scene, kept)
-    planes = tuple(plane for plane in rest.planes if plane.lines)
-    return replace(rest, planes=planes, notes=(*scene.notes, _note(scene, int(kept.sum()), len(planes), least)))
+    bare = {plane.id for plane in scene.planes if not plane.lines}
+    planes = tuple(plane for plane in rest.planes if plane.lines or plane.id in bare)  # a ground has no lines
+    openings = tuple(each for each in scene.openings if each.plane in {plane.id for plane in planes})
+    note = _note(scene, int(kept.sum()), len(planes), least)
+    return replace(rest, planes=planes, openings=openings, notes=(*scene.notes, note))
 
 
 def with_lines(scene: Scene, kept: Bool) -> Scene:

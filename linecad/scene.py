@@ -27,6 +27,7 @@ Quality = Literal["good", "doubtful", "poor"]
 FaceKind = Literal["wall", "ground", "ceiling", "roof", "window", "door", "other"]
 Role = Literal["outline", "opening", "detail"]  # what a line is drawn for (linecad.model.clean.roles)
 DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]  # what a depth map measures (linecad.depth)
+OpeningKind = Literal["window", "door"]
 # Why a crossing is real or not (linecad.decide.decision, docs/reference/scene-file.md). Real: annotated, chosen.
 Reason = Literal[
     "annotated", "chosen", "not chosen", "impossible", "uninformative",
@@ -41,6 +42,7 @@ ROLES: tuple[Role, ...] = get_args(Role)
 OUTLINE, OPENING, DETAIL = ROLES
 QUALITIES: tuple[Quality, ...] = get_args(Quality)
 DEPTH_KINDS: tuple[DepthKind, ...] = get_args(DepthKind)
+OPENING_KINDS: tuple[OpeningKind, ...] = get_args(OpeningKind)
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,6 +239,37 @@ class Plane:
 
 
 @dataclass(frozen=True)
+class Opening:
+    """A window or a door: a rectangle in the vertical plane of its wall.
+
+    `u` runs along the horizontal axis of the plane, `v` along z; lengths are in the scene's unit.
+    """
+
+    id: int  # unique in the scene
+    plane: int  # id of the wall's plane
+    u0: float  # world, from
+    u1: float  # to
+    v0: float  # the sill
+    v1: float  # the head
+    kind: OpeningKind
+    recess: float | None = None  # of the pane behind the wall; None where nothing tells it
+    panel: float | None = None  # offset of the pane's plane; None as `recess` is
+    is_completed: bool = False  # not seen: the rows and columns of its facade have it
+    shape: int = 0  # the same for all openings of one size, exactly
+
+    def __post_init__(self) -> None:
+        numbers = [self.u0, self.u1, self.v0, self.v1, self.recess or 0.0, self.panel or 0.0]
+        if not np.isfinite(numbers).all():
+            raise ValueError(f"Opening {self.id} holds a number that is not finite")
+        if not (self.u0 < self.u1 and self.v0 < self.v1):
+            raise ValueError(f"Opening {self.id} has no area, expected u0 < u1 and v0 < v1")
+        if self.kind not in OPENING_KINDS:
+            raise ValueError(f"Opening {self.id} is a {self.kind!r}, expected {' or '.join(OPENING_KINDS)}")
+        if (self.recess is None) != (self.panel is None) or (self.recess is not None and self.recess <= 0):
+            raise ValueError(f"Opening {self.id} has recess {self.recess} and panel {self.panel}")
+
+
+@dataclass(frozen=True)
 class SolveReport:
     """How the answer was found, as it stands in the scene file."""
 
@@ -292,6 +325,7 @@ class Scene:
     notes: tuple[str, ...] = field(default=())
     certainty: Certainty | None = None  # of camera and rotation; None in scenes that do not tell
     depth_map: DepthMapReport | None = None  # None where none was given
+    openings: tuple[Opening, ...] = ()
 
     def __post_init__(self) -> None:
         freeze(self, "rotation", np.float64, (3, 3))
@@ -302,6 +336,11 @@ class Scene:
             if not ids <= known:
                 raise ValueError(f"{name} names line {min(ids - known)}, which the scene does not have")
         check_unique("Scene.planes", [plane.id for plane in self.planes])
+        check_unique("Scene.openings", [opening.id for opening in self.openings])
+        walls = {plane.id for plane in self.planes if plane.axis != 2}
+        for opening in self.openings:
+            if opening.plane not in walls:
+                raise ValueError(f"Opening {opening.id} is in plane {opening.plane}, which is no wall of the scene")
         check_unique("Scene.faces", [face.id for plane in self.planes for face in plane.faces])
         if self.metres_per_unit is not None and not 0 < self.metres_per_unit < np.inf:
             raise ValueError(f"Scene.metres_per_unit is {self.metres_per_unit}, expected a positive number")

@@ -185,6 +185,7 @@ def _add_window(
     drop, has_blind = float(rng.uniform(0.15, 0.6)), rng.random() < style.blinds
     if not detailed:
         wall.openings.append((along, up))
+        wall.name_opening(along, up)
         sides = ((along[1] - along[0]) * wall.along, (up[1] - up[0]) * UP)
         wall.model.outline(wall.at(along[0], up[0]), *sides, GLASS)
         return
@@ -229,7 +230,7 @@ def _add_bars(wall: Wall, along: Interval, up: Interval, style: Style, panes: tu
 def _add_door(wall: Wall, along: Interval, top: float, style: Style) -> None:
     """A door with a light above it, two rows of panels and a step before it."""
     deep, leaf = 0.22, 2.15
-    wall.opening(along, (0.0, top), deep, style.trim)
+    wall.opening(along, (0.0, top), deep, style.trim, is_door=True)
     wall.panel(along, (0.0, leaf), -deep, style.door)
     wall.panel(along, (leaf, top), -deep, GLASS)
     wall.box(along, (leaf, leaf + 0.09), (-deep, -deep + 0.07), style.door, "-c -a +a")

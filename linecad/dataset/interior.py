@@ -79,6 +79,7 @@ def _add_door(wall: Wall, start: float, rng: Generator) -> None:
     leaf = Material("plain", DOORS[rng.integers(len(DOORS))]) if rng.random() < 0.4 else WHITE
     along, top = (start, start + 0.9), 2.05
     wall.panel(along, (0.0, top), 0.02, leaf)
+    wall.name_opening(along, (0.0, top), is_door=True)
     for low, high in ((along[0] - 0.1, along[0]), (along[1], along[1] + 0.1)):
         wall.box((low, high), (0.0, top), (0.0, 0.05), WHITE, "-c -b")
     wall.box((along[0] - 0.1, along[1] + 0.1), (top, top + 0.12), (0.0, 0.055), WHITE)

@@ -14,7 +14,7 @@ from numpy.random import Generator
 from linecad.dataset.choice import MOST_TRIES, judge
 from linecad.dataset.depth_maps import NARROWEST, WIDEST, MapKind, draw_depth_map
 from linecad.dataset.light import Light, draw_light
-from linecad.dataset.modelling import Model
+from linecad.dataset.modelling import Model, parallelograms
 from linecad.dataset.rasteriser import rasterise, visible_pieces
 from linecad.dataset.scenes import draw_scene, scene_kind
 from linecad.dataset.store import (
@@ -30,7 +30,7 @@ from linecad.dataset.store import (
     write_scene_folder,
 )
 from linecad.dataset.textures import Image
-from linecad.dataset.truth import Truth
+from linecad.dataset.truth import TrueOpenings, Truth
 from linecad.dataset.view import View
 from linecad.errors import DatasetError, LinecadError, OutputError
 from linecad.io.locks import alone
@@ -124,6 +124,11 @@ def measure(draft: Draft, width: int, height: int) -> Truth:
         pieces=pieces,
         piece_edge=piece_edge,
         ids=ids,
+        openings=TrueOpenings(
+            parallelograms(np.array(draft.model.openings).reshape(-1, 3, 3) - draft.view.eye),
+            np.array(draft.model.opening_is_door, bool),
+            np.array(draft.model.opening_body, np.int64),
+        ),
     )
 
 

@@ -41,6 +41,9 @@ class Model:
     ends: list[Float] = field(default_factory=list)  # each (2, 3)
     edge_body: list[int] = field(default_factory=list)
     kinds: list[BodyKind] = field(default_factory=list)  # of the bodies
+    openings: list[Float] = field(default_factory=list)  # windows and doors in walls, each (3, 3) as in `corners`
+    opening_is_door: list[bool] = field(default_factory=list)
+    opening_body: list[int] = field(default_factory=list)
 
     def start_body(self, kind: BodyKind) -> None:
         """What is added from here on belongs to a new body."""
@@ -139,9 +142,18 @@ class Wall:
         corner = self.at(along[0], up[0], out)
         self.model.quad(corner, (along[1] - along[0]) * self.along, (up[1] - up[0]) * UP, material)
 
-    def opening(self, along: Interval, up: Interval, deep: float, reveal: Material) -> None:
+    def name_opening(self, along: Interval, up: Interval, is_door: bool = False) -> None:
+        """Say that a window or a door is here; nothing is cut or added."""
+        self.model.openings.append(
+            np.array([self.at(along[0], up[0]), self.at(along[1], up[0]), self.at(along[0], up[1])])
+        )
+        self.model.opening_is_door.append(is_door)
+        self.model.opening_body.append(len(self.model.kinds) - 1)
+
+    def opening(self, along: Interval, up: Interval, deep: float, reveal: Material, is_door: bool = False) -> None:
         """Cut a hole (before `build` is called) and line it."""
         self.openings.append((along, up))
+        self.name_opening(along, up, is_door)
         self.box(along, up, (-deep, 0.0), reveal, "-c +c")
 
     def build(self, along: Interval, up: Interval, material: Material) -> None:

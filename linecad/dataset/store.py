@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
 from linecad.dataset.modelling import parallelograms
-from linecad.dataset.truth import NOTHING, Truth
+from linecad.dataset.truth import NOTHING, TrueOpenings, Truth
 from linecad.errors import DatasetError, OutputError
 from linecad.io.files import write_atomically, write_text_atomically
 from linecad.io.strict_json import JsonError, parse
@@ -51,6 +51,13 @@ WHOLE_ARRAYS: dict[str, Shape] = {
     "piece_edge": ("V",),
     "ids": ("H", "W"),
 }
+# Of windows and doors: all of them or, in files of earlier versions, none.
+OPENING_ARRAYS: dict[str, Shape] = {
+    "openings": ("O", 3, 3),
+    "opening_is_door": ("O",),
+    "opening_body": ("O",),
+}
+REAL_NAMES = {*REAL_ARRAYS, "openings"}
 
 
 @dataclass(frozen=True)
@@ -141,6 +148,10 @@ def write_truth(truth: Truth, folder: Path) -> None:
         "piece_edge": truth.piece_edge,
         "ids": truth.ids,
     }
+    if truth.openings is not None:
+        real["openings"] = truth.openings.corners[:, [0, 1, 3]]
+        whole["opening_is_door"] = truth.openings.is_door
+        whole["opening_body"] = truth.openings.body
     arrays = real | {name: numbers.astype(np.int32) for name, numbers in whole.items()}
     write_atomically(folder / TRUTH, lambda path: _write_arrays(path, arrays))
 
@@ -174,7 +185,14 @@ def read_truth(folder: Path) -> Truth:
         pieces=real["pieces"],
         piece_edge=whole["piece_edge"],
         ids=whole["ids"],
+        openings=_openings(real, whole),
     )
+
+
+def _openings(real: dict[str, Float], whole: dict[str, Int]) -> TrueOpenings | None:
+    if "openings" not in real:
+        return None
+    return TrueOpenings(parallelograms(real["openings"]), whole["opening_is_door"] == 1, whole["opening_body"])
 
 
 def _read_arrays(path: Path) -> tuple[dict[str, Float], dict[str, Int]]:
@@ -186,8 +204,9 @@ def _read_arrays(path: Path) -> tuple[dict[str, Float], dict[str, Int]]:
         version = int(found["version"])
         if version != VERSION:
             raise ValueError(f"its version is {version}, this linecad reads {VERSION}")
-        real = {name: _of_kind(found[name], "f", name).astype(np.float64) for name in REAL_ARRAYS}
-        whole = {name: _of_kind(found[name], "i", name).astype(np.int64) for name in WHOLE_ARRAYS}
+        names = [*REAL_ARRAYS, *WHOLE_ARRAYS, *(OPENING_ARRAYS if set(OPENING_ARRAYS) & set(found.files) else ())]
+        real = {name: _of_kind(found[name], "f", name).astype(np.float64) for name in names if name in REAL_NAMES}
+        whole = {name: _of_kind(found[name], "i", name).astype(np.int64) for name in names if name not in REAL_NAMES}
     return real, whole
 
 
@@ -200,7 +219,8 @@ def _of_kind(array: NDArray[Any], kind: str, name: str) -> NDArray[Any]:
 def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
     """Raise ValueError where shapes, indices or numbers are not what a truth has."""
     lengths: dict[str, int] = {}
-    for name, shape in (REAL_ARRAYS | WHOLE_ARRAYS).items():
+    told = OPENING_ARRAYS if "openings" in real else {}
+    for name, shape in (REAL_ARRAYS | WHOLE_ARRAYS | told).items():
         found = (real[name] if name in real else whole[name]).shape
         wanted = [
             length if isinstance(length, int) else lengths.setdefault(length, have)
@@ -220,6 +240,8 @@ def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
         "body": (0, bodies),
         "edge_body": (0, bodies),
     }
+    if told:
+        limits |= {"opening_is_door": (0, 2), "opening_body": (0, bodies)}
     for name, (low, high) in limits.items():
         named = whole[name]
         if named.size and not low <= named.min() <= named.max() < high:

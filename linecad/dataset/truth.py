@@ -14,6 +14,15 @@ NOTHING = -1  # in the id map: the sky
 
 
 @dataclass(frozen=True, eq=False)
+class TrueOpenings:
+    """The O windows and doors of a made scene, seen or not."""
+
+    corners: Float  # (O, 4, 3) of the holes, in the walls' planes, m, in order around
+    is_door: Bool  # (O,)
+    body: Int  # (O,) the building that has it
+
+
+@dataclass(frozen=True, eq=False)
 class Truth:
     """The ground truth of one made photo of Q quads and M edges, V visible pieces of edges."""
 
@@ -29,6 +38,7 @@ class Truth:
     pieces: Float  # (V, 2, 2) px, ends of the visible pieces of edges, inside the photo
     piece_edge: Int  # (V,) the edge that each piece shows
     ids: Int  # (H, W) the quad that the centre of each pixel shows, or NOTHING
+    openings: TrueOpenings | None = None  # None in scenes that were made before they were told
 
     def planes(self) -> tuple[Float, Float]:
         """Unit normals (Q, 3) and offsets (Q,), m, of the quads: normal . P = offset."""

@@ -10,6 +10,7 @@ from linecad.scene import (
     DepthMapReport,
     Intersections,
     Lines,
+    Opening,
     Plane,
     Scene,
 )
@@ -42,6 +43,7 @@ def document_of(scene: Scene) -> dict[str, object]:
         "lines": _line_records(scene.lines),
         "intersections": _crossing_records(scene.intersections),
         "planes": [_plane_record(plane) for plane in scene.planes],
+        **({"openings": [_opening_record(each) for each in scene.openings]} if scene.openings else {}),
         "solve": {
             "solver": solve.solver,
             "formulation": solve.formulation,
@@ -107,6 +109,20 @@ def _plane_record(plane: Plane) -> dict[str, object]:
             }
             for face in plane.faces
         ],
+    }
+
+
+def _opening_record(opening: Opening) -> dict[str, object]:
+    return {
+        "id": int(opening.id),
+        "plane": int(opening.plane),
+        "kind": opening.kind,
+        "u": [float(opening.u0), float(opening.u1)],
+        "v": [float(opening.v0), float(opening.v1)],
+        "recess": None if opening.recess is None else float(opening.recess),
+        "panel": None if opening.panel is None else float(opening.panel),
+        "shape": int(opening.shape),
+        **({"completed": True} if opening.is_completed else {}),
     }
 
 

@@ -58,7 +58,7 @@ def _layout(key: str, value: object) -> str:
     """A member of the top object, its records one in each line."""
     if key == "planes" and isinstance(value, list):
         return _rows([_plane_rows(plane) for plane in value], " ")
-    if key in ("lines", "intersections", "notes") and isinstance(value, list):
+    if key in ("lines", "intersections", "openings", "notes") and isinstance(value, list):
         return _rows([_compact(record) for record in value], " ")
     return _compact(value)
 

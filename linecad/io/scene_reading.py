@@ -15,6 +15,7 @@ from linecad.scene import (
     CONFIDENCES,
     DEPTH_KINDS,
     FACE_KINDS,
+    OPENING_KINDS,
     QUALITIES,
     REASONS,
     ROLES,
@@ -27,6 +28,8 @@ from linecad.scene import (
     FaceKind,
     Intersections,
     Lines,
+    Opening,
+    OpeningKind,
     Plane,
     Quality,
     Scene,
@@ -49,19 +52,21 @@ def scene_of(top: Node) -> Scene:
     camera, rotation = _camera(top["camera"])
     lines = _lines(top["lines"].items())
     known = set(lines.id.tolist())
+    planes = _planes(top["planes"].items(), known)
     scene = Scene(
         photo=top["photo"].text(),
         camera=camera,
         rotation=rotation,
         lines=lines,
         intersections=_intersections(top["intersections"].items(), known),
-        planes=_planes(top["planes"].items(), known),
+        planes=planes,
         solve=_solve_report(top["solve"]),
         metres_per_unit=_metres_per_unit(top.get("metres_per_unit")),
         scale_source=_text_or_none(top.get("scale_source")),
         notes=tuple(note.text() for note in _optional_items(top, "notes")),
         certainty=_certainty(top.get("certainty")),
         depth_map=_depth_map(top.get("depth_map")),
+        openings=_openings(_optional_items(top, "openings"), {plane.id for plane in planes if plane.axis != 2}),
     )
     _check_flatness(scene)
     return scene
@@ -241,6 +246,39 @@ def _ring(node: Node) -> Float:
     if len(ring) < 3:
         raise node.wrong("at least 3 points")
     return ring
+
+
+def _openings(nodes: list[Node], walls: set[int]) -> tuple[Opening, ...]:
+    """The openings; `walls` are the ids of the vertical planes."""
+    _distinct([node["id"] for node in nodes])
+    return tuple(_opening(node, walls) for node in nodes)
+
+
+def _opening(node: Node, walls: set[int]) -> Opening:
+    if node["plane"].integer() not in walls:
+        raise JsonError(f"{node['plane'].place} is {node['plane'].value}, but no vertical plane has this id")
+    u, v = (node[key].array(2, largest=LARGEST_NUMBER).tolist() for key in ("u", "v"))
+    for key, (start, end) in (("u", u), ("v", v)):
+        if start >= end:
+            raise node[key].wrong("two ascending numbers")
+    recess, panel = _known(node, "recess"), _known(node, "panel")
+    if (recess is None) != (panel is None):
+        raise JsonError(f"{node.place} has a recess without a panel, or a panel without a recess")
+    if recess is not None and recess.number(LARGEST_NUMBER) <= 0:
+        raise recess.wrong("a positive number or null")
+    return Opening(
+        id=node["id"].integer(),
+        plane=node["plane"].integer(),
+        u0=u[0],
+        u1=u[1],
+        v0=v[0],
+        v1=v[1],
+        kind=cast(OpeningKind, node["kind"].one_of(OPENING_KINDS)),
+        recess=None if recess is None else recess.number(),
+        panel=None if panel is None else panel.number(LARGEST_NUMBER),
+        is_completed=_optional_boolean(node, "completed"),
+        shape=_count(node.get("shape")),
+    )
 
 
 def _solve_report(node: Node) -> SolveReport:

@@ -18,12 +18,13 @@ from linecad.model.clean.roles import with_roles
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
+from linecad.model.openings.find import find_openings
 from linecad.model.planes import find_planes
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
-from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Scene, SolveReport
+from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Opening, Plane, Scene, SolveReport
 from linecad.ties.placing import Placed
 
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
@@ -115,7 +116,8 @@ def build_scene(
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
-    lines = with_roles(lines, planes, forward)
+    openings = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
+    lines = with_roles(lines, planes, forward, _rectangles(openings, planes))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     cleaning = cleaned.note(lines)
     notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []))
@@ -133,6 +135,7 @@ def build_scene(
         notes=(*notes, *disagreements(planes, lines, pairs)),
         certainty=view.certainty,
         depth_map=depth_map,
+        openings=openings,
     )  # fmt: skip
 
 
@@ -209,6 +212,13 @@ def _normals(placed: Placed | None) -> Normals | None:
     if depth is None or placed is None or placed.depth_map is None or placed.depth_map.left_out:
         return None
     return depth.normals
+
+
+def _rectangles(openings: tuple[Opening, ...], planes: tuple[Plane, ...]) -> Float | None:
+    """Axis and offset of the wall, then u0, u1, v0, v1 of each opening, (W, 6); None where there is none."""
+    wall = {plane.id: (plane.axis, plane.offset) for plane in planes}
+    rows = [(*wall[each.plane], each.u0, each.u1, each.v0, each.v1) for each in openings]
+    return np.array(rows) if rows else None
 
 
 def _ground_of_feet(placed: Placed | None, scale: float) -> GroundOfFeet | None:

@@ -8,7 +8,7 @@ import pytest
 from linecad.confidence import keep_probable
 from linecad.errors import ConfidenceError
 from linecad.io.scene_file import read_scene, write_scene
-from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.scene import Camera, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport
 
 RING = np.array([[0, 4, 0], [1, 4, 0], [0, 4, 1]])
 
@@ -104,3 +104,9 @@ def test_pieces_and_roles_go_with_their_lines(scene):
     found = keep_probable(replace(scene, lines=lines), 0.5).lines
     assert found.role.tolist() == ["outline", "detail"]
     assert [each.tolist() for each in found.pieces] == [pieces[row].tolist() for row in (0, 2)]
+
+
+def test_openings_go_with_the_planes_of_their_walls(scene):
+    windows = tuple(Opening(wall, wall, 0.0, 1.0, 0.0, 1.0, "window") for wall in (0, 3))
+    left = keep_probable(replace(scene, openings=windows), 0.5)
+    assert [each.plane for each in left.openings] == [0]

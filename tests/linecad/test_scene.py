@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
-from linecad.scene import Camera, DepthMapReport, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.scene import Camera, DepthMapReport, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport
 
 K = np.array([[500.0, 0, 320], [0, 500, 240], [0, 0, 1]])
 TRIANGLE = [[0, 4, 0], [1, 4, 0], [0, 4, 1]]
@@ -196,6 +196,19 @@ def test_faces_of_a_scene_are_in_the_order_of_their_ids() -> None:
     second = Plane(1, 1, 4.0, (), (Face(3, TRIANGLE),))
     pairs = replace(scene, planes=(first, second)).faces
     assert [(owner.id, face.id) for owner, face in pairs] == [(0, 1), (1, 3), (0, 5)]
+
+
+@pytest.mark.parametrize("plane", [1, 2])
+def test_openings_are_in_vertical_planes_of_the_scene(plane: int) -> None:
+    window = Opening(0, plane, 0.0, 1.0, 0.0, 1.0, "window")
+    with pytest.raises(ValueError, match=f"Opening 0 is in plane {plane}, which is no wall"):
+        replace(scene, planes=(Plane(0, 1, 4.0, ()), Plane(1, 2, 0.0, ())), openings=(window,))
+
+
+def test_openings_have_ids_of_their_own() -> None:
+    window = Opening(0, 0, 0.0, 1.0, 0.0, 1.0, "window")
+    with pytest.raises(ValueError, match=r"Scene\.openings"):
+        replace(scene, planes=(Plane(0, 1, 4.0, ()),), openings=(window, window))
 
 
 def test_a_depth_map_is_told_in_one_line() -> None:

@@ -1,7 +1,7 @@
 """What is written reads back as it was; what is damaged is refused in one line."""
 
 import json
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +22,7 @@ from linecad.dataset.store import (
     write_scene_folder,
     write_truth,
 )
-from linecad.dataset.truth import Truth
+from linecad.dataset.truth import TrueOpenings, Truth
 from linecad.errors import DatasetError, OutputError
 
 
@@ -65,8 +65,31 @@ def test_a_truth_reads_back_exactly(truth: Truth, tmp_path: Path) -> None:
     folder.mkdir()
     write_truth(truth, folder)
     found = read_truth(folder)
-    for field in fields(Truth):
-        np.testing.assert_array_equal(getattr(found, field.name), getattr(truth, field.name), err_msg=field.name)
+    assert found.openings is not None
+    assert truth.openings is not None
+    for one, other, record in ((found, truth, Truth), (found.openings, truth.openings, TrueOpenings)):
+        for field in fields(record):
+            if field.name != "openings":
+                np.testing.assert_array_equal(getattr(one, field.name), getattr(other, field.name), err_msg=field.name)
+
+
+def test_a_truth_of_earlier_versions_tells_no_openings(truth: Truth, tmp_path: Path) -> None:
+    write_truth(replace(truth, openings=None), tmp_path)
+    assert read_truth(tmp_path).openings is None
+
+
+def test_openings_that_are_not_all_told_are_refused(truth: Truth, tmp_path: Path) -> None:
+    write_truth(truth, tmp_path)
+    with np.load(tmp_path / TRUTH) as archive:
+        arrays = {name: archive[name] for name in archive.files if name != "opening_is_door"}
+    np.savez(tmp_path / TRUTH, allow_pickle=True, **arrays)
+    assert "opening_is_door" in refused(tmp_path)
+
+
+def test_an_opening_of_a_building_that_is_not_there_is_refused(truth: Truth, tmp_path: Path) -> None:
+    assert truth.openings is not None
+    bodies = np.full(len(truth.openings.body), truth.body.max() + 1)
+    assert "opening_body names what is not there" in refused(damaged(truth, tmp_path, opening_body=bodies))
 
 
 def test_the_camera_file_is_one_that_convert_takes(truth: Truth, tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     DEPTH_KINDS,
+    OPENING_KINDS,
     QUALITIES,
     REASONS,
     ROLES,
@@ -32,6 +33,7 @@ from linecad.scene import (
     Face,
     Intersections,
     Lines,
+    Opening,
     Plane,
     Scene,
     SolveReport,
@@ -124,6 +126,21 @@ def planes(draw: st.DrawFn, line_ids: list[int]) -> tuple[Plane, ...]:
 
 
 @st.composite
+def openings(draw: st.DrawFn, found: tuple[Plane, ...]) -> tuple[Opening, ...]:
+    walls = [plane.id for plane in found if plane.axis != 2]
+    if not walls:
+        return ()
+    made = []
+    for number in draw(st.lists(ids, max_size=3, unique=True)):
+        u, v = (sorted(draw(st.lists(coordinates, min_size=2, max_size=2, unique=True))) for _ in range(2))
+        recess, panel = draw(st.just((None, None)) | st.tuples(st.floats(1e-6, 1e3), coordinates))
+        kind, shape = draw(st.sampled_from(OPENING_KINDS)), draw(ids)
+        wall = draw(st.sampled_from(walls))
+        made.append(Opening(number, wall, *u, *v, kind, recess, panel, draw(st.booleans()), shape))
+    return tuple(made)
+
+
+@st.composite
 def scenes(draw: st.DrawFn) -> Scene:
     line_ids = draw(st.lists(ids, max_size=5, unique=True))
     n = len(line_ids)
@@ -133,6 +150,7 @@ def scenes(draw: st.DrawFn) -> Scene:
     def several(count: int, element: st.SearchStrategy[Any]) -> list[Any]:
         return draw(st.lists(element, min_size=count, max_size=count))
 
+    found = draw(planes(line_ids))
     return Scene(
         photo=draw(words),
         camera=draw(cameras()),
@@ -159,7 +177,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             weight=several(m, numbers),
             reason=several(m, st.sampled_from(REASONS)),
         ),
-        planes=draw(planes(line_ids)),
+        planes=found,
         solve=SolveReport(
             draw(words),
             draw(words),
@@ -170,6 +188,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         notes=tuple(draw(st.lists(words, max_size=3))),
         certainty=draw(st.none() | certainties()),
         depth_map=draw(st.none() | depth_map_reports()),
+        openings=draw(openings(found)),
     )
 
 
@@ -284,6 +303,7 @@ REQUIRED = [
     *(f"solve.{key}" for key in ("solver", "formulation", "status", "objective", "bound", "gap")),
     *(f"certainty.{key}" for key in ("quality", "reason", "rotation_degrees")),
     *(f"depth_map.{key}" for key in ("file", "kind", "shift", "scale", "width")),
+    *(f"openings[0].{key}" for key in ("id", "plane", "kind", "u", "v")),
 ]
 OPTIONAL = [
     *("camera.distortion", "camera.resampled"),
@@ -292,6 +312,7 @@ OPTIONAL = [
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
     *("depth_map", "depth_map.left_out", "lines[2].by_depth_map"),
     *("lines[0].role", "lines[0].pieces"),
+    *("openings", "openings[0].shape", "openings[0].completed"),
 ]
 
 
@@ -339,7 +360,7 @@ def test_every_key_is_either_required_or_optional() -> None:
     document = json.loads(EXAMPLE)
     keys = {key for _, key in containers(document) if isinstance(key, str)}
     # All lines have a probability or none has, so it is optional for all at once.
-    assert keys == {re.findall(r"\w+", place)[-1] for place in REQUIRED + OPTIONAL} | {"probability"}
+    assert keys == {re.findall(r"\w+", place)[-1] for place in REQUIRED + OPTIONAL} | {"probability", "recess", "panel"}
 
 
 WRONG = [
@@ -427,6 +448,15 @@ WRONG = [
     ("planes[0].faces[0].holes", [[]], "planes[0].faces[0].holes[0] is a list of 0, expected at least 3 points"),
     ("planes[0].faces[0].outline[2][1]", 4.00001, "face 0 leaves plane 0 (y = 4) by 1e-05, expected at most 2.45e-06"),
     ("planes[0].offset", 5, "face 0 leaves plane 0 (y = 5) by 1"),
+    ("openings", {}, "openings is an object, expected a list"),
+    ("openings[0].plane", 7, "openings[0].plane is 7, but no vertical plane has this id"),
+    ("openings[0].kind", "gate", 'openings[0].kind is "gate", expected one of window, door'),
+    ("openings[0].u", [1, 1], "openings[0].u is a list of 2, expected two ascending numbers"),
+    ("openings[0].v", [0.2], "openings[0].v is a list of 1, expected a list of 2"),
+    ("openings[0].recess", 0, "openings[0].recess is 0, expected a positive number or null"),
+    ("openings[0].panel", None, "openings[0] has a recess without a panel, or a panel without a recess"),
+    ("openings[0].completed", 1, "openings[0].completed is 1, expected true or false"),
+    ("openings[0].shape", -1, "openings[0].shape is -1, expected"),
     ("lines[2].by_depth_map", 1, "lines[2].by_depth_map is 1, expected true or false"),
     ("lines[2].by_depth_map", None, "lines[2].by_depth_map is null, expected true or false"),
     ("lines[0].by_depth_map", "no", 'lines[0].by_depth_map is "no", expected true or false'),

@@ -1,0 +1,99 @@
+"""What the photo says for and against a rectangle being an opening: numbers that do not depend on scale."""
+
+import cv2
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.model.openings.raster import Raster
+from linecad.model.openings.rectangles import Edges
+
+RING = 0.2  # of the shorter side: width of the wall around a rectangle that is compared with it
+LEAST_RING = 3  # columns or rows
+STRIP = 2  # columns or rows beside a side that are compared across it
+PLAIN = 0.4  # mean step below which a rectangle is hardly told from what is around it
+OPEN = 1.6  # cover of the four sides in sum, below which hardly any is seen
+LEVELS = 25.0  # grey levels; differences are counted in these, most of a facade's are a few
+NAMES = (
+    "one", "uprights", "weaker upright", "weaker level", "levels", "beyond uprights", "beyond levels",
+    "contrast", "darker", "rough inside", "rough around", "weakest step", "steps", "edges inside", "edges around",
+    "slender", "flat", "plain", "open",
+)  # fmt: skip
+
+
+class Sums:
+    """Sums over any box of a raster, in constant time."""
+
+    def __init__(self, raster: Raster) -> None:
+        inside = raster.inside.astype(np.uint8)
+        colours = raster.colours * inside[..., None]
+        lightness = colours[..., 0].astype(np.float32)
+        others = cv2.merge(
+            [lightness**2, (raster.upright | raster.level).astype(np.float32), inside.astype(np.float32)]
+        )
+        self._total: Float = np.dstack([cv2.integral(colours), cv2.integral(others)]).astype(np.float64)
+
+    def of(self, left: Int, right: Int, low: Int, high: Int) -> Float:
+        """Sums (N, 6) over columns left to right and rows low to high, the ends not among them."""
+        rows, columns = self._total.shape[0] - 1, self._total.shape[1] - 1
+        left, right = left.clip(0, columns), right.clip(0, columns)
+        low, high = low.clip(0, rows), high.clip(0, rows)
+        found: Float = (
+            self._total[high, right] - self._total[low, right] - self._total[high, left] + self._total[low, left]
+        )
+        return found
+
+
+def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
+    """The evidence (N, F) about boxes (N, 4) by columns and rows, in the order of NAMES."""
+    left, right, low, high = box.T
+    cover, beyond = edges.cover(box), edges.beyond(box)
+    ring = np.maximum((RING * np.minimum(right - left, high - low)).astype(np.int64), LEAST_RING)
+    inner = sums.of(left + 1, right, low + 1, high)
+    outer = sums.of(left - ring, right + ring + 1, low - ring, high + ring + 1) - sums.of(
+        left - 1, right + 2, low - 1, high + 2
+    )
+    inside, rough_inside, edges_inside = _means(inner)
+    around, rough_around, edges_around = _means(outer)
+    across = []
+    for side in range(4):
+        beside = []
+        for shift in (-STRIP - 1, 1):
+            place = [left, right, low, high]
+            if side < 2:
+                place[0], place[1] = box[:, side] + shift, box[:, side] + shift + STRIP
+            else:
+                place[2], place[3] = box[:, side] + shift, box[:, side] + shift + STRIP
+            beside.append(_means(sums.of(*place))[0])
+        across.append(np.linalg.norm(beside[0] - beside[1], axis=1) / LEVELS)
+    steps = np.minimum(np.column_stack(across), 2.0)
+    slender = np.log((raster.v[high] - raster.v[low]) / (raster.u[right] - raster.u[left]))
+    return np.column_stack(
+        [
+            np.ones(len(box)),
+            cover[:, 0] + cover[:, 1],
+            np.minimum(cover[:, 0], cover[:, 1]),
+            np.minimum(cover[:, 2], cover[:, 3]),
+            cover[:, 2] + cover[:, 3],
+            beyond[:, :2].mean(axis=1),
+            beyond[:, 2:].mean(axis=1),
+            np.minimum(np.linalg.norm(inside - around, axis=1) / LEVELS, 3.0),
+            ((around - inside)[:, 0] / LEVELS).clip(-3, 3),
+            rough_inside,
+            rough_around,
+            steps.min(axis=1),
+            steps.mean(axis=1),
+            edges_inside,
+            edges_around,
+            np.maximum(slender, 0),
+            np.maximum(-slender, 0),
+            np.maximum(PLAIN - steps.mean(axis=1), 0),
+            np.maximum(OPEN - cover.sum(axis=1), 0),
+        ]
+    )
+
+
+def _means(sums: Float) -> tuple[Float, Float, Float]:
+    """Of sums (N, 6): the mean colour (N, 3), the spread of lightness in LEVELS, the share of edges."""
+    mean = sums / np.maximum(sums[:, 5:], 1.0)
+    spread = np.sqrt(np.maximum(mean[:, 3] - mean[:, 0] ** 2, 0.0)) / LEVELS
+    return mean[:, :3], spread, mean[:, 4]
