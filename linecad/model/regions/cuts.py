@@ -34,16 +34,27 @@ def energy(costs: Int, borders: Borders, label: Int) -> int:
 def expand(costs: Int, borders: Borders, label: Int, labels: list[int]) -> Int:
     """Labels (C,) that no expansion of one of `labels` makes cheaper, from `label` (C,) on; costs (C, L)."""
     best = energy(costs, borders, label)
-    for _ in range(ROUNDS):
-        before = best
-        for number in labels:
-            found = np.where(_takes(costs, borders, label, number), number, label)
-            cost = energy(costs, borders, found)
-            if cost < best:
-                label, best = found, cost
-        if best == before:
+    idle = 0
+    for number in labels * ROUNDS:
+        if idle == len(labels):
             break
+        idle += 1
+        if not _may_gain(costs, borders, label, number):
+            continue
+        found = np.where(_takes(costs, borders, label, number), number, label)
+        cost = energy(costs, borders, found)
+        if cost < best:
+            label, best, idle = found, cost, 1
     return label
+
+
+def _may_gain(costs: Int, borders: Borders, label: Int, number: int) -> bool:
+    """Whether any cell would gain by a label if that made all its borders free; else no set of cells does."""
+    one, other = borders.cells.T
+    was = borders.cost * (label[one] != label[other])
+    count = len(label)
+    rise = costs[:, number] - costs[np.arange(count), label]
+    return bool((rise < _sums(one, was, count) + _sums(other, was, count))[label != number].any())
 
 
 def _takes(costs: Int, borders: Borders, label: Int, number: int) -> Bool:
@@ -75,6 +86,5 @@ def _takes(costs: Int, borders: Borders, label: Int, number: int) -> Bool:
 
 def _sums(cell: Int, values: Int, count: int) -> Int:
     """Sums (count,) of values by cell."""
-    total = np.zeros(count, np.int64)
-    np.add.at(total, cell, values)
-    return total
+    # In doubles, which hold these whole numbers exactly.
+    return np.bincount(cell, values, count).astype(np.int64)

@@ -116,10 +116,8 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
         if ground is not None and surface.kind != "ground":
             cost = cost + BURIED * (raster.rays[:, 2] * depth[:, number] < UNDERGROUND * ground)
         turned = (raster.facing != UNTOLD) & (raster.facing != surface.axis)
-        if surface.kind in ("ground", "ceiling"):
-            cost = cost + NEVER * (depth[:, number] > limit)
-        else:
-            cost = cost + green
+        is_level = surface.kind in ("ground", "ceiling")
+        cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
