@@ -27,7 +27,9 @@ OUTSIDE_COST, MOST_OUTSIDE = 4.0, 1.5  # for each length of a surface beyond its
 UNDERGROUND, BURIED = 1.03, 2.5  # times the ground's depth below the camera, and the cost of what is lower
 TURNED_COST = 0.8  # of a surface along another axis than a depth map says
 NARROWEST = 0.02  # of its offset, of a surface: what is less is relief
-FURTHEST = 1.5  # times the depth of the furthest of a surface's lines; it does not go on for ever
+FURTHEST, NEARLY_ALL = 1.25, 0.98  # times the depth of so many of a surface's lines; it does not go on for ever
+RARE_COST = 0.3  # of levels that are no ground: soffits and tops of walls are small
+WALLED_COST = 0.5  # of ground and ceiling behind a wall
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
 CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
@@ -117,6 +119,8 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
             cost = cost + BURIED * (raster.rays[:, 2] * depth[:, number] < UNDERGROUND * ground)
         turned = (raster.facing != UNTOLD) & (raster.facing != surface.axis)
         is_level = surface.kind in ("ground", "ceiling")
+        if is_level:
+            cost = cost + WALLED_COST * _behind_walls(raster, lines, surfaces, depth, number)
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
@@ -159,11 +163,30 @@ def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Fl
             low, high = np.percentile(ends[:, axis], [1, 99])
             at = raster.rays[seen, axis] * met
             over += np.maximum(np.maximum(low - at, at - high), 0) / max(high - low, NARROWEST * abs(surface.offset))
-    furthest = raster.line_depth[np.isin(raster.line, surface.lines)].max(initial=0.0)
+    own = raster.line_depth[np.isin(raster.line, surface.lines)]
+    furthest = float(np.quantile(own, NEARLY_ALL)) if len(own) else 0.0
     cost = np.full(raster.size, NEVER)
     most = NEVER if surface.kind == "level" else MOST_OUTSIDE
-    cost[seen] = np.minimum(OUTSIDE_COST * over, most) + NEVER * (met > FURTHEST * furthest)
+    cost[seen] = (
+        (surface.kind == "level") * RARE_COST
+        + np.minimum(OUTSIDE_COST * over, most)
+        + NEVER * (met > FURTHEST * furthest)
+    )
     return cost
+
+
+def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> Bool:
+    """Where (S,) a level would be seen through a wall between the wall's ends, by the depths (S, K) of surfaces."""
+    hidden = np.zeros(raster.size, bool)
+    for number, surface in enumerate(surfaces):
+        if surface.kind != "wall":
+            continue
+        along = 1 - surface.axis
+        low, high = np.percentile(lines.ends[surface.lines][:, :, along], [2, 98])
+        nearer = np.flatnonzero(depth[:, number] < depth[:, level] / BEHIND)
+        at = raster.rays[nearer, along] * depth[nearer, number]
+        hidden[nearer[(at > low) & (at < high)]] = True
+    return hidden
 
 
 def _beyond(raster: Raster, kind: str) -> Float:
