@@ -26,6 +26,7 @@ from linecad.errors import LinecadError, PhotoError
 from linecad.evaluation.turned.glb import read_glb
 from linecad.evaluation.turned.panels import draw_panels
 from linecad.io.scene_file import read_scene
+from linecad.options import Options
 from linecad.outputs import write_outputs
 from linecad.pipeline import reconstruct
 from linecad.scene import Scene
@@ -38,6 +39,7 @@ def main() -> None:
     parser.add_argument("--photos", type=Path, nargs="+", default=[], metavar="DIR", help="where the photos lie")
     parser.add_argument("--no-lines", action="store_true", help="faces alone")
     parser.add_argument("--keep", action="store_true", help="leave the GLB beside each picture")
+    parser.add_argument("--plain", action="store_true", help="without the photo, where that may not be shown")
     parser.add_argument("--jpeg", action="store_true", help="JPEG, a fifth of the size")
     chosen = parser.parse_args()
     chosen.out.mkdir(parents=True, exist_ok=True)
@@ -50,9 +52,9 @@ def main() -> None:
         with tempfile.TemporaryDirectory() as folder:
             glb = (chosen.out if chosen.keep else Path(folder)) / f"{path.stem}.glb"
             began = time.perf_counter()
-            write_outputs(scene, photo.pixels, [glb], {})
+            write_outputs(scene, None if chosen.plain else photo.pixels, [glb], {})
             written = time.perf_counter()
-            picture = draw_panels(read_glb(glb), photo.pixels, path.stem, not chosen.no_lines)
+            picture = draw_panels(read_glb(glb), None if chosen.plain else photo.pixels, path.stem, not chosen.no_lines)
             drawn = time.perf_counter()
         picture.save(chosen.out / f"{path.stem}.{'jpg' if chosen.jpeg else 'png'}")
         print(f"{path.stem}: {written - began:.2f} s to write, {drawn - written:.2f} s to draw", flush=True)
@@ -61,7 +63,7 @@ def main() -> None:
 def made_of(path: Path) -> tuple[Scene, Photo]:
     """A photo, and its scene at the default settings."""
     photo = open_photo(path, calibration_of(path))
-    return reconstruct(photo), photo
+    return reconstruct(photo, Options()), photo
 
 
 def scene_of(path: Path, folders: Iterable[Path]) -> tuple[Scene, Photo]:

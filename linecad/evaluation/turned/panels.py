@@ -48,12 +48,14 @@ def write_panels(scene: Scene, photo: NDArray[np.uint8], name: str, path: Path) 
     write_atomically(path, lambda file: picture.save(file, quality=QUALITY))
 
 
-def draw_panels(model: GlbModel, photo: NDArray[np.uint8], name: str, with_lines: bool = True) -> Image.Image:
-    """The photo (H, W, 3) and five pictures of a model on one picture."""
+def draw_panels(model: GlbModel, photo: NDArray[np.uint8] | None, name: str, with_lines: bool = True) -> Image.Image:
+    """The photo (H, W, 3), where it may be shown, and five pictures of a model on one picture."""
     views = views_of(model, WIDTH)
     height = views[0].height
     size = (WIDTH, height)
-    pictures = [("the photo", np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), np.uint8))]
+    pictures = []
+    if photo is not None:
+        pictures.append(("the photo", np.asarray(cv2.resize(photo, size, interpolation=cv2.INTER_AREA), np.uint8)))
     pictures += [(view.name, draw_view(model, view, with_lines)) for view in views]
     rows = -(-len(pictures) // COLUMNS)
     canvas = Canvas(COLUMNS * (WIDTH + GAP) + GAP, rows * (height + TITLE + GAP) + GAP, PAPER)
