@@ -12,14 +12,14 @@ from exporters.colours import FACE
 from exporters.model import FlatFace
 from exporters.textures.layout import View, seen_part
 from exporters.textures.nearest import SHIFT, Shape
-from linecad.arrays import Bool, Float
+from linecad.arrays import Bool, Float, Int
 
 PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the photo says nothing about
 _GROWN = 0.0075  # of the photo's width, by which hidden parts grow: their rings are about as far off
 _LEAST_GROWN = 2.0  # px; the width of an edge in a photo
 _FADED = 2 / 3  # of what they grow by: the width of the way from the photo's colours to the filled ones
-_SAMPLES = 48  # the longer side of the small copy whose colours count
-_TEXELS = 4  # along either side, whose mean is one of the copy
+_SAMPLES = 48  # a side of the small copy whose colours count
+_TEXELS = 4  # at most, down and across, whose mean is one of its colours
 _LEAST_CLEAR = 0.25  # of a sample; with less of it in plain view it does not count
 _FILLED = 8  # the sides of the still smaller picture of the colours that are filled in
 _REACH = 0.2  # of the patch: the distance at which a colour counts less by a factor of 0.6
@@ -73,23 +73,27 @@ def fill_behind(colours: _Pixels, cover: _Pixels, known: Bool) -> None:
 
 def _filling(colours: _Pixels, cover: _Pixels, known: Bool) -> _Pixels:
     """(_FILLED, _FILLED, 3) the colours to fill in all over a patch, from its known texels without any cover."""
-    step = max(max(cover.shape) // (_SAMPLES * _TEXELS), 1)
-    few = np.s_[step // 2 :: step, step // 2 :: step]
+    sides = np.array(cover.shape)
+    down, across = np.maximum(sides // (_SAMPLES * _TEXELS), 1).tolist()
+    few = np.s_[down // 2 :: down, across // 2 :: across]
     clear = (known[few] & (cover[few] == 0)).astype(np.float32)
-    height, width = clear.shape
-    size = (max(width // _TEXELS, 1), max(height // _TEXELS, 1))
-    weight = cv2.resize(clear, size, interpolation=cv2.INTER_AREA)
-    summed = cv2.resize(colours[few] * clear[..., None], size, interpolation=cv2.INTER_AREA)
-    row, column = np.nonzero(weight >= _LEAST_CLEAR)
-    if not len(row):
+    rows, columns = (max(side // _TEXELS, 1) for side in clear.shape)
+    weight = cv2.resize(clear, (columns, rows), interpolation=cv2.INTER_AREA)
+    summed = cv2.resize(colours[few] * clear[..., None], (columns, rows), interpolation=cv2.INTER_AREA)
+    counted = weight >= _LEAST_CLEAR
+    if not counted.any():
         return np.full((_FILLED, _FILLED, 3), PLAIN, np.uint8)
-    samples = summed[row, column] / weight[row, column, None]
-    places = np.stack([(column + 0.5) * width / size[0], (row + 0.5) * height / size[1]], axis=1)
-    x, y = np.meshgrid((np.arange(_FILLED) + 0.5) * width / _FILLED, (np.arange(_FILLED) + 0.5) * height / _FILLED)
-    apart = np.linalg.norm(np.stack([x.ravel(), y.ravel()], axis=1)[:, None] - places, axis=2)
-    counts = np.exp(-0.5 * (apart / (_REACH * max(height, width))) ** 2)
+    samples = summed[counted] / weight[counted][:, None]
+    apart = _middles((_FILLED, _FILLED), sides).reshape(-1, 1, 2) - _middles((rows, columns), sides)[counted]
+    reach = _REACH * max(cover.shape)
+    counts = np.exp(-0.5 * np.sum((apart / reach) ** 2, axis=2))
     medians = [_weighted_median(samples[:, channel], counts) for channel in range(3)]
     return np.rint(np.stack(medians, axis=1)).astype(np.uint8).reshape(_FILLED, _FILLED, 3)
+
+
+def _middles(parts: tuple[int, int], sides: Int) -> Float:
+    """(*parts, 2) the middles of equal parts of a picture whose sides are given, down and across."""
+    return (np.moveaxis(np.indices(parts), 0, -1) + 0.5) * (sides / parts)
 
 
 def _weighted_median(values: Float, weights: Float) -> Float:
