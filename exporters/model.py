@@ -50,6 +50,7 @@ class FlatFace:
     normal: Float  # (3,) unit, from the plane towards the camera
     in_plane: tuple[int, int]  # the two axes (u, v) in the plane for which u x v is the normal
     rings: tuple[Float, ...]  # outline first, then holes; each (V, 3) m, not closed
+    hidden: tuple[Float, ...]  # each (H, 3) m, not closed: parts of it that a thing without a face hides in the photo
 
     @property
     def name(self) -> str:
@@ -141,7 +142,8 @@ def _flat_face(plane: Plane, face: Face, scale: float) -> FlatFace:
     in_plane = (u, v) if side > 0 else (v, u)
     outline = _turned(face.outline * scale, in_plane, counter_clockwise=True)
     holes = [_turned(hole * scale, in_plane, counter_clockwise=False) for hole in face.holes]
-    return FlatFace(face.id, plane.id, plane.axis, plane.offset * scale, normal, in_plane, (outline, *holes))
+    rings, hidden = (outline, *holes), tuple(part * scale for part in face.hidden)
+    return FlatFace(face.id, plane.id, plane.axis, plane.offset * scale, normal, in_plane, rings, hidden)
 
 
 def _turned(ring: Float, in_plane: tuple[int, int], counter_clockwise: bool) -> Float:

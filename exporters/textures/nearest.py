@@ -11,7 +11,7 @@ from exporters.textures.layout import View, seen_part
 from linecad.arrays import Bool, Float
 
 _LEAST_AREA = 1e-3  # px^2; a face that is seen from its edge shows nothing
-_SHIFT = 4  # bits after the point in OpenCV's coordinates
+SHIFT = 4  # bits after the point in OpenCV's coordinates
 _BORDER = 3  # px about a face in the photo, which the interpolation reaches into
 
 _Float32 = NDArray[np.float32]
@@ -74,6 +74,6 @@ def nearest_of(shapes: list[Shape], view: View) -> Nearest:
 def filled(rings: list[Float], corner: tuple[int, int], shape: tuple[int, ...]) -> Bool:
     """Where a picture that begins at `corner` lies in a polygon with holes or on its border; rings (C, 2) in px."""
     inside = np.zeros(shape, np.uint8)
-    fixed = [np.round((ring - corner) * 2**_SHIFT).astype(np.int32) for ring in rings]
-    cv2.fillPoly(inside, fixed, (1,), cv2.LINE_8, _SHIFT)
+    fixed = [np.round((ring - corner) * 2**SHIFT).astype(np.int32) for ring in rings]
+    cv2.fillPoly(inside, fixed, (1,), cv2.LINE_8, SHIFT)
     return inside.astype(np.bool_)

@@ -1,8 +1,9 @@
 """The photo on the faces: each face as seen from the front, where the photo shows it.
 
-A face is hidden where another one is nearer to the camera. What is hidden or outside the photo keeps the plain colour
-of faces without a texture: nothing is made up, and nothing of what stands before a face is painted on it. Along the
-borders of what is seen its colours go on for a few texels, so that no filter mixes them with anything else.
+A face is hidden where another one is nearer to the camera. What is hidden so or outside the photo keeps the plain
+colour of faces without a texture: nothing of what stands before a face is painted on it. Where a thing without a face
+hides it, a tree or a car, the face's own colours go on, without detail. Along the borders of what is seen its colours
+go on for a few texels, so that no filter mixes them with anything else.
 """
 
 import math
@@ -11,13 +12,12 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from exporters.colours import FACE
 from exporters.model import FlatFace, Model, signed_area
+from exporters.textures.behind import PLAIN, cover_of, fill_behind
 from exporters.textures.layout import MARGIN, Layout, Patch, View
 from exporters.textures.nearest import Nearest, Shape, filled, nearest_of, shape_of
 from linecad.arrays import Bool, Float
 
-PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the photo says nothing about
 _ROUNDED = 0.75  # px by which the border of a face is off where it is filled pixel by pixel
 _BLURRED = 1.5  # px, the width of an edge in a photo: so near to a border the colours are mixed
 _MOST_BLURRED = MARGIN / 2  # texels
@@ -76,7 +76,10 @@ def _paint(face: FlatFace, shape: Shape, patch: Patch, view: View, nearest: Near
         colours, to_colours, size, flags=cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP, borderMode=cv2.BORDER_REPLICATE
     )
     blurred = min(max(_BLURRED / step, 1.0), _MOST_BLURRED)
-    return _continued(np.asarray(warped, np.uint8), _pure(known, blurred), MARGIN + blurred + 1)
+    pure, painted = _pure(known, blurred), np.asarray(warped, np.uint8)
+    if face.hidden:
+        fill_behind(painted, cover_of(face, shape, view, to_photo, size), pure)
+    return _continued(painted, pure, MARGIN + blurred + 1)
 
 
 def _to_space(face: FlatFace, patch: Patch) -> Float:

@@ -53,6 +53,15 @@ def test_an_unknown_scale_gives_one_metre_a_unit_and_says_so(free_unit, model):
     np.testing.assert_array_equal(free.points, model.points)
 
 
+def test_hidden_parts_of_faces_are_in_metres_too(scene):
+    plane = next(plane for plane in scene.planes if plane.faces)
+    part = plane.faces[0].outline[:3]
+    hiding = replace(plane, faces=(replace(plane.faces[0], hidden=(part,)),))
+    (face,) = build_model(replace(scene, planes=(hiding,), metres_per_unit=0.25)).faces
+    assert len(face.hidden) == 1
+    assert face.hidden[0] == pytest.approx(0.25 * part)
+
+
 def test_faces_look_at_the_camera(model):
     for face in model.faces:
         assert face.normal @ (0 - face.vertices[0]) > 0
