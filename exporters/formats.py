@@ -45,7 +45,7 @@ _BANDS = Option(
     "probability", False, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
 )
 _ROLES = Option(
-    "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of windows and doors, "
+    "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of openings, "
     "..._detail for bars, panes, joints and courses",
 )  # fmt: skip
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
