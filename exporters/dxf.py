@@ -1,10 +1,11 @@
 """DXF R2010 or R2018, in metres: https://help.autodesk.com/view/OARX/2018/ENU/?guid=GUID-235B22E0-A567-4CF6-92D3-38A2306D73F3
 
-Lines are LINE entities on one layer a group, detail in the thinnest pen. A face is there twice: as 3DFACE triangles
-with their inner edges hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because many programs
-ignore 3DFACE. What a line or face is stands in the extended data of each entity, under the application name LINECAD,
-for a line with the probability that its depth is right, where the scene tells it. DXF has no place for a camera with a
-principal point; its numbers are custom properties of the document.
+Lines are LINE entities on one layer a group, in the thinnest pen where it is one of details. A face is there twice: as
+3DFACE triangles with their inner edges hidden on FACES, and as one closed 3D polyline a ring on FACE_OUTLINES, because
+many programs ignore 3DFACE. What a line or face is stands in the extended data of each entity, under the application
+name LINECAD: for a line its role and the probability that its depth is right, where the scene tells it, for a face its
+kind and a label such as `wall 3`. DXF has no place for a camera with a principal point; its numbers are custom
+properties of the document.
 """
 
 import contextlib
@@ -38,7 +39,7 @@ _HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the 
 _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 
-def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = False, roles: bool = True) -> None:
+def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = False, roles: bool = False) -> None:
     """Write the scene as DXF of that AutoCAD release to `path`; OSError where that fails.
 
     Its layers are by band where `probability` asks for that, and by role.
@@ -94,24 +95,26 @@ def _add_lines(document: Drawing, group: LineGroup) -> None:
     space = document.modelspace()
     kind = ((_INT16, int(group.is_boundary)), (_STRING, AXES[group.axis]))
     told = [[(_REAL, value)] for value in group.probability.tolist()] or [[]] * len(group.ids)
-    for number, (start, end), more in zip(group.ids.tolist(), group.ends.tolist(), told, strict=True):
+    each = zip(group.ids.tolist(), group.ends.tolist(), group.roles.tolist(), told, strict=True)
+    for number, (start, end), role, more in each:
         line = space.add_line(start, end, dxfattribs={"layer": group.name.upper()})
-        _describe(line, "line", number, *kind, *more)
+        _describe(line, "line", number, *kind, (_STRING, role), *more)
 
 
 def _add_face(document: Drawing, face: FlatFace) -> None:
     space = document.modelspace()
     corners = face.vertices.tolist()
     outer_edges = _ring_edges(face)
+    words = [(_STRING, word) for word in (face.name, face.kind, face.label)]
     for triangle in triangulate(face).tolist():
         entity = space.add_3dface([corners[index] for index in triangle], dxfattribs={"layer": _FACES})
         edges = zip(triangle, triangle[1:] + triangle[:1], strict=True)
         hidden = [flag for edge, flag in zip(edges, _HIDDEN_EDGE, strict=True) if frozenset(edge) not in outer_edges]
         entity.dxf.invisible_edges = sum(hidden)
-        _describe(entity, "face", face.id, (_STRING, face.name))
+        _describe(entity, "face", face.id, *words)
     for number, ring in enumerate(face.rings):
         outline = space.add_polyline3d(ring.tolist(), close=True, dxfattribs={"layer": _OUTLINES})
-        _describe(outline, "face", face.id, (_INT16, number), (_STRING, face.name))
+        _describe(outline, "face", face.id, (_INT16, number), *words)
 
 
 def _ring_edges(face: FlatFace) -> set[frozenset[int]]:

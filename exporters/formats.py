@@ -45,8 +45,8 @@ _BANDS = Option(
     "probability", False, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
 )
 _ROLES = Option(
-    "roles", True, "layers and groups of lines by what they are drawn for: those of openings end in ..._opening, those "
-    "of bars, panes, joints and courses in ..._detail",
+    "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of openings, "
+    "..._detail for bars, panes, joints and courses",
 )  # fmt: skip
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")

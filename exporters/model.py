@@ -4,6 +4,7 @@ The frame is the scene's: right-handed, z up, origin at the camera. So every coo
 float32 of glTF and USD.
 """
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -13,7 +14,7 @@ import numpy as np
 
 from exporters.bands import BANDS, bands_of
 from linecad.arrays import Float, Int, Text
-from linecad.scene import AXES, ROLES, Face, Plane, Scene
+from linecad.scene import AXES, ROLES, Face, FaceKind, Plane, Scene
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
 
@@ -32,6 +33,7 @@ class LineGroup:
     ends: Float  # (N, 2, 3) m
     band: str  # one of BANDS; "" for lines of all bands, or where the scene does not tell
     probability: Float  # (N,) that the depth is right; (0,) where the scene does not tell
+    roles: Text  # (N,) what each line is drawn for: one of ROLES
 
     @property
     def name(self) -> str:
@@ -44,6 +46,8 @@ class FlatFace:
     """A face with its rings turned towards the camera: the outline counter-clockwise from there, holes clockwise."""
 
     id: int
+    kind: FaceKind
+    label: str  # for people: its kind, with a number where there are several, such as `wall 3`
     plane: int  # id of its plane
     axis: int  # 0, 1, 2: the plane's normal
     offset: float  # m
@@ -67,9 +71,7 @@ class FlatFace:
 class Model:
     """The geometry of a scene as the formats write it."""
 
-    groups: tuple[
-        LineGroup, ...
-    ]  # x boundary, x nonboundary, y ..., each in the order of ROLES, then BANDS; none is empty
+    groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ..., each by ROLES, then BANDS; none is empty
     faces: tuple[FlatFace, ...]  # in ascending id
     photo: str  # name of the photo without its folder: one line of valid Unicode
     unit_note: str  # one ASCII phrase that says what a unit is
@@ -87,16 +89,17 @@ def group_name(axis: int, is_boundary: bool, role: str, band: str) -> str:
     return "_".join(["lines", AXES[axis], kind, *(word for word in (role, band) if word not in ("", ROLES[0]))])
 
 
-def build_model(scene: Scene, by_band: bool = False, by_role: bool = True) -> Model:
+def build_model(scene: Scene, by_band: bool = False, by_role: bool = False) -> Model:
     """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out.
 
     `by_role` gives the lines of each role a group of their own, `by_band` those of each band, where the scene tells
     probabilities.
     """
     scale = metres_per_unit(scene)
+    labels = _labels([face for _, face in scene.faces])
     return Model(
         groups=_line_groups(scene, scale, bands_of(scene.lines) if by_band else None, by_role),
-        faces=tuple(_flat_face(plane, face, scale) for plane, face in scene.faces),
+        faces=tuple(_flat_face(plane, face, labels[face.id], scale) for plane, face in scene.faces),
         photo=photo_name(scene),
         unit_note=FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT,
     )
@@ -129,11 +132,23 @@ def _line_groups(scene: Scene, scale: float, bands: Text | None, by_role: bool) 
         chosen = order[wanted[order]]
         if len(chosen):
             told = probability[chosen] if len(probability) else probability
-            groups.append(LineGroup(axis, is_boundary, role, lines.id[chosen], ends[chosen], band, told))
+            drawn_for = np.asarray(lines.role)[chosen]
+            groups.append(LineGroup(axis, is_boundary, role, lines.id[chosen], ends[chosen], band, told, drawn_for))
     return tuple(groups)
 
 
-def _flat_face(plane: Plane, face: Face, scale: float) -> FlatFace:
+def _labels(faces: list[Face]) -> dict[int, str]:
+    """The label of each face by its id: faces of a kind count from 1, but the only one of its kind has no number."""
+    total = Counter(face.kind for face in faces)
+    counted: Counter[str] = Counter()
+    labels = {}
+    for face in faces:
+        counted[face.kind] += 1
+        labels[face.id] = face.kind if total[face.kind] == 1 else f"{face.kind} {counted[face.kind]}"
+    return labels
+
+
+def _flat_face(plane: Plane, face: Face, label: str, scale: float) -> FlatFace:
     # The camera is the world's origin: it lies on the side of the plane that the offset points away from.
     side = -1.0 if plane.offset > 0 else 1.0
     normal = np.zeros(3)
@@ -142,8 +157,8 @@ def _flat_face(plane: Plane, face: Face, scale: float) -> FlatFace:
     in_plane = (u, v) if side > 0 else (v, u)
     outline = _turned(face.outline * scale, in_plane, counter_clockwise=True)
     holes = [_turned(hole * scale, in_plane, counter_clockwise=False) for hole in face.holes]
-    rings, hidden = (outline, *holes), tuple(part * scale for part in face.hidden)
-    return FlatFace(face.id, plane.id, plane.axis, plane.offset * scale, normal, in_plane, rings, hidden)
+    offset, rings, hidden = plane.offset * scale, (outline, *holes), tuple(part * scale for part in face.hidden)
+    return FlatFace(face.id, face.kind, label, plane.id, plane.axis, offset, normal, in_plane, rings, hidden)
 
 
 def _turned(ring: Float, in_plane: tuple[int, int], counter_clockwise: bool) -> Float:

@@ -22,7 +22,7 @@ def write(
     path: Path,
     names: Names,
     probability: bool = False,
-    roles: bool = True,
+    roles: bool = False,
     textures: Textures | None = None,
 ) -> SideFiles:
     """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it.
@@ -58,7 +58,8 @@ def _material(page_name: str) -> str:
 
 
 def _face(face: FlatFace, first: int, textures: Textures | None) -> list[str]:
-    rows = [f"o {face.name}", *_points(face.vertices)]
+    """A face as an object of triangles; the comment below its name says what it is, such as `wall 3`."""
+    rows = [f"o {face.name}", f"# {face.label}", *_points(face.vertices)]
     if textures is None:
         corner = "{0}"
     else:
@@ -72,11 +73,11 @@ def _face(face: FlatFace, first: int, textures: Textures | None) -> list[str]:
 
 
 def _lines(group: LineGroup, first: int) -> list[str]:
-    """A group as an object of two-point lines; the comment above each line gives its id."""
+    """A group as an object of two-point lines; the comment above each line gives its id and its role."""
     rows = [f"o {group.name}", *_points(group.ends.reshape(-1, 3))]
     starts = np.arange(first, first + 2 * len(group.ids), 2).tolist()
-    for number, start in zip(group.ids.tolist(), starts, strict=True):
-        rows += [f"# line {number}", f"l {start} {start + 1}"]
+    for number, role, start in zip(group.ids.tolist(), group.roles.tolist(), starts, strict=True):
+        rows += [f"# line {number} {role}", f"l {start} {start + 1}"]
     return rows
 
 

@@ -8,8 +8,10 @@ A glTF camera looks through the middle of its picture. So ours spans the smalles
 holds the photo, and its extras `linecad_...` tell that frame and the camera matrix; pixels count from the corner.
 
 Line ids stand in the extras of each group of lines, and as vertex attribute _LINEID where all ids of the group are
-small enough for a float32, the only kind of number that holds them there. The probabilities that the depths are right
-stand in the extras too, where the scene tells them.
+small enough for a float32, the only kind of number that holds them there. The roles of the lines stand in the extras
+too, and the probabilities that their depths are right, where the scene tells them.
+
+The node of a face has its name by id, its mesh one for people, such as `wall 3`, which stands in the extras too.
 
 Renderers leave out what has no surface. So the lines can be written as thin tubes instead.
 """
@@ -49,7 +51,7 @@ def write(
     path: Path,
     tubes: bool = False,
     probability: bool = False,
-    roles: bool = True,
+    roles: bool = False,
     textures: Textures | None = None,
 ) -> None:
     """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails.
@@ -66,6 +68,7 @@ def write(
         tree["asset"]["generator"] = "linecad"
         tree["asset"]["extras"] = {"linecad_unit": model.unit_note, "linecad_photo": model.photo}
         set_materials(tree, model, textures)
+        _set_labels(tree, model)
         _set_targets(tree)
         _add_camera(tree, scene, model)
         _add_planes(tree, scene)
@@ -116,8 +119,13 @@ def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
 
 def _told(group: LineGroup) -> _Tree:
     told = {"probabilities": group.probability.tolist()} if len(group.probability) else {}
-    role = {"role": group.role} if group.role else {}
-    return {"axis": AXES[group.axis], "boundary": group.is_boundary, **role, "line_ids": group.ids.tolist(), **told}
+    return {
+        "axis": AXES[group.axis],
+        "boundary": group.is_boundary,
+        "line_ids": group.ids.tolist(),
+        "roles": group.roles.tolist(),
+        **told,
+    }
 
 
 def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_line: int) -> None:
@@ -132,8 +140,22 @@ def _mesh(face: FlatFace, coordinates: Float | None) -> trimesh.Trimesh:
         process=False,
         visual=TextureVisuals(uv=coordinates, material=_PLACEHOLDER),
         vertex_normals=np.tile(_Y_UP @ face.normal, (len(face.vertices), 1)),
-        metadata={"face_id": face.id, "plane_id": face.plane, "axis": AXES[face.axis], "offset": face.offset},
+        metadata={
+            "face_id": face.id,
+            "kind": face.kind,
+            "label": face.label,
+            "plane_id": face.plane,
+            "axis": AXES[face.axis],
+            "offset": face.offset,
+        },
     )
+
+
+def _set_labels(tree: _Tree, model: Model) -> None:
+    """Name the meshes of faces for people; trimesh names a mesh and its node alike."""
+    labels = {face.name: face.label for face in model.faces}
+    for mesh in tree["meshes"]:
+        mesh["name"] = labels.get(mesh["name"], mesh["name"])
 
 
 def _set_targets(tree: _Tree) -> None:

@@ -1,8 +1,8 @@
 """STEP AP214 (ISO 10303-21 and -214), in millimetres: https://www.steptools.com/stds/stp_aim/html/
 
 An assembly `linecad` of two assemblies and a part: `lines`, with one part of straight edges a group; `faces`, with one
-part a face, which has its holes; and `camera`, a point where it stood. Sewn, `faces` is one part, and faces that share
-an edge are one shell.
+part a face, which has its holes; and `camera`, a point where it stood. The place of a face's part in its assembly is
+named after what it shows, such as `wall 3`. Sewn, `faces` is one part, and faces that share an edge are one shell.
 
 OCCT is used directly. build123d, which wraps it, takes more than twice the time and 160 MB more to load, and its own
 STEP export garbles names that are not ASCII, colours part and instance so that FreeCAD doubles the objects, and never
@@ -57,7 +57,7 @@ _CURVE, _SURFACE = XCAFDoc_ColorType.XCAFDoc_ColorCurv, XCAFDoc_ColorType.XCAFDo
 _OPTIONS = {"write.step.schema": "AP214IS", "write.step.unit": "MM", "write.step.product.name": "linecad"}
 
 
-def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = False, roles: bool = True) -> None:
+def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = False, roles: bool = False) -> None:
     """Write the scene as STEP to `path`, its faces sewn where that is asked for; OSError where that fails.
 
     `probability` parts the lines by band, `roles` by role.
@@ -92,10 +92,11 @@ class _Assembly:
             self._place(parent, label, name)
         return label
 
-    def add_part(self, parent: TDF_Label, name: str, shape: TopoDS_Shape) -> TDF_Label:
+    def add_part(self, parent: TDF_Label, name: str, shape: TopoDS_Shape, place_name: str = "") -> TDF_Label:
+        """Add a part; its place in the parent has a name of its own where one is given."""
         label = self._shapes.AddShape(shape, False)
         _set_name(label, name)
-        self._place(parent, label, name)
+        self._place(parent, label, place_name or name)
         return label
 
     def paint(self, part: TDF_Label, colour: RGB, kind: XCAFDoc_ColorType) -> None:
@@ -122,7 +123,8 @@ def _build_document(model: Model, sewn: bool) -> TDocStd_Document:
     elif model.faces:
         faces = assembly.add_assembly(root, "faces")
         for face in model.faces:
-            assembly.paint(assembly.add_part(faces, face.name, _face_shape(face)), FACE, _SURFACE)
+            part = assembly.add_part(faces, face.name, _face_shape(face), face.label)
+            assembly.paint(part, FACE, _SURFACE)
     # In a compound, because OCCT loses the name of a bare vertex.
     assembly.add_part(root, "camera", _compound([BRepBuilderAPI_MakeVertex(gp_Pnt(0.0, 0.0, 0.0)).Vertex()]))
     return assembly.finish()

@@ -40,7 +40,7 @@ def write(
     scene: Scene,
     path: Path,
     probability: bool = False,
-    roles: bool = True,
+    roles: bool = False,
     names: Names | None = None,
     textures: Textures | None = None,
 ) -> SideFiles:
@@ -145,9 +145,9 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
     if len(group.probability):
         told = variables.CreatePrimvar("linecad:probability", Sdf.ValueTypeNames.DoubleArray, UsdGeom.Tokens.uniform)
         told.Set(Vt.DoubleArray.FromNumpy(group.probability))
+    roles = variables.CreatePrimvar("linecad:role", Sdf.ValueTypeNames.TokenArray, UsdGeom.Tokens.uniform)
+    roles.Set(Vt.TokenArray(group.roles.tolist()))
     _set(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
-    if group.role:
-        _set(curves.GetPrim(), "linecad:role", Sdf.ValueTypeNames.Token, group.role)
 
     material = _MATERIALS.AppendChild(group.name)
     add_material(stage, material, colour, emits=True)
@@ -171,6 +171,8 @@ def _add_face(stage: Usd.Stage, face: FlatFace) -> UsdGeom.Mesh:
     prim.SetDisplayName(face.name)
     id_type = Sdf.ValueTypeNames.Int if face.id <= _LARGEST_INT32 else Sdf.ValueTypeNames.Int64
     _set(prim, "linecad:faceId", id_type, face.id)
+    _set(prim, "linecad:kind", Sdf.ValueTypeNames.Token, face.kind)
+    _set(prim, "linecad:label", Sdf.ValueTypeNames.String, face.label)
     _set(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, AXES[face.axis])
     _set(prim, "linecad:planeOffset", Sdf.ValueTypeNames.Double, face.offset)
     _set(prim, "linecad:ringCounts", Sdf.ValueTypeNames.IntArray, Vt.IntArray([len(ring) for ring in face.rings]))

@@ -91,7 +91,7 @@ def add_camera_height(parser: "argparse._ActionsContainer") -> None:
     """A known height."""
     parser.add_argument(
         "--camera-height", type=_camera_height, dest="known", metavar="METRES",
-        help="of the camera above the ground, the lowest horizontal plane",
+        help="of the camera above the ground",
     )  # fmt: skip
 
 

@@ -4,7 +4,8 @@ One photo has no scale, so somebody must say one length: of a line of the scene,
 lie on one line or in one plane, or the height of the camera above the ground. Only `metres_per_unit` is set; the
 coordinates of a scene stay as they are.
 
-Only component 0 can be measured: the scale of every other one is itself a guess (linecad.model.build).
+Lines and points are measured in component 0 alone: the scale of every other one is itself a guess
+(linecad.model.build). The ground stands where the lines of the whole scene put it (linecad.model.regions.surfaces).
 """
 
 from dataclasses import dataclass, replace
@@ -64,20 +65,26 @@ def set_scale(scene: Scene, known: Known) -> Scene:
         case CameraHeight():
             plane = find_ground(scene)
             units = -plane.offset
-            what = (
-                f"the camera is {known.metres:g} m above plane {plane.id} (z = {plane.offset:.4g}), taken to be the "
-                "ground as the lowest horizontal plane"
-            )
+            number, height = f"plane {plane.id}", f"z = {plane.offset:.4g}"
+            if _shows_ground(plane):
+                where = f"the ground, {number} ({height})"
+            else:
+                where = f"{number} ({height}), taken to be the ground as the lowest horizontal plane"
+            what = f"the camera is {known.metres:g} m above {where}"
     factor = known.metres / units
     return replace(scene, metres_per_unit=factor, scale_source=f"{what}, so a unit is {factor:.6g} m")
 
 
 def find_ground(scene: Scene) -> Plane:
-    """The lowest horizontal plane of component 0 below the camera; ScaleError where none is the lowest thing there.
+    """The plane of the ground's faces, also where no line lies in it; the lowest of several.
 
-    Lines that reach farther down than LOWER_SHARE of its depth below the camera, more than STRAY_LINES of them, show
-    that it is a balcony or a row of sills, and that the ground is not in the scene.
+    In a scene without such faces, the lowest horizontal plane of component 0 below the camera. Lines that reach farther
+    down than LOWER_SHARE of its depth, more than STRAY_LINES of them, show that it is a balcony or a row of sills.
+    Raises ScaleError then, and where there is no such plane.
     """
+    shown = [plane for plane in scene.planes if _shows_ground(plane)]
+    if shown:
+        return min(shown, key=lambda plane: plane.offset)
     own = _own_lines(scene)
     below = [plane for plane in scene.planes if plane.axis == 2 and plane.offset < 0 and own & set(plane.lines)]
     if not below:
@@ -94,6 +101,11 @@ def find_ground(scene: Scene) -> Plane:
             f"reach below it, down to z = {lowest.min():.4g}; give a length with --scale instead"
         )
     return ground
+
+
+def _shows_ground(plane: Plane) -> bool:
+    """Whether it is a plane below the camera with a face of the ground."""
+    return plane.axis == 2 and plane.offset < 0 and any(face.kind == "ground" for face in plane.faces)
 
 
 def _own_lines(scene: Scene) -> set[int]:

@@ -47,6 +47,8 @@ def check(findings, chosen):
         if item.name in faces:
             points, triangles = triangles_of(item)
             check_face(findings, faces[item.name], points, triangles, TOLERANCE)
+            if is_gltf:
+                findings.need(item.data.name == faces[item.name]["label"], f"{item.name} shows a {item.data.name}")
             if chosen.textures:
                 check_texture(findings, item)
     if is_gltf:

@@ -41,13 +41,15 @@ def check(findings, path, expected):
 
 
 def told(entity):
-    """What the extended data of an entity says: kind, id, number (a 16-bit one) and name."""
+    """What the extended data of an entity says: kind, id, number (a 16-bit one), name, and the words after it."""
     if not entity.has_xdata("LINECAD"):
         raise ValueError(f"a {entity.dxftype()} has no extended data of LINECAD")
     kind, number, *more = [(tag.code, tag.value) for tag in entity.get_xdata("LINECAD")]
-    values = dict(more)
+    name, *words = [value for code, value in more if code == STRING]
     # What 32 bits do not hold is text.
-    return {"kind": kind[1], "id": int(number[1]), "number": values.get(INTEGER_16), "name": values.get(STRING)}
+    return {
+        "kind": kind[1], "id": int(number[1]), "number": dict(more).get(INTEGER_16), "name": name, "words": words,
+    }  # fmt: skip
 
 
 def check_layers(findings, document, expected):
@@ -75,6 +77,7 @@ def check_layers(findings, document, expected):
 
 def check_line_entities(findings, space, expected):
     segments, place = {}, {}
+    roles = {line["id"]: line["role"] for line in expected["lines"]}
     for entity in space.query("LINE"):
         said, group = told(entity), entity.dxf.layer.lower()
         ends = tuple(entity.dxf.start), tuple(entity.dxf.end)
@@ -85,6 +88,8 @@ def check_line_entities(findings, space, expected):
         kind = expected["groups"].get(group, {})
         same = (said["name"], said["number"]) == (kind.get("axis"), kind.get("boundary"))
         findings.need(same, f"line {said['id']} on {entity.dxf.layer} says axis {said['name']}, {said['number']}")
+        role = roles.get(said["id"])
+        findings.need(said["words"] == [role], f"line {said['id']} says {said['words']}, expected the role {role}")
     check_names(findings, "ids of lines", place, [line["id"] for line in expected["lines"]])
     for number, ends in check_lines(findings, expected, segments, TOLERANCE).items():
         findings.need(set(place.get(number, ())) == set(ends), f"the line with the id {number} is another one")
@@ -99,6 +104,7 @@ def check_triangles(findings, space, face):
         if told(entity)["name"] != face["name"]:
             continue
         findings.need(entity.dxf.layer == "FACES", f"{face['name']}: a 3DFACE is on {entity.dxf.layer}")
+        check_words(findings, told(entity), face)
         vertices = [tuple(vertex) for vertex in entity.wcs_vertices()][:3]
         numbers = [corner.get(vertex, -1) for vertex in vertices]
         for edge, pair in enumerate(zip(numbers, numbers[1:] + numbers[:1], strict=True)):
@@ -120,10 +126,17 @@ def check_outlines(findings, space, face):
         right = entity.is_3d_polyline and entity.is_closed and entity.dxf.layer == "FACE_OUTLINES"
         findings.need(right, f"{face['name']}: an outline is no closed 3D polyline on FACE_OUTLINES")
         findings.need(said["id"] == face["id"], f"{face['name']}: an outline has the id {said['id']}")
+        check_words(findings, said, face)
         found.append([tuple(vertex.dxf.location) for vertex in entity.vertices])
     rings = [[tuple(face["corners"][number]) for number in ring] for ring in face["rings"]]
     same = sorted(map(turned, found)) == sorted(map(turned, rings))
     findings.need(same, f"{face['name']}: its {len(found)} outlines are not its {len(rings)} rings")
+
+
+def check_words(findings, said, face):
+    """Need the kind of a face and its label behind its name."""
+    wanted = [face["kind"], face["label"]]
+    findings.need(said["words"] == wanted, f"{face['name']} says {said['words']}, expected {wanted}")
 
 
 def turned(ring):

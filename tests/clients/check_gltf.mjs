@@ -42,7 +42,12 @@ async function check(path, expected) {
     const group = expected.groups[node.name];
     const face = faces.get(node.name);
     if (group) checkLines(file, node.name, primitives[0], extras, matrix, expected, placed);
-    if (face) checkFace(file, face, primitives[0], matrix, expected);
+    if (face) {
+      const told = [file.tree.meshes[node.mesh].name, extras?.label, extras?.kind];
+      const wanted = [face.label, face.label, face.kind];
+      need(String(told) === String(wanted), `${face.name} says ${told}, expected ${wanted}`);
+      checkFace(file, face, primitives[0], matrix, expected);
+    }
   }
   const largest = checkCamera(file.tree, nodes, expected, placed);
   const counts = `${issues.numErrors} errors, ${issues.numWarnings} warnings`;
@@ -94,6 +99,7 @@ function checkLines(file, name, primitive, extras, matrix, expected, placed) {
   const right = told.axis === group.axis && told.boundary === group.boundary;
   need(right, `${name} says axis ${told.axis}, boundary ${told.boundary}`);
   need(String(told.line_ids) === String(group.ids), `${name} says the ids ${told.line_ids}, expected ${group.ids}`);
+  need(String(told.roles) === String(group.roles), `${name} says the roles ${told.roles}, expected ${group.roles}`);
   if (primitive.attributes._LINEID !== undefined) {
     const ids = indices.map((index) => readAccessor(file, primitive.attributes._LINEID)[index][0]);
     need(String(ids) === String(group.ids.flatMap((id) => [id, id])), `${name}: _LINEID does not tell the ids`);

@@ -91,9 +91,10 @@ def check_curves(findings, all_curves, cache, expected):
         findings.need(widths and min(widths) > 0, f"{name}: widths {widths}")
         points = in_world(cache, prim, curves.GetPointsAttr().Get())
         segments[name] = list(zip(points[::2], points[1::2], strict=True))
-        group = expected["groups"].get(name, {"ids": [], "axis": None, "boundary": None})
+        group = expected["groups"].get(name, {"ids": [], "axis": None, "boundary": None, "roles": []})
         variables = UsdGeom.PrimvarsAPI(prim)
-        for what, values in (("id", group["ids"]), ("boundary", [group["boundary"]] * len(group["ids"]))):
+        boundaries = [group["boundary"]] * len(group["ids"])
+        for what, values in (("id", group["ids"]), ("boundary", boundaries), ("role", group["roles"])):
             variable = variables.GetPrimvar(f"linecad:{what}")
             uniform = variable.IsDefined() and variable.GetInterpolation() == UsdGeom.Tokens.uniform
             right = uniform and list(variable.Get()) == values
@@ -122,8 +123,10 @@ def check_mesh(findings, mesh, cache, face):
     check_face(findings, face, in_world(cache, prim, points), np.reshape(indices, (-1, 3)).tolist(), TOLERANCE)
     shown = prim.GetDisplayName() or prim.GetName()
     findings.need(shown == name, f"{name} is displayed as {shown!r}")
-    told = [prim.GetAttribute(f"linecad:{what}").Get() for what in ("faceId", "planeAxis", "planeOffset")]
-    findings.need(told == [face["id"], face["axis"], face["offset"]], f"{name} says {told}")
+    kinds = ("faceId", "kind", "label", "planeAxis", "planeOffset")
+    told = [prim.GetAttribute(f"linecad:{what}").Get() for what in kinds]
+    wanted = [face[what] for what in ("id", "kind", "label", "axis", "offset")]
+    findings.need(told == wanted, f"{name} says {told}, expected {wanted}")
     normals = set(map(tuple, mesh.GetNormalsAttr().Get()))
     wanted = tuple(float(-math.copysign(axis == face["axis"], face["offset"])) for axis in "xyz")
     same = len(normals) == 1 and np.allclose(list(normals), wanted)

@@ -48,8 +48,9 @@ def build_scene():
         "intersections": [],
         "planes": [
             {"id": 1, "axis": "y", "offset": WALL, "lines": [],
-             "faces": [{"id": 4, "outline": CORNERS, "holes": [WINDOW]}]},
-            {"id": 2, "axis": "z", "offset": GROUND, "lines": [], "faces": [{"id": 7, "outline": FLOOR, "holes": []}]},
+             "faces": [{"id": 4, "outline": CORNERS, "holes": [WINDOW], "kind": "wall"}]},
+            {"id": 2, "axis": "z", "offset": GROUND, "lines": [],
+             "faces": [{"id": 7, "outline": FLOOR, "holes": [], "kind": "ground"}]},
         ],
         "solve": {"solver": "none", "formulation": "gain", "status": "optimal", "objective": 0.0, "bound": 0.0,
                   "gap": 0.0},
@@ -104,13 +105,13 @@ def scene_file(tmp_path_factory):
 def export_to(scene_file, tmp_path):
     """Write the scene, or that of other content, in the format of a suffix; returns the file."""
 
-    def write(suffix, content=None, by_band=False):
+    def write(suffix, content=None, by_band=False, by_role=False):
         source = scene_file
         if content is not None:
             source = tmp_path / "other.json"
             source.write_text(json.dumps(content))
         path = tmp_path / f"wall{suffix}"
-        export(read_scene(source), path, options={"probability": True} if by_band else None)
+        export(read_scene(source), path, options={"probability": by_band, "roles": by_role})
         return path
 
     return write

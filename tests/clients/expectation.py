@@ -21,10 +21,11 @@ FACE_COLOUR = (0.80, 0.79, 0.74)
 BANDS = {"sure": 0.9, "likely": 0.5, "guess": 0.0}  # the smallest probability of each
 
 
-def build_expectation(scene, by_band=False):
+def build_expectation(scene, by_band=False, by_role=False):
     """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file of version 1.
 
-    `by_band` is for exports with the option probability=on, which part lines by how sure their depth is.
+    `by_band` is for exports with the option probability=on, which part lines by how sure their depth is, `by_role` for
+    those with roles=on, which part them by what they are drawn for.
     """
     if (scene.get("format"), scene.get("version")) != ("linecad-scene", 1):
         raise ValueError(f"format {scene.get('format')}, version {scene.get('version')}: not a scene file of version 1")
@@ -35,11 +36,14 @@ def build_expectation(scene, by_band=False):
         ends = [_scaled(end, metres) for end in line["ends"]]
         if math.dist(*ends) > SHORTEST_LINE:
             group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
-            group += _role(line)
+            role = line.get("role", "outline")
+            group += f"_{role}" if by_role and role != "outline" else ""  # of outlines the name says nothing
             group += _band(line) if by_band else ""
             pixels = [_project(end, camera) for end in ends]
-            lines.append({"id": line["id"], "group": group, "ends": ends, "pixels": pixels})
+            lines.append({"id": line["id"], "group": group, "role": role, "ends": ends, "pixels": pixels})
     faces = [_face(plane, face, metres) for plane in scene["planes"] for face in plane.get("faces", [])]
+    faces.sort(key=lambda face: face["id"])
+    _label(faces)
     points = [end for line in lines for end in line["ends"]] + [c for face in faces for c in face["corners"]]
     return {
         "camera": camera,
@@ -47,16 +51,10 @@ def build_expectation(scene, by_band=False):
         "lines": lines,
         "groups": _groups(scene["lines"], lines),
         "planes": [{"id": p["id"], "axis": p["axis"], "offset": p["offset"] * metres} for p in scene["planes"]],
-        "faces": sorted(faces, key=lambda face: face["id"]),
+        "faces": faces,
         "face_colour": {"srgb": FACE_COLOUR, "linear": [_linear(value) for value in FACE_COLOUR]},
         "box": [[choose(values) for values in zip(*points, strict=True)] for choose in (min, max)],
     }
-
-
-def _role(line):
-    """What the line is drawn for, as its group's name says it; of outlines it says nothing."""
-    role = line.get("role", "outline")
-    return "" if role == "outline" else f"_{role}"
 
 
 def _band(line):
@@ -101,8 +99,9 @@ def _groups(told, lines):
     kind = {line["id"]: (line["axis"], line["boundary"]) for line in told}
     for line in lines:
         axis, boundary = kind[line["id"]]
-        group = groups.setdefault(line["group"], {"axis": axis, "boundary": boundary, "ids": []})
+        group = groups.setdefault(line["group"], {"axis": axis, "boundary": boundary, "ids": [], "roles": []})
         group["ids"].append(line["id"])
+        group["roles"].append(line["role"])
     for group in groups.values():
         white = 0.0 if group["boundary"] else WHITE_WHERE_NO_BOUNDARY
         group["srgb"] = [white + (1 - white) * value for value in AXIS_COLOUR[group["axis"]]]
@@ -119,12 +118,21 @@ def _face(plane, face, metres):
     return {
         "id": face["id"],
         "name": f"face_{face['id']:04d}",
+        "kind": face.get("kind", "other"),
         "axis": plane["axis"],
         "offset": plane["offset"] * metres,
         "area": outline - sum(holes),
         "corners": corners,
         "rings": [[number[tuple(point)] for point in ring] for ring in rings],
     }
+
+
+def _label(faces):
+    """Give each face what people call it: its kind, with its number among those of its kind where there are more."""
+    for kind in {face["kind"] for face in faces}:
+        alike = [face for face in faces if face["kind"] == kind]
+        for number, face in enumerate(alike, start=1):
+            face["label"] = kind if len(alike) == 1 else f"{kind} {number}"
 
 
 def _area(ring):

@@ -117,8 +117,15 @@ def test_a_change_is_noticed(export_to, expected, change, told):
     assert any(told in line for line in report)
 
 
-def test_an_export_by_role_is_right_and_one_without_is_noticed(export_to, drawn, expected):
-    told = json.loads(json.dumps(build_expectation(drawn)))
-    path = export_to(".usda", drawn)
+@pytest.mark.parametrize("by_role", [False, True])
+def test_an_export_tells_roles_and_is_by_role_only_where_asked(export_to, drawn, by_role):
+    told, other = (json.loads(json.dumps(build_expectation(drawn, by_role=asked))) for asked in (by_role, not by_role))
+    path = export_to(".usda", drawn, by_role=by_role)
     assert verdict(path, told).startswith("CHECK OK usd")
-    assert verdict(path, expected).startswith("CHECK FAILED")
+    assert verdict(path, other).startswith("CHECK FAILED")
+
+
+def test_roles_and_kinds_that_are_others_are_noticed(export_to, drawn, expected):
+    assert verdict(export_to(".usda", drawn), expected).startswith("CHECK FAILED")
+    expected["faces"][0]["label"] = "wall 1"
+    assert verdict(export_to(".usda"), expected).startswith("CHECK FAILED")

@@ -31,6 +31,21 @@ def test_groups_by_band_end_in_how_sure_they_are_where_the_scene_tells(told, doc
     assert build_expectation(told) == build_expectation(document, by_band=True) == build_expectation(document)
 
 
+def test_groups_by_role_end_in_it_but_for_outlines(drawn):
+    plain, by_role = build_expectation(drawn), build_expectation(drawn, by_role=True)
+    assert [line["role"] for line in plain["lines"][:3]] == ["outline", "opening", "detail"]
+    for before, after in zip(plain["lines"], by_role["lines"], strict=True):
+        assert after["group"] == before["group"] + {"outline": ""}.get(after["role"], f"_{after['role']}")
+
+
+def test_faces_are_called_by_their_kind(document):
+    faces = [face for plane in document["planes"] for face in plane["faces"]]
+    assert [face["label"] for face in build_expectation(document)["faces"]] == ["wall", "ground"]
+    del faces[0]["kind"]
+    faces[1]["kind"] = "other"
+    assert [face["label"] for face in build_expectation(document)["faces"]] == ["other 1", "other 2"]
+
+
 @pytest.mark.parametrize(
     ("change", "reason"),
     [

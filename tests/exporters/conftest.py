@@ -34,6 +34,7 @@ FLAT = [
     (2, 4.2, rectangle((8, -1.2), (11, 0)), []),
     (1, -1.2, rectangle((8, 4.2), (11, 4.9)), []),
 ]
+KINDS = ["wall", "wall", "ground", "window", "window", "window", "door", "other", "other"]
 FLAT_LINES = [
     *[((0, 0, z), (12, 0, z)) for z in (3.4, 7.4)],
     *[((-4, y, 0), (13, y, 0)) for y in (-3.5, -2.0)],
@@ -68,7 +69,7 @@ def build_planes():
     planes = {}
     for number, (axis, offset, outline, holes) in enumerate(FLAT):
         rings = tuple(in_space(axis, offset, hole) for hole in holes)
-        face = Face(number, in_space(axis, offset, outline), rings)
+        face = Face(number, in_space(axis, offset, outline), rings, KINDS[number])
         planes.setdefault((axis, offset), []).append(face)
     return [
         Plane(id=10 + number, axis=axis, offset=float(offset - EYE[axis]), lines=(), faces=tuple(faces))

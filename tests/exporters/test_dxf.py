@@ -47,7 +47,7 @@ def test_every_line_stands_on_the_layer_of_its_group_with_its_id(document, scene
         entity = entities[number]
         np.testing.assert_allclose([entity.dxf.start, entity.dxf.end], line_ends[number], atol=1e-12)
         assert entity.dxf.layer == f"LINES_{'XYZ'[axis]}_{'BOUNDARY' if is_boundary else 'NONBOUNDARY'}"
-        assert values(entity, 1000) == ["line", "xyz"[axis]]
+        assert values(entity, 1000) == ["line", "xyz"[axis], "outline"]
         assert values(entity, 1070) == [int(is_boundary)]
 
 
@@ -178,7 +178,7 @@ def test_layers_are_those_of_a_scene_that_does_not_tell_and_each_line_has_the_nu
 
 def test_detail_has_layers_of_the_thinnest_pen(scene, tmp_path):
     lines = replace(scene.lines, role=np.resize(["outline", "detail"], len(scene.lines)))
-    export(replace(scene, lines=lines), tmp_path / "a.dxf")
+    export(replace(scene, lines=lines), tmp_path / "a.dxf", options={"roles": True})
     document = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
     weights = {layer.dxf.name: layer.dxf.lineweight for layer in document.layers if layer.dxf.name.startswith("LINES_")}
     assert len(weights) == 12
@@ -187,3 +187,20 @@ def test_detail_has_layers_of_the_thinnest_pen(scene, tmp_path):
     role = dict(zip(scene.lines.id.tolist(), lines.role.tolist(), strict=True))
     for line in document.modelspace().query("LINE"):
         assert line.dxf.layer.endswith("_DETAIL") == (role[values(line, 1071)[0]] == "detail")
+
+
+def test_each_line_tells_its_role_on_the_plain_layers(scene, document, tmp_path):
+    lines = replace(scene.lines, role=np.resize(["outline", "opening", "detail"], len(scene.lines)))
+    export(replace(scene, lines=lines), tmp_path / "a.dxf")
+    drawn = ezdxf.readfile(tmp_path / "a.dxf", errors="strict")
+    assert [layer.dxf.name for layer in drawn.layers] == [layer.dxf.name for layer in document.layers]
+    role = dict(zip(scene.lines.id.tolist(), lines.role.tolist(), strict=True))
+    for line in drawn.modelspace().query("LINE"):
+        assert values(line, 1000)[2] == role[values(line, 1071)[0]]
+
+
+def test_triangles_and_outlines_tell_what_their_face_is(document, model):
+    told = {face.id: ["face", face.name, face.kind, face.label] for face in model.faces}
+    entities = document.modelspace().query("3DFACE POLYLINE")
+    assert {values(entity, 1071)[0] for entity in entities} == set(told)
+    assert all(values(entity, 1000) == told[values(entity, 1071)[0]] for entity in entities)

@@ -380,13 +380,13 @@ BY_ROLE = [suffix for suffix, row in FORMATS.items() if "roles" in [option.key f
 
 
 @pytest.mark.parametrize("suffix", BY_ROLE)
-def test_groups_by_role_are_there_unless_they_are_left_out(scene, tmp_path, suffix):
+def test_groups_by_role_are_there_only_where_they_are_asked_for(scene, tmp_path, suffix):
     drawn = replace(
         scene, lines=replace(scene.lines, role=np.resize(["outline", "opening", "detail"], len(scene.lines)))
     )
-    by_role = written(drawn, tmp_path / f"a{suffix}")
-    export(drawn, tmp_path / f"b{suffix}", options={"roles": False})
-    plain = (tmp_path / f"b{suffix}").read_bytes().lower()
+    plain = written(drawn, tmp_path / f"a{suffix}")
+    export(drawn, tmp_path / f"b{suffix}", options={"roles": True})
+    by_role = (tmp_path / f"b{suffix}").read_bytes().lower()
     assert by_role != plain
     if suffix not in (".usdc", ".usdz"):  # these are compressed
         assert b"lines_x_boundary_detail" in by_role

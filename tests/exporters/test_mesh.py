@@ -42,6 +42,13 @@ def test_every_face_is_an_object_of_the_obj(paths, model):
         np.testing.assert_allclose(mesh.bounds, expected.bounds, atol=1e-7)
 
 
+def test_the_obj_says_what_each_face_is(paths, model):
+    rows = paths[".obj"].read_text().splitlines()
+    assert [rows[rows.index(f"o {face.name}") + 1] for face in model.faces] == [
+        f"# {face.label}" for face in model.faces
+    ]
+
+
 def obj_lines(path):
     """Group name -> line id -> its two ends, read by hand as other programs read an OBJ."""
     vertices, groups, name, number = [], {}, None, None

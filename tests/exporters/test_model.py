@@ -120,11 +120,12 @@ def drawn(scene):
 
 
 def test_lines_stand_in_the_group_of_their_role(drawn):
-    model = build_model(drawn)
+    model = build_model(drawn, by_role=True)
     role = dict(zip(drawn.lines.id.tolist(), drawn.lines.role.tolist(), strict=True))
     assert sorted(number for group in model.groups for number in group.ids.tolist()) == sorted(role)
     for group in model.groups:
         assert {role[number] for number in group.ids.tolist()} == {group.role}
+        assert group.roles.tolist() == [group.role] * len(group.ids)
         assert group.name.endswith("boundary" if group.role == "outline" else f"boundary_{group.role}")
     names = [group.name for group in model.groups]
     assert names[:3] == ["lines_x_boundary", "lines_x_boundary_opening", "lines_x_boundary_detail"]
@@ -133,11 +134,30 @@ def test_lines_stand_in_the_group_of_their_role(drawn):
 
 def test_roles_and_bands_go_together(drawn, told):
     both = replace(drawn, lines=replace(drawn.lines, probability=told.lines.probability))
-    names = {group.name for group in build_model(both, by_band=True).groups}
+    names = {group.name for group in build_model(both, by_band=True, by_role=True).groups}
     assert {"lines_x_boundary_sure", "lines_x_boundary_detail_guess", "lines_x_boundary_opening_likely"} <= names
 
 
-def test_roles_are_left_alone_where_that_is_asked_for(drawn, model):
-    plain = build_model(drawn, by_role=False)
+def test_groups_have_their_plain_names_where_nobody_asks_for_roles_and_tell_them(drawn, model):
+    plain = build_model(drawn)
+    role = dict(zip(drawn.lines.id.tolist(), drawn.lines.role.tolist(), strict=True))
+    assert all(group.roles.tolist() == [role[number] for number in group.ids.tolist()] for group in plain.groups)
     assert [group.name for group in plain.groups] == [group.name for group in model.groups]
     assert [group.ids.tolist() for group in plain.groups] == [group.ids.tolist() for group in model.groups]
+
+
+def test_faces_are_labelled_by_kind_and_counted_where_there_are_several(model):
+    assert [face.label for face in model.faces] == [
+        "wall 1", "wall 2", "ground", "window 1", "window 2", "window 3", "door", "other 1", "other 2",
+    ]  # fmt: skip
+    assert [face.kind for face in model.faces] == [face.label.split()[0] for face in model.faces]
+
+
+def test_the_count_goes_by_id_through_all_planes(scene):
+    faces = iter([7, 3, 5, 0, 8, 1, 2, 6, 4])
+    planes = [
+        replace(plane, faces=tuple(replace(face, id=next(faces), kind="wall") for face in plane.faces))
+        for plane in scene.planes
+    ]
+    labels = {face.id: face.label for face in build_model(replace(scene, planes=tuple(planes))).faces}
+    assert labels == {number: f"wall {number + 1}" for number in range(9)}

@@ -22,15 +22,19 @@ LEAST_LEFT = 0.5  # of a line's length that its moved ends must leave
 def close_ends(strokes: Strokes) -> tuple[Strokes, Bool]:
     """The strokes with every end at the nearest line that it nearly meets, and which ends (N, 2) meet one.
 
-    Lines only move along themselves.
+    Lines only move along themselves. One that would lose more than half of its length on the way stays as it was.
     """
-    pairs = _meeting(strokes)
+    pairs, found = _meeting(strokes), strokes
     for _ in range(MOST_SWEEPS):
-        reach, meets = _closed_once(strokes, pairs)
-        if np.array_equal(reach, strokes.reach):
+        reach, meets = _closed_once(found, pairs)
+        if np.array_equal(reach, found.reach):
             break
-        strokes = replace(strokes, reach=reach)
-    return strokes, meets
+        found = replace(found, reach=reach)
+    lost = np.ptp(found.reach, axis=1) < LEAST_LEFT * np.ptp(strokes.reach, axis=1)
+    if lost.any():
+        found = replace(found, reach=np.where(lost[:, None], strokes.reach, found.reach))
+        meets = _closed_once(found, pairs)[1]
+    return found, meets
 
 
 @dataclass(frozen=True, eq=False)

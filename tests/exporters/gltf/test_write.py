@@ -81,7 +81,8 @@ def test_every_line_is_at_its_place_with_its_id(glb, model):
         np.testing.assert_array_equal(numbers, np.repeat(group.ids, 2))
         extras = glb.tree["meshes"][glb.node(group.name)["mesh"]]["extras"]
         assert extras == {
-            "axis": "xyz"[group.axis], "boundary": group.is_boundary, "role": "outline", "line_ids": group.ids.tolist(),
+            "axis": "xyz"[group.axis], "boundary": group.is_boundary, "line_ids": group.ids.tolist(),
+            "roles": ["outline"] * len(group.ids),
         }  # fmt: skip
 
 
@@ -93,6 +94,16 @@ def test_every_face_is_there_as_its_triangles_with_normals_towards_the_camera(gl
         np.testing.assert_array_equal(glb.array(primitive["indices"]).reshape(-1, 3), triangulate(face))
         x, y, z = glb.array(primitive["attributes"]["NORMAL"]).T
         np.testing.assert_array_equal(np.stack([x, -z, y], axis=1), np.tile(face.normal, (len(face.vertices), 1)))
+
+
+def test_the_mesh_of_a_face_is_named_by_its_kind(glb, model):
+    for face in model.faces:
+        mesh = glb.tree["meshes"][glb.node(face.name)["mesh"]]
+        assert mesh["name"] == face.label
+        assert mesh["extras"] == {
+            "face_id": face.id, "kind": face.kind, "label": face.label, "plane_id": face.plane,
+            "axis": "xyz"[face.axis], "offset": face.offset,
+        }  # fmt: skip
 
 
 def test_lines_are_unlit_in_the_colour_of_their_group(glb, model):

@@ -34,16 +34,17 @@ class Reader:
         assert reader.Transfer(self.document)
         shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
         self.colours = XCAFDoc_DocumentTool.ColorTool_s(self.document.Main())
-        self.parents, self.parts = {}, {}
+        self.parents, self.parts, self.places = {}, {}, {}
         for root in labels(shapes.GetFreeShapes):
             self.walk(root, None)
 
     def walk(self, label, parent):
-        name, referred = name_of(label), TDF_Label()
+        place, referred = name_of(label), TDF_Label()
         if XCAFDoc_ShapeTool.GetReferredShape_s(label, referred):
             label = referred
-        assert name_of(label) == name
+        name = name_of(label)
         assert name not in self.parents
+        self.places[name] = place
         self.parents[name] = parent
         if XCAFDoc_ShapeTool.IsAssembly_s(label):
             for component in labels(lambda found: XCAFDoc_ShapeTool.GetComponents_s(label, found)):
@@ -95,6 +96,11 @@ def test_parts_are_named_and_stand_in_their_assembly(read, model):
     expected |= {group.name: "lines" for group in model.groups}
     expected |= {face.name: "faces" for face in model.faces}
     assert read.parents == expected
+
+
+def test_places_are_named_like_their_parts_but_those_of_faces_by_kind(read, model):
+    labels = {face.name: face.label for face in model.faces}
+    assert read.places == {name: labels.get(name, name) for name in read.parents}
 
 
 def test_every_line_is_a_straight_edge_at_its_place(read, model):

@@ -74,14 +74,15 @@ def read_glb(path):
         return np.frombuffer(view(tree["accessors"][index]["bufferView"]), kind).reshape(-1, width)
 
     faces = {}
-    for mesh in tree["meshes"]:
+    meshes = [(node["name"], tree["meshes"][node["mesh"]]) for node in tree["nodes"] if "mesh" in node]
+    for name, mesh in meshes:
         (primitive,) = mesh["primitives"]
         material = tree["materials"][primitive["material"]]
         if "baseColorTexture" in material["pbrMetallicRoughness"]:
             texture = tree["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]
             x, y, z = array(primitive["attributes"]["POSITION"], np.float32, 3).T
             s, t = array(primitive["attributes"]["TEXCOORD_0"], np.float32, 2).astype(float).T
-            faces[mesh["name"]] = Textured(
+            faces[name] = Textured(
                 np.stack([x, -z, y], axis=1).astype(float),
                 array(primitive["indices"], np.uint32, 3),
                 np.stack([s, 1 - t], axis=1),

@@ -102,7 +102,9 @@ def test_every_group_of_lines_is_a_prim(stage, model):
         ids, boundary = (variables.GetPrimvar(f"linecad:{name}") for name in ("id", "boundary"))
         assert list(ids.Get()) == group.ids.tolist()
         assert list(boundary.Get()) == [group.is_boundary] * len(group.ids)
-        assert ids.GetInterpolation() == boundary.GetInterpolation() == "uniform"
+        roles = variables.GetPrimvar("linecad:role")
+        assert list(roles.Get()) == group.roles.tolist()
+        assert ids.GetInterpolation() == boundary.GetInterpolation() == roles.GetInterpolation() == "uniform"
         assert prim.GetAttribute("linecad:direction").Get() == "xyz"[group.axis]
         colour = linear(line_colour(group.axis, group.is_boundary))
         assert np.array(curves.GetDisplayColorAttr().Get())[0] == pytest.approx(colour)
@@ -119,6 +121,7 @@ def test_every_face_is_a_mesh(stage, model):
         assert mesh.GetSubdivisionSchemeAttr().Get() == "none"
         assert mesh.GetDoubleSidedAttr().Get()
         assert prim.GetDisplayName() == face.name
+        assert [prim.GetAttribute(f"linecad:{name}").Get() for name in ("kind", "label")] == [face.kind, face.label]
         told = {name: prim.GetAttribute(f"linecad:{name}").Get() for name in ("faceId", "planeAxis", "planeOffset")}
         assert told == {"faceId": face.id, "planeAxis": "xyz"[face.axis], "planeOffset": face.offset}
         assert list(prim.GetAttribute("linecad:ringCounts").Get()) == [len(ring) for ring in face.rings]

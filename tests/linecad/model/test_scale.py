@@ -157,6 +157,33 @@ def test_the_height_of_the_camera_above_the_ground(scene):
     assert "plane 4 (z = -1.6)" in measured.scale_source
 
 
+SHOWN = Plane(12, 2, -2.0, (), (Face(2, [[x, y, -2.0] for x, y, _ in GROUND], kind="ground"),))
+
+
+def test_the_face_of_the_ground_is_measured_from_though_no_line_lies_in_its_plane(scene):
+    assert find_ground(with_planes(scene, *scene.planes, SHOWN)).id == 12
+    measured = set_scale(with_planes(scene, *scene.planes, SHOWN), CameraHeight(0.5))
+    assert measured.metres_per_unit == pytest.approx(UNIT)
+    assert measured.scale_source == "the camera is 0.5 m above the ground, plane 12 (z = -2), so a unit is 0.25 m"
+
+
+def test_the_face_of_the_ground_is_believed_where_lines_stray_below_it_or_lower_planes_lie(scene):
+    high = replace(SHOWN, offset=-1.0, faces=(Face(2, [[x, y, -1.0] for x, y, _ in GROUND], kind="ground"),))
+    assert find_ground(with_planes(scene, *scene.planes, high)).id == 12
+
+
+def test_the_lowest_of_several_grounds_is_measured_from(scene):
+    kerb = replace(SHOWN, id=13, offset=-1.9, faces=(Face(3, [[x, y, -1.9] for x, y, _ in GROUND], kind="ground"),))
+    assert find_ground(with_planes(scene, *scene.planes, SHOWN, kerb)).id == 12
+
+
+@pytest.mark.parametrize(("axis", "sign"), [(1, -1), (2, 1)])
+def test_a_ground_that_is_upright_or_above_the_camera_is_none(scene, axis, sign):
+    points = np.insert(np.array(GROUND)[:, :2], axis, 2.0 * sign, axis=1)
+    false = Plane(12, axis, 2.0 * sign, (), (Face(2, points, kind="ground"),))
+    assert find_ground(with_planes(scene, *scene.planes, false)).id == 4
+
+
 def test_without_a_horizontal_plane_below_the_camera_there_is_no_ground(scene):
     with pytest.raises(ScaleError, match="give a length with --scale"):
         set_scale(with_planes(scene, scene.planes[0], scene.planes[2]), CameraHeight(1.6))
