@@ -60,3 +60,15 @@ def check_unique(name: str, ids: list[int]) -> None:
         if number in seen:
             raise ValueError(f"{name}: the id {number} stands twice")
         seen.add(number)
+
+
+def read_only_rings(owner: str, rings: Iterable[Float]) -> tuple[Float, ...]:
+    """Read-only copies of polygons (V, 3) of at least 3 points; a ValueError tells their `owner`."""
+    frozen = tuple(np.array(ring, np.float64) for ring in rings)
+    for ring in frozen:
+        if ring.ndim != 2 or ring.shape[1] != 3 or len(ring) < 3:
+            raise ValueError(f"{owner} has a ring of shape {ring.shape}, expected at least 3 points")
+        if not np.isfinite(ring).all():
+            raise ValueError(f"{owner} holds a number that is not finite")
+        ring.flags.writeable = False
+    return frozen

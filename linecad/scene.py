@@ -16,6 +16,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from linecad import arrays
 from linecad.arrays import Bool, Float, Int, Text, check_lengths, check_not_negative, check_unique, check_words, freeze
 from linecad.line_graph import EDGE_KINDS
 
@@ -208,15 +209,9 @@ class Face:
 
     def __post_init__(self) -> None:
         freeze(self, "outline", np.float64, (None, 3))
+        arrays.read_only_rings(f"Face {self.id}", [self.outline])
         for name in ("holes", "hidden"):
-            rings = [np.array(ring, np.float64) for ring in getattr(self, name)]
-            for ring in (self.outline, *rings):
-                if ring.ndim != 2 or ring.shape[1] != 3 or len(ring) < 3:
-                    raise ValueError(f"Face {self.id} has a ring of shape {ring.shape}, expected at least 3 points")
-                if not np.isfinite(ring).all():
-                    raise ValueError(f"Face {self.id} holds a number that is not finite")
-                ring.flags.writeable = False
-            object.__setattr__(self, name, tuple(rings))
+            object.__setattr__(self, name, arrays.read_only_rings(f"Face {self.id}", getattr(self, name)))
         if self.kind not in FACE_KINDS:
             raise ValueError(f"Face {self.id} is a {self.kind!r}, expected one of {', '.join(FACE_KINDS)}")
 
@@ -259,10 +254,8 @@ class Opening:
 
     def __post_init__(self) -> None:
         numbers = [self.u0, self.u1, self.v0, self.v1, self.recess or 0.0, self.panel or 0.0]
-        if not np.isfinite(numbers).all():
-            raise ValueError(f"Opening {self.id} holds a number that is not finite")
-        if not (self.u0 < self.u1 and self.v0 < self.v1):
-            raise ValueError(f"Opening {self.id} has no area, expected u0 < u1 and v0 < v1")
+        if not (np.isfinite(numbers).all() and self.u0 < self.u1 and self.v0 < self.v1):
+            raise ValueError(f"Opening {self.id} has no area, expected finite numbers, u0 < u1 and v0 < v1")
         if self.kind not in OPENING_KINDS:
             raise ValueError(f"Opening {self.id} is a {self.kind!r}, expected {' or '.join(OPENING_KINDS)}")
         if (self.recess is None) != (self.panel is None) or (self.recess is not None and self.recess <= 0):

@@ -27,9 +27,9 @@ def words_of(lines: Lines) -> tuple[list[str], tuple[str, ...]]:
 def word_of(plane: Plane, word: dict[int, str], words: Sequence[str]) -> str:
     """The word that most lines of a plane have, given that of each line by id; the less sure one of two.
 
-    `words` are all there are, the surest first.
+    `words` are all there are, the surest first. A ground that no line shows is where all of them put it.
     """
-    counts = Counter(word[number] for number in plane.lines)
+    counts = Counter(word[number] for number in plane.lines or word)
     return max(reversed(words), key=lambda each: counts[each])
 
 

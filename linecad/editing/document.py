@@ -182,7 +182,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             "offset": plane.offset,
             "lines": [number for line in plane.lines for number in numbers[line]],
             "faces": [
-                {**triangles[face.id], "guess": bool(plane.lines) and guesses.issuperset(plane.lines)}
+                {**triangles[face.id], "guess": guesses.issuperset(plane.lines or numbers)}
                 for face in plane.faces
                 if face.id in triangles
             ],

@@ -6,16 +6,24 @@ from typing import cast
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.io.members import (
+    LARGEST_NUMBER,
+    count_or_zero,
+    distinct_ids,
+    known_member,
+    line_ids,
+    optional_boolean,
+    optional_items,
+)
 from linecad.io.scene_document import FORMAT, LARGEST_ERROR, VERSION
 from linecad.io.strict_json import JsonError, Node
+from linecad.io.surface_reading import read_openings, read_planes
 from linecad.line_graph import EDGE_KINDS
 from linecad.scene import (
     AXES,
     CAMERA_SOURCES,
     CONFIDENCES,
     DEPTH_KINDS,
-    FACE_KINDS,
-    OPENING_KINDS,
     QUALITIES,
     REASONS,
     ROLES,
@@ -24,19 +32,13 @@ from linecad.scene import (
     Certainty,
     DepthKind,
     DepthMapReport,
-    Face,
-    FaceKind,
     Intersections,
     Lines,
-    Opening,
-    OpeningKind,
-    Plane,
     Quality,
     Scene,
     SolveReport,
 )
 
-LARGEST_NUMBER = 1e12  # px, scene units and metres: beyond it a double keeps less than a tenth of a millimetre
 LARGEST_PHOTO = 10**6  # px along one side
 FLATNESS = 1e-6  # of the scene's size: how far a face may leave its plane before the file contradicts itself
 ROTATION_ERROR = 1e-6  # largest element of R R' - 1
@@ -52,7 +54,7 @@ def scene_of(top: Node) -> Scene:
     camera, rotation = _camera(top["camera"])
     lines = _lines(top["lines"].items())
     known = set(lines.id.tolist())
-    planes = _planes(top["planes"].items(), known)
+    planes = read_planes(top["planes"].items(), known)
     scene = Scene(
         photo=top["photo"].text(),
         camera=camera,
@@ -63,10 +65,10 @@ def scene_of(top: Node) -> Scene:
         solve=_solve_report(top["solve"]),
         metres_per_unit=_metres_per_unit(top.get("metres_per_unit")),
         scale_source=_text_or_none(top.get("scale_source")),
-        notes=tuple(note.text() for note in _optional_items(top, "notes")),
+        notes=tuple(note.text() for note in optional_items(top, "notes")),
         certainty=_certainty(top.get("certainty")),
         depth_map=_depth_map(top.get("depth_map")),
-        openings=_openings(_optional_items(top, "openings"), {plane.id for plane in planes if plane.axis != 2}),
+        openings=read_openings(optional_items(top, "openings"), {plane.id for plane in planes if plane.axis != 2}),
     )
     _check_flatness(scene)
     return scene
@@ -89,8 +91,8 @@ def _camera(node: Node) -> tuple[Camera, Float]:
         height=node["height"].integer(1, LARGEST_PHOTO),
         matrix=matrix,
         source=cast(CameraSource, node["source"].one_of(CAMERA_SOURCES)),
-        distortion=tuple(item.number(LARGEST_NUMBER) for item in _optional_items(node, "distortion")),
-        is_resampled=_optional_boolean(node, "resampled"),
+        distortion=tuple(item.number(LARGEST_NUMBER) for item in optional_items(node, "distortion")),
+        is_resampled=optional_boolean(node, "resampled"),
     )
     return camera, rotation
 
@@ -101,10 +103,10 @@ def _certainty(node: Node | None) -> Certainty | None:
     turns = node["rotation_degrees"].items()
     if len(turns) != 3:
         raise node["rotation_degrees"].wrong("a list of 3")
-    center = _known(node, "principal_point")
+    center = known_member(node, "principal_point")
     if center is not None and len(center.items()) != 2:
         raise center.wrong("a list of 2")
-    focal, radial = _known(node, "focal"), _known(node, "k1")
+    focal, radial = known_member(node, "focal"), known_member(node, "k1")
     x, y = (0.0, 0.0) if center is None else map(_standard_error, center.items())
     return Certainty(
         rotation=np.radians([_standard_error(turn, LARGEST_ERROR) for turn in turns]),
@@ -119,7 +121,7 @@ def _certainty(node: Node | None) -> Certainty | None:
 def _depth_map(node: Node | None) -> DepthMapReport | None:
     if node is None or node.value is None:
         return None
-    left_out = _known(node, "left_out")
+    left_out = known_member(node, "left_out")
     if left_out is not None:
         if not left_out.text():
             raise left_out.wrong("a reason or null")
@@ -133,12 +135,6 @@ def _depth_map(node: Node | None) -> DepthMapReport | None:
     )
 
 
-def _known(node: Node, key: str) -> Node | None:
-    """The member `key` where it is neither missing nor null."""
-    member = node.get(key)
-    return None if member is None or member.value is None else member
-
-
 def _standard_error(node: Node, largest: float = LARGEST_NUMBER) -> float:
     if node.number(largest) < 0:
         raise node.wrong("a number of 0 or more")
@@ -148,7 +144,7 @@ def _standard_error(node: Node, largest: float = LARGEST_NUMBER) -> float:
 def _lines(nodes: list[Node]) -> Lines:
     ids = [node["id"] for node in nodes]
     return Lines(
-        id=np.array(_distinct(ids), np.int64),
+        id=np.array(distinct_ids(ids), np.int64),
         axis=np.array([AXES.index(node["axis"].one_of(tuple(AXES))) for node in nodes], np.int64),
         segment=np.array([node["segment"].array(2, 2, largest=LARGEST_NUMBER) for node in nodes]),
         ends=np.array([node["ends"].array(2, 3, largest=LARGEST_NUMBER) for node in nodes]),
@@ -156,7 +152,7 @@ def _lines(nodes: list[Node]) -> Lines:
         component=np.array([node["component"].integer() for node in nodes], np.int64),
         confidence=np.array([node["confidence"].one_of(CONFIDENCES) for node in nodes], str),
         probability=_probabilities(nodes),
-        by_depth_map=np.array([_optional_boolean(node, "by_depth_map") for node in nodes], bool),
+        by_depth_map=np.array([optional_boolean(node, "by_depth_map") for node in nodes], bool),
         role=np.array([_role(node.get("role")) for node in nodes], str),
         pieces=tuple(_pieces(node) for node in nodes),
     )
@@ -169,14 +165,8 @@ def _role(node: Node | None) -> str:
 
 def _pieces(node: Node) -> Float:
     """The segments (K, 2, 2) that a line was joined from, none where it has one."""
-    pieces = [piece.array(2, 2, largest=LARGEST_NUMBER) for piece in _optional_items(node, "pieces")]
+    pieces = [piece.array(2, 2, largest=LARGEST_NUMBER) for piece in optional_items(node, "pieces")]
     return np.array(pieces).reshape(-1, 2, 2)
-
-
-def _optional_boolean(node: Node, key: str) -> bool:
-    """The member `key`; false where it is missing."""
-    member = node.get(key)
-    return member is not None and member.boolean()
 
 
 def _probabilities(nodes: list[Node]) -> Float:
@@ -194,7 +184,7 @@ def _probabilities(nodes: list[Node]) -> Float:
 
 
 def _intersections(nodes: list[Node], known: set[int]) -> Intersections:
-    pairs = [_line_ids(node["lines"], known) for node in nodes]
+    pairs = [line_ids(node["lines"], known) for node in nodes]
     for node, pair in zip(nodes, pairs, strict=True):
         if len(pair) != 2:
             raise node["lines"].wrong("a list of 2")
@@ -216,71 +206,6 @@ def _reason(node: Node | None) -> str:
     return "" if node is None else node.one_of((*REASONS, ""))
 
 
-def _planes(nodes: list[Node], known: set[int]) -> tuple[Plane, ...]:
-    _distinct([node["id"] for node in nodes])
-    _distinct([face["id"] for node in nodes for face in _optional_items(node, "faces")])
-    return tuple(
-        Plane(
-            id=node["id"].integer(),
-            axis=AXES.index(node["axis"].one_of(tuple(AXES))),
-            offset=node["offset"].number(LARGEST_NUMBER),
-            lines=tuple(_line_ids(node["lines"], known)),
-            faces=tuple(_face(face) for face in _optional_items(node, "faces")),
-        )
-        for node in nodes
-    )
-
-
-def _face(node: Node) -> Face:
-    return Face(
-        id=node["id"].integer(),
-        outline=_ring(node["outline"]),
-        holes=tuple(_ring(hole) for hole in _optional_items(node, "holes")),
-        kind="other" if (kind := node.get("kind")) is None else cast(FaceKind, kind.one_of(FACE_KINDS)),
-        hidden=tuple(_ring(part) for part in _optional_items(node, "hidden")),
-    )
-
-
-def _ring(node: Node) -> Float:
-    ring = node.array(None, 3, largest=LARGEST_NUMBER)
-    if len(ring) < 3:
-        raise node.wrong("at least 3 points")
-    return ring
-
-
-def _openings(nodes: list[Node], walls: set[int]) -> tuple[Opening, ...]:
-    """The openings; `walls` are the ids of the vertical planes."""
-    _distinct([node["id"] for node in nodes])
-    return tuple(_opening(node, walls) for node in nodes)
-
-
-def _opening(node: Node, walls: set[int]) -> Opening:
-    if node["plane"].integer() not in walls:
-        raise JsonError(f"{node['plane'].place} is {node['plane'].value}, but no vertical plane has this id")
-    u, v = (node[key].array(2, largest=LARGEST_NUMBER).tolist() for key in ("u", "v"))
-    for key, (start, end) in (("u", u), ("v", v)):
-        if start >= end:
-            raise node[key].wrong("two ascending numbers")
-    recess, panel = _known(node, "recess"), _known(node, "panel")
-    if (recess is None) != (panel is None):
-        raise JsonError(f"{node.place} has a recess without a panel, or a panel without a recess")
-    if recess is not None and recess.number(LARGEST_NUMBER) <= 0:
-        raise recess.wrong("a positive number or null")
-    return Opening(
-        id=node["id"].integer(),
-        plane=node["plane"].integer(),
-        u0=u[0],
-        u1=u[1],
-        v0=v[0],
-        v1=v[1],
-        kind=cast(OpeningKind, node["kind"].one_of(OPENING_KINDS)),
-        recess=None if recess is None else recess.number(),
-        panel=None if panel is None else panel.number(LARGEST_NUMBER),
-        is_completed=_optional_boolean(node, "completed"),
-        shape=_count(node.get("shape")),
-    )
-
-
 def _solve_report(node: Node) -> SolveReport:
     return SolveReport(
         solver=node["solver"].text(),
@@ -289,14 +214,9 @@ def _solve_report(node: Node) -> SolveReport:
         objective=node["objective"].number(),
         bound=_number_or_unknown(node["bound"]),
         gap=_number_or_unknown(node["gap"]),
-        cuts=_count(node.get("cuts")),
-        nodes=_count(node.get("nodes")),
+        cuts=count_or_zero(node.get("cuts")),
+        nodes=count_or_zero(node.get("nodes")),
     )
-
-
-def _count(node: Node | None) -> int:
-    """A count that files written before it was known do not have."""
-    return 0 if node is None else node.integer()
 
 
 def _number_or_unknown(node: Node) -> float:
@@ -314,31 +234,6 @@ def _metres_per_unit(node: Node | None) -> float | None:
 
 def _text_or_none(node: Node | None) -> str:
     return "" if node is None or node.value is None else node.text()
-
-
-def _optional_items(node: Node, key: str) -> list[Node]:
-    member = node.get(key)
-    return [] if member is None else member.items()
-
-
-def _distinct(nodes: list[Node]) -> list[int]:
-    """The ids at these nodes, no two the same."""
-    places: dict[int, str] = {}
-    for node in nodes:
-        number = node.integer()
-        if number in places:
-            raise JsonError(f"{node.place} is {number}, as is {places[number]}, expected different ids")
-        places[number] = node.place
-    return list(places)
-
-
-def _line_ids(node: Node, known: set[int]) -> list[int]:
-    """The ids of lines of the scene, no two the same."""
-    ids = _distinct(node.items())
-    for item, number in zip(node.items(), ids, strict=True):
-        if number not in known:
-            raise JsonError(f"{item.place} is {number}, but no line has this id")
-    return ids
 
 
 def _check_flatness(scene: Scene) -> None:

@@ -18,6 +18,7 @@ from linecad.scene import Camera, Face, FaceKind, Lines, Plane
 
 SAME = 1e-7  # of the depth; computed coordinates that differ by less are one
 LEAST_AREA = 0.0015  # of the photo
+FURTHEST = 2.0  # times the depth of the furthest line, where surfaces end that go on to their horizon
 LEAST_CORNERS = 3
 LEAST_HIDDEN = 0.0002  # of the photo; smaller hidden parts are not worth a ring
 
@@ -42,15 +43,15 @@ def find_faces(
     """
     labels = regions.labels
     area = camera.width * camera.height
+    depth = FURTHEST * float((lines.ends @ rotation[2]).max(initial=0.0))
     parts = []
-    for number, region in labels.regions:
-        if number >= labels.sky or region.area < LEAST_AREA * area:
+    for number, whole in labels.regions:
+        if number >= labels.sky:
             continue
-        hidden = [
-            part for part in shapely.get_parts(shapely.intersection(region, regions.clutter))
-            if isinstance(part, shapely.Polygon) and part.area >= LEAST_HIDDEN * area
-        ]  # fmt: skip
-        parts.append(_lifted(labels.surfaces[number], region, hidden, camera, rotation))
+        surface = labels.surfaces[number]
+        for region in _polygons(_before(whole, surface, depth, camera, rotation), LEAST_AREA * area):
+            hidden = _polygons(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
+            parts.append(_lifted(surface, region, hidden, camera, rotation))
     parts = _snapped(parts, planes, lines)
     faces: dict[int, list[Face]] = {}
     count = 0
@@ -60,6 +61,35 @@ def find_faces(
             faces.setdefault(id(part.surface), []).append(face)
             count += 1
     return _with_faces(planes, labels.surfaces, faces)
+
+
+def _polygons(shape: shapely.Geometry, least: float) -> list[shapely.Polygon]:
+    """The polygons of a shape that have an area of `least` px^2 or more."""
+    return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and part.area >= least]
+
+
+def _before(
+    region: shapely.Polygon, surface: Surface, depth: float, camera: Camera, rotation: Float
+) -> shapely.Geometry:
+    """The part of a region in which its surface is before the camera and no deeper than `depth`.
+
+    That is one side of an image line, so that what is cut off is cut off straight.
+    """
+    corners = shapely.get_coordinates(region.exterior)
+    nearness = world_rays(corners, camera.matrix, rotation)[:, surface.axis] / surface.offset - 1 / depth
+    if nearness.min() >= 0:
+        return region
+    left, top, right, bottom = shapely.box(*region.bounds).buffer(1).bounds
+    frame = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
+    near = world_rays(frame, camera.matrix, rotation)[:, surface.axis] / surface.offset - 1 / depth
+    kept: list[Float] = []
+    for number in range(4):
+        following = (number + 1) % 4
+        kept += [frame[number]] if near[number] >= 0 else []
+        if (near[number] >= 0) != (near[following] >= 0):
+            share = near[number] / (near[number] - near[following])
+            kept.append(frame[number] + share * (frame[following] - frame[number]))
+    return shapely.intersection(region, shapely.Polygon(kept)) if kept else shapely.Polygon()
 
 
 def _lifted(

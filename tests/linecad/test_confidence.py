@@ -67,6 +67,13 @@ def test_a_plane_stays_with_all_its_faces_where_one_of_its_lines_does(scene):
     assert [face.id for _, face in kept.faces] == [0, 1]
 
 
+def test_a_ground_without_lines_stays(scene):
+    ground = Plane(7, 2, -2.0, (), (Face(9, [[0, 0, -2], [1, 0, -2], [0, 1, -2]], kind="ground"),))
+    kept = keep_probable(replace(scene, planes=(*scene.planes, ground)), 0.9)
+    assert [each.id for each in kept.planes] == [0, 1, 7]
+    assert "2 of 5 planes" in kept.notes[-1]
+
+
 def test_a_note_counts_what_was_left_out(scene):
     assert keep_probable(scene, 0.9).notes == (
         "one",

@@ -107,6 +107,9 @@ REFUSED = [
     (face, "outline", TRIANGLE[:2], r"Face 0 has a ring of shape \(2, 3\), expected at least 3 points"),
     (face, "holes", ([[0, 0], [1, 1], [2, 2]],), r"Face 0 has a ring of shape \(3, 2\), expected at least 3 points"),
     (face, "holes", ([[0, 4, np.inf]] * 3,), "Face 0 holds a number that is not finite"),
+    (face, "hidden", (TRIANGLE[:2],), r"Face 0 has a ring of shape \(2, 3\), expected at least 3 points"),
+    (face, "hidden", ([[0, 4, np.inf]] * 3,), "Face 0 holds a number that is not finite"),
+    (face, "kind", "floor", "Face 0 is a 'floor', expected one of wall, ground, ceiling, roof, window, door, other"),
     (plane, "axis", 3, "Plane 0 has axis 3, expected 0, 1 or 2"),
     (plane, "offset", np.nan, "Plane 0 has offset nan, expected a finite number"),
     (scene, "rotation", np.eye(4), "Scene.rotation has shape 4x4, expected 3x3"),
@@ -136,6 +139,11 @@ def test_records_cannot_be_changed(record: Any) -> None:
         if isinstance(value, np.ndarray) and value.size:
             with pytest.raises(ValueError, match="read-only"):
                 value.flat[0] = value.flat[0]
+
+
+def test_hidden_parts_cannot_be_changed() -> None:
+    with pytest.raises(ValueError, match="read-only"):
+        Face(0, TRIANGLE, hidden=(TRIANGLE,)).hidden[0][0] = 0
 
 
 def test_holes_cannot_be_changed() -> None:

@@ -1,4 +1,4 @@
-"""Labels of least cost for cells beside each other: expansions by minimal cuts, and a bound that proves how good.
+"""Labels of low cost for cells beside each other: expansions by minimal cuts.
 
 Each cell has a cost for each label, and two neighbours with different labels cost as their border says. An expansion
 lets any cells at once change to one label; the best one is a minimal cut (Boykov, Veksler, Zabih 2001). Whole numbers

@@ -10,7 +10,7 @@ from exporters.picture import faces as picture_faces
 from exporters.picture import scene as picture
 from exporters.picture import views as picture_views
 from exporters.picture.canvas import Canvas, drawable, text_width
-from linecad.scene import CONFIDENCES, Camera, DepthMapReport, Intersections
+from linecad.scene import CONFIDENCES, Camera, DepthMapReport, Intersections, Plane
 
 GREY = (0.5, 0.5, 0.5)
 LEFT, TOP, PHOTO_WIDTH = 44, 166, 1560  # px: where the photo stands in a picture of a 4 : 3 photo
@@ -237,6 +237,12 @@ def test_the_confidence_of_a_plane_is_that_of_most_of_its_lines(scene):
     assert picture_faces.word_of(plane, words, CONFIDENCES) == "supported"
     two = replace(plane, lines=(first, others[0]))
     assert picture_faces.word_of(two, words, CONFIDENCES) == "supported"
+
+
+def test_a_ground_without_lines_is_as_sure_as_most_lines_of_the_scene():
+    ground = Plane(99, 2, -2.0, ())
+    for most, fewest in (("proven", "weak"), ("weak", "proven")):
+        assert picture_faces.word_of(ground, {0: most, 1: most, 2: fewest}, CONFIDENCES) == most
 
 
 def with_probability(scene, probability):

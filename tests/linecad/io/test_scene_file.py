@@ -23,6 +23,7 @@ from linecad.scene import (
     CAMERA_SOURCES,
     CONFIDENCES,
     DEPTH_KINDS,
+    FACE_KINDS,
     OPENING_KINDS,
     QUALITIES,
     REASONS,
@@ -117,7 +118,13 @@ def planes(draw: st.DrawFn, line_ids: list[int]) -> tuple[Plane, ...]:
     for plane_id in plane_ids:
         axis, offset = draw(st.integers(0, 2)), draw(coordinates)
         faces = tuple(
-            Face(next(face_ids), draw(rings(axis, offset)), tuple(draw(st.lists(rings(axis, offset), max_size=2))))
+            Face(
+                next(face_ids),
+                draw(rings(axis, offset)),
+                tuple(draw(st.lists(rings(axis, offset), max_size=2))),
+                draw(st.sampled_from(FACE_KINDS)),
+                tuple(draw(st.lists(rings(axis, offset), max_size=2))),
+            )
             for _ in range(draw(st.integers(0, 3)))
         )
         members = draw(st.lists(st.sampled_from(line_ids), unique=True)) if line_ids else []
@@ -308,6 +315,7 @@ REQUIRED = [
 OPTIONAL = [
     *("camera.distortion", "camera.resampled"),
     *("metres_per_unit", "scale_source", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
+    *("planes[0].faces[0].kind", "planes[0].faces[0].hidden"),
     *("solve.cuts", "solve.nodes", "intersections[0].reason"),
     *("certainty", "certainty.focal", "certainty.principal_point", "certainty.k1"),
     *("depth_map", "depth_map.left_out", "lines[2].by_depth_map"),
@@ -446,6 +454,14 @@ WRONG = [
         "faces[0].outline is a list of 2, expected at least 3 points",
     ),
     ("planes[0].faces[0].holes", [[]], "planes[0].faces[0].holes[0] is a list of 0, expected at least 3 points"),
+    (
+        "planes[0].faces[0].kind",
+        "floor",
+        'planes[0].faces[0].kind is "floor", expected one of wall, ground, ceiling, roof, window, door, other',
+    ),
+    ("planes[0].faces[0].kind", 3, "planes[0].faces[0].kind is 3, expected one of wall, ground"),
+    ("planes[0].faces[0].hidden", [[]], "planes[0].faces[0].hidden[0] is a list of 0, expected at least 3 points"),
+    ("planes[0].faces[0].hidden[0][1][1]", 4.1, "face 0 leaves plane 0 (y = 4) by 0.1, expected at most 2.45e-06"),
     ("planes[0].faces[0].outline[2][1]", 4.00001, "face 0 leaves plane 0 (y = 4) by 1e-05, expected at most 2.45e-06"),
     ("planes[0].offset", 5, "face 0 leaves plane 0 (y = 5) by 1"),
     ("openings", {}, "openings is an object, expected a list"),
@@ -606,6 +622,27 @@ def test_a_scene_of_an_earlier_version_has_outlines_alone() -> None:
     assert [len(each) for each in lines.pieces] == [0] * 3
 
 
+def test_faces_of_earlier_files_are_of_no_kind_and_hide_nothing() -> None:
+    document = json.loads(EXAMPLE)
+    (face,) = document["planes"][0]["faces"]
+    del face["kind"], face["hidden"]
+    (read,) = scene_from_json(json.dumps(document)).planes[0].faces
+    assert (read.kind, read.hidden) == ("other", ())
+
+
+def test_a_face_that_nothing_hides_says_nothing_of_it() -> None:
+    scene = scene_from_json(changed("planes[0].faces[0].hidden", []))
+    (face,) = json.loads(scene_to_json(scene))["planes"][0]["faces"]
+    assert "hidden" not in face
+    assert face["kind"] == "wall"
+
+
+def test_a_ground_may_have_no_lines() -> None:
+    scene = scene_from_json(changed("planes[0].lines", []))
+    assert scene.planes[0].lines == ()
+    assert json.loads(scene_to_json(scene))["planes"][0]["lines"] == []
+
+
 def test_lines_that_others_place_do_not_name_the_depth_map() -> None:
     text = changed("lines[0].by_depth_map", False)
     assert scene_to_json(scene_from_json(text)) == EXAMPLE
@@ -748,7 +785,7 @@ def named_in_tables(heading: str) -> list[str]:
         ("`lines[]`", "lines[2]", (*CONFIDENCES, *ROLES, "pieces")),
         ("`intersections[]`", "intersections[0]", REASONS),
         ("`planes[]`", "planes[0]", ()),
-        ("`planes[].faces[]`", "planes[0].faces[0]", ()),
+        ("`planes[].faces[]`", "planes[0].faces[0]", FACE_KINDS),
         ("`solve`", "solve", STATUSES),
         ("`depth_map`", "depth_map", DEPTH_KINDS),
     ],

@@ -32,6 +32,14 @@ def lines(is_boundary, ends=ENDS):
     )  # fmt: skip
 
 
+def test_a_ground_without_lines_bounds_nothing():
+    ground = Plane(2, 2, 0.0, (), (Face(2, [[-9, 1, 0], [9, 1, 0], [9, 4, 0], [-9, 4, 0]], kind="ground"),))
+    for found, without in zip(
+        bounding((*PLANES, ground), lines(EDGE_ONLY)), bounding(PLANES, lines(EDGE_ONLY)), strict=True
+    ):
+        assert found.tolist() == without.tolist()
+
+
 def test_the_edge_of_two_faces_bounds_and_a_line_within_one_does_not():
     bounds, shown = bounding(PLANES, lines(EDGE_ONLY))
     assert bounds.tolist() == EDGE_ONLY

@@ -1,4 +1,4 @@
-"""Faces on the planes of made scenes: openings are holes, walls end at their top, nothing overlaps in the photo."""
+"""Faces of regions: of a painted house, and of shapes in the photo that are made by hand."""
 
 from itertools import combinations
 
@@ -8,244 +8,222 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.depth.normals import Normals
-from linecad.geometry import project, rotation_about
-from linecad.model.faces import find_faces
-from linecad.model.planes import find_planes
-from linecad.scene import Camera, Lines
+from linecad.geometry import central_camera, project
+from linecad.model.faces import FURTHEST, LEAST_AREA, LEAST_HIDDEN, find_faces
+from linecad.model.regions import partition
+from linecad.model.regions.cuts import Borders
+from linecad.model.regions.filling import Filled
+from linecad.model.regions.labelling import Labels
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Camera, Lines, Plane
 
-CAMERA = Camera(1200, 900, np.array([[800.0, 0, 599.5], [0, 800, 449.5], [0, 0, 1]]), "file")
+WIDTH, HEIGHT = 400, 300
+CAMERA = Camera(WIDTH, HEIGHT, central_camera(300.0, WIDTH, HEIGHT), "file")
 AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-C, S = np.cos(0.4), np.sin(0.4)
-TURNED = AHEAD @ [[C, -S, 0], [S, C, 0], [0, 0, 1]]
-OVERLAP = 0.5  # px^2
+AREA = WIDTH * HEIGHT
+NO_LINES = np.zeros(0, np.int64)
+FRAME = shapely.box(-0.5, -0.5, WIDTH - 0.5, HEIGHT - 0.5)
+FRONT = Plane(7, 1, 10.0, (3,))
+WALL = Surface("wall", 1, 10.0, NO_LINES, 7)
+GROUND = Surface("ground", 2, -2.0, NO_LINES, None)
 
 
-def rectangle(normal, place, u, v):
-    """The four edges of a rectangle in the plane of `normal` at `place`, from u[0] to u[1] and from v[0] to v[1]."""
-    across = [axis for axis in range(3) if axis != normal]
-    edges = []
-    for along, other, spans, places in ((0, 1, u, v), (1, 0, v, u)):
-        for at in places:
-            ends = np.full((2, 3), float(place))
-            ends[:, across[along]], ends[:, across[other]] = spans, at
-            edges.append((across[along], ends))
-    return edges
+@pytest.fixture(scope="module")
+def planes(house, house_regions):
+    """The planes of the house with their faces."""
+    return find_faces(house.planes, house.lines, house_regions, house.camera, house.rotation)
 
 
-def edge(axis, start, length):
-    ends = np.array([start, start], float)
-    ends[1, axis] += length
-    return (axis, ends)
-
-
-def faces_of(edges, rotation=AHEAD, normals=None):
-    """Planes with faces of the distinct edges, whose equal coordinates are shared."""
-    edges = list({(axis, ends.tobytes()): (axis, ends) for axis, ends in edges}.values())
-    axis = np.array([each[0] for each in edges])
-    ends = np.array([each[1] for each in edges])
-    count = len(axis)
-    lines = Lines(
-        id=np.arange(count), axis=axis, segment=project(ends, CAMERA.matrix, rotation), ends=ends,
-        is_boundary=np.zeros(count, bool), component=np.zeros(count, int), confidence=np.full(count, "proven"),
+def lines(*edges):
+    """Lines (axis, ends), with ids from 3 on."""
+    axis, ends = np.array([each[0] for each in edges], np.int64), np.array([each[1] for each in edges], float)
+    ends = ends.reshape(-1, 2, 3)
+    return Lines(
+        id=3 + np.arange(len(axis)), axis=axis, segment=np.zeros((len(axis), 2, 2)), ends=ends,
+        is_boundary=np.zeros(len(axis), bool), component=np.zeros(len(axis), int),
+        confidence=np.full(len(axis), "proven"),
     )  # fmt: skip
-    offset = ends[:, 0].copy()
-    own = np.arange(3) == axis[:, None]
-    offset[own] = np.nan
-    shared = np.full((count, 3), -1)
-    for number in range(3):
-        rest = ~own[:, number]
-        shared[rest, number] = np.unique(offset[rest, number], return_inverse=True)[1] + 1000 * number
-    return find_faces(find_planes(offset, shared, lines.id), lines, CAMERA, rotation, normals)
 
 
-def at(planes, axis, offset):
-    """The faces of the plane there."""
-    return [face for plane in planes if (plane.axis, plane.offset) == (axis, offset) for face in plane.faces]
+BACK_EDGE = lines((0, [[-3, 10, 1], [3, 10, 1]]))
 
 
-def corners(ring):
-    return set(map(tuple, ring.tolist()))
+def regions(surfaces, shapes, clutter=()):
+    """Cells (label, polygon) of the photo as regions, and what hides them."""
+    label, cells = [each[0] for each in shapes], [each[1] for each in shapes]
+    nothing = np.zeros((0, len(surfaces) + 2))
+    borders = Borders(np.zeros((0, 2), np.int64), NO_LINES)
+    labels = Labels(list(surfaces), cells, NO_LINES, np.array(label), nothing, nothing.astype(np.int64), borders)
+    return Filled(labels, shapely.union_all(list(clutter)))
 
 
-def in_photo(face, rotation):
-    rings = [project(ring, CAMERA.matrix, rotation) for ring in (face.outline, *face.holes)]
-    return shapely.Polygon(rings[0], rings[1:])
-
-
-WALL = rectangle(1, 10.0, (-4, 4), (-2, 3))
-REVEALS = [edge(1, (x, 10, z), 0.5) for x in (-1, 1) for z in (0, 1.5)]
-WINDOW = rectangle(1, 10.0, (-1, 1), (0, 1.5)) + rectangle(1, 10.5, (-1, 1), (0, 1.5)) + REVEALS
-PANES = [edge(2, (0, 10.5, 0), 1.5), edge(0, (-1, 10.5, 0.75), 2)]
-
-
-def test_a_wall_is_one_face_with_four_corners():
-    (face,) = at(faces_of(WALL), 1, 10)
-    assert corners(face.outline) == {(-4, 10, -2), (4, 10, -2), (4, 10, 3), (-4, 10, 3)}
-    assert face.holes == ()
-
-
-def test_lines_within_a_wall_cut_no_hole():
-    planes = faces_of(WALL + rectangle(1, 10.0, (-1, 1), (0, 1.5)))
-    (face,) = at(planes, 1, 10)
-    assert len(face.outline) == 4
-    assert face.holes == ()
-
-
-def test_a_window_set_back_is_a_hole_with_a_face_behind():
-    planes = faces_of(WALL + WINDOW + PANES)
-    (wall,) = at(planes, 1, 10)
-    assert corners(wall.outline) == {(-4, 10, -2), (4, 10, -2), (4, 10, 3), (-4, 10, 3)}
-    (hole,) = wall.holes
-    assert corners(hole) == {(-1, 10, 0), (1, 10, 0), (1, 10, 1.5), (-1, 10, 1.5)}
-    (pane,) = at(planes, 1, 10.5)
-    # What the wall leaves to be seen, and nothing that it hides.
-    assert in_photo(pane, AHEAD).within(shapely.Polygon(project(hole, CAMERA.matrix, AHEAD)).buffer(1e-6))
-
-
-def test_a_wall_ends_at_its_top_line():
-    mast = edge(2, (1, 10, -2), 6.5)
-    planes = faces_of([*WALL, mast])
-    assert max(face.outline[:, 2].max() for _, face in every(planes)) == 3
-
-
-def test_a_wall_that_the_photo_cuts_off_reaches_to_its_border():
-    top = 5.55  # of the photo, at the depth of the wall
-    sides = [edge(2, (x, 10, -2), top + 2) for x in (-4, 4)]
-    bars = [edge(0, (-4, 10, z), 8) for z in (-2, 1)]
-    (face,) = at(faces_of(sides + bars), 1, 10)
-    assert corners(face.outline) == {(-4, 10, -2), (4, 10, -2), (4, 10, top), (-4, 10, top)}
-    lower = [edge(2, (x, 10, -2), 5) for x in (-4, 4)]
-    (face,) = at(faces_of(lower + bars), 1, 10)
-    assert face.outline[:, 2].max() == 1
-
-
-def test_two_walls_share_the_corners_of_their_edge():
-    planes = faces_of(WALL + rectangle(0, 4.0, (6, 10), (-2, 3)))
-    (front,), (side,) = at(planes, 1, 10), at(planes, 0, 4)
-    assert corners(front.outline) & corners(side.outline) == {(4, 10, -2), (4, 10, 3)}
-
-
-def test_a_wall_hides_the_wall_behind_only_where_it_stands():
-    behind = rectangle(1, 20.0, (-8, 8), (-3, 5))
-    planes = faces_of(behind + rectangle(1, 10.0, (0, 2), (-1, 2)))
-    (front,), (back,) = at(planes, 1, 10), at(planes, 1, 20)
-    assert corners(front.outline) == {(0, 10, -1), (2, 10, -1), (2, 10, 2), (0, 10, 2)}
-    (hidden,) = back.holes
-    assert project(hidden, CAMERA.matrix, AHEAD) == pytest.approx(
-        project(hidden / 2, CAMERA.matrix, AHEAD)
-    )  # the hole is the shadow of the front wall
-    assert sorted(np.round(hidden / 2, 9).tolist()) == sorted(front.outline.tolist())
-
-
-def test_no_face_hides_a_line_that_is_seen_behind_it():
-    # Two courses of two walls meet in a corner and span a level that would float before the walls.
-    walls = rectangle(1, 10.0, (-4, 4), (-2, 3)) + rectangle(0, 4.0, (6, 10), (-2, 3))
-    courses = [edge(0, (-4, 10, -1), 8), edge(1, (4, 6, -1), 4)]
-    bars = [edge(2, (x, 10, -2), 5) for x in (-3, -2, -1, 0, 1, 2, 3)]
-    planes = faces_of(walls + courses + bars)
-    assert [plane.axis for plane, _ in every(planes)].count(2) == 0
-
-
-def facing(rotation, axis, elsewhere=None, shape=None):
-    """Normals along a world axis, and along `elsewhere` where the photo shows `shape`."""
-    vectors = np.empty((CAMERA.height, CAMERA.width, 3))
-    vectors[:] = -rotation[:, axis]
-    if shape is not None:
-        row, column = np.indices(vectors.shape[:2])
-        inside = shapely.contains_xy(shape, column.ravel(), row.ravel()).reshape(row.shape)
-        vectors[inside] = elsewhere
-    return Normals(vectors)
-
-
-@pytest.mark.parametrize("rotation", [AHEAD, TURNED], ids=["ahead", "turned"])
-def test_a_wall_is_kept_where_normals_say_its_axis(rotation):
-    def outlines_of(normals):
-        return [face.outline.tolist() for face in at(faces_of(WALL, rotation, normals), 1, 10)]
-
-    without = outlines_of(None)
-    assert len(without) == 1
-    for degrees, others in ((0, without), (25, without), (35, without)):  # a normal near no axis says nothing
-        turned = rotation_about(np.radians(degrees) * rotation[:, 2]) @ rotation[:, 1]
-        bent = Normals(np.broadcast_to(turned, (CAMERA.height, CAMERA.width, 3)))
-        assert outlines_of(bent) == others
-    assert outlines_of(Normals(np.zeros((CAMERA.height, CAMERA.width, 3)))) == without
-    assert outlines_of(facing(rotation, 0)) == outlines_of(facing(rotation, 2)) == []
-
-
-def test_a_part_of_a_wall_that_faces_elsewhere_is_cut_out():
-    window = rectangle(1, 10.0, (-1, 1), (0, 1.5))
-    ring = np.array([[-1, 10, 0], [1, 10, 0], [1, 10, 1.5], [-1, 10, 1.5]], float)
-    shape = shapely.Polygon(project(ring, CAMERA.matrix, AHEAD))
-    (wall,) = at(faces_of(WALL + window, AHEAD, facing(AHEAD, 1, AHEAD[:, 2], shape)), 1, 10)
-    (hole,) = wall.holes
-    assert corners(hole) == set(map(tuple, ring.tolist()))
-    assert corners(wall.outline) == {(-4, 10, -2), (4, 10, -2), (4, 10, 3), (-4, 10, 3)}
-
-
-def test_a_wall_in_front_yields_to_the_one_that_faces_as_its_pixels():
-    front, side = WALL, rectangle(0, 4.0, (6, 10), (-2, 3))
-    both = faces_of(front + side)
-    assert at(both, 1, 10)
-    assert at(both, 0, 4)
-    alone = faces_of(front + side, AHEAD, facing(AHEAD, 0))
-    assert at(alone, 1, 10) == []
-    assert at(alone, 0, 4)
-
-
-def test_ids_of_faces_are_unique_and_planes_keep_what_they_have():
-    planes = faces_of(WALL + WINDOW + PANES)
-    ids = [face.id for _, face in every(planes)]
-    assert sorted(ids) == list(range(len(ids)))
-    assert [plane.id for plane in planes] == list(range(len(planes)))
-    assert [len(plane.lines) for plane in planes] == sorted((len(plane.lines) for plane in planes), reverse=True)
-
-
-def test_no_planes_no_faces():
-    assert faces_of([edge(0, (-1, 10, 0), 2)]) == ()
+def faces_of(surfaces, shapes, clutter=(), known=(FRONT,), edges=BACK_EDGE):
+    return find_faces(tuple(known), edges, regions(surfaces, shapes, clutter), CAMERA, AHEAD)
 
 
 def every(planes):
     return [(plane, face) for plane in planes for face in plane.faces]
 
 
-places = st.integers(-5, 5)
-boxes = st.lists(
-    st.tuples(st.integers(-5, 4), st.integers(1, 4), st.integers(8, 14), st.integers(1, 3), st.integers(-3, 1),
-              st.integers(1, 4)),
-    min_size=1, max_size=4,
-)  # fmt: skip
+def corners(*rings):
+    return {tuple(corner) for ring in rings for corner in ring.tolist()}
 
 
-def box(left, wide, near, deep, low, high):
-    """The edges of a box that stands before the camera, and a window set back in its front."""
-    x, y, z = (left + 0.3, left + 0.3 + wide), (near, near + deep), (low - 0.2, low - 0.2 + high)
-    u = (x[0] + 0.25 * wide, x[1] - 0.25 * wide)
-    v = (z[0] + 0.25 * high, z[1] - 0.25 * high)
-    edges = [each for place in y for each in rectangle(1, place, x, z)]
-    edges += [edge(1, (a, near, b), deep) for a in x for b in z]
-    edges += rectangle(1, near, u, v) + rectangle(1, near + 0.4, u, v)
-    return edges + [edge(1, (a, near, b), 0.4) for a in u for b in v]
+def in_photo(ring, camera=CAMERA, rotation=AHEAD):
+    return shapely.Polygon(project(ring, camera.matrix, rotation))
 
 
-@settings(max_examples=15)
-@given(boxes, st.sampled_from([AHEAD, TURNED]))
-def test_faces_of_any_boxes_lie_in_their_planes_and_do_not_overlap(rows, rotation):
-    edges = [each for row in rows for each in box(*row)]
-    if min((ends @ rotation.T)[:, 2].min() for _, ends in edges) < 1:
-        return
-    planes = faces_of(edges, rotation)
-    coordinates = [{float(c) for _, ends in edges for c in ends[:, axis]} for axis in range(3)]
-    found = every(planes)
+def test_walls_of_the_house_end_at_its_edges_exactly(planes):
+    (side,), (front,) = planes[0].faces, planes[1].faces
+    assert corners(side.outline) == {(2, 8, -2), (2, 16, -2), (2, 16, 1.6), (2, 8, 1.6)}
+    assert corners(front.outline) == {(2, 8, -2), (5.5, 8, -2), (5.5, 8, 1.6), (2, 8, 1.6)}
+    assert [face.kind for face in (side, front)] == ["wall", "wall"]
+    assert side.holes == front.holes == ()
+
+
+def test_the_ground_of_the_house_ends_at_the_feet_of_its_walls(planes):
+    assert [plane.id for plane in planes] == list(range(len(planes)))
+    ground = planes[-1]
+    assert (ground.axis, ground.offset, ground.lines) == (2, -2.0, ())
+    (face,) = ground.faces
+    assert face.kind == "ground"
+    assert {(2, 16, -2), (2, 8, -2), (5.5, 8, -2)} < corners(face.outline)
+
+
+def test_faces_of_the_house_do_not_overlap_in_the_photo(house, planes):
+    shapes = [in_photo(face.outline, house.camera, house.rotation) for _, face in every(planes)]
+    assert len(shapes) == 3
+    for one, other in combinations(shapes, 2):
+        assert shapely.intersection(one, other).area < 1e-3
+
+
+def test_a_region_at_the_border_is_cut_straight_along_it(house, planes):
+    (ground,) = planes[-1].faces
+    pixels = project(ground.outline, house.camera.matrix, house.rotation)
+    on_border = np.isclose(pixels, [-0.5, 719.5], atol=1e-5) | np.isclose(pixels, [959.5, -0.5], atol=1e-5)
+    assert on_border.any(axis=1).sum() == 4  # two corners of the photo, and where the far end meets its sides
+    assert on_border.all(axis=1).sum() == 2
+
+
+def test_a_ground_without_lines_is_a_plane_of_its_own():
+    found = faces_of([WALL, GROUND], [(0, shapely.box(50, 50, 150, 200)), (1, shapely.box(50, 200, 150, 280))])
+    assert [(plane.id, plane.axis, plane.offset, plane.lines) for plane in found] == [(7, 1, 10, (3,)), (8, 2, -2, ())]
+    assert [face.kind for _, face in every(found)] == ["wall", "ground"]
+    assert [face.id for _, face in every(found)] == [0, 1]
+
+
+def test_a_ground_that_nothing_shows_is_no_plane():
+    assert [plane.id for plane in faces_of([WALL, GROUND], [(0, shapely.box(50, 50, 150, 200))])] == [7]
+    assert [(plane.id, plane.faces) for plane in faces_of([WALL], [(1, FRAME)])] == [(7, ())]  # sky alone
+
+
+def test_kinds_are_those_of_surfaces():
+    kinds = {"wall": 1, "level": 2, "ground": 2, "ceiling": 2}
+    for kind, axis in kinds.items():
+        ((_, face),) = every(faces_of([Surface(kind, axis, 10.0 if axis == 1 else 2.0, NO_LINES, None)],
+                                      [(0, shapely.box(50, 50, 150, 100))]))  # fmt: skip
+        assert face.kind == ("other" if kind == "level" else kind)
+
+
+def test_sky_clutter_and_what_is_tiny_have_no_face():
+    side = np.sqrt(LEAST_AREA * AREA)
+    shapes = [(0, shapely.box(50, 50, 50 + 0.99 * side, 50 + side)), (1, shapely.box(200, 0, 300, 50)),
+              (2, shapely.box(0, 200, 100, 290))]  # fmt: skip
+    assert every(faces_of([WALL], shapes)) == []
+    assert len(every(faces_of([WALL], [(0, shapely.box(50, 50, 50 + 1.01 * side, 50 + side))]))) == 1
+
+
+def test_corners_where_two_walls_meet_are_the_same_numbers():
+    side = Surface("wall", 0, 3.0, NO_LINES, None)
+    at = 199.5 + 300 * 3 / 10  # px, where x = 3 meets y = 10
+    shapes = [(0, shapely.box(100, 80, at, 220)), (1, shapely.Polygon([(at, 80), (at, 220), (350, 260), (350, 40)]))]
+    (_, front), (_, right) = every(faces_of([WALL, side], shapes))
+    shared = corners(front.outline) & corners(right.outline)
+    assert len(shared) == 2
+    assert {corner[:2] for corner in shared} == {(3, 10)}
+
+
+def test_corners_on_lines_have_their_coordinates():
+    edge, other = lines((0, [[-3, 10, 1.1], [3, 10, 1.1]]), (2, [[0.3, 10, 0], [0.3, 10, 1]])), 0.3
+    x, y = project(np.array([other, 10, 1.1]), CAMERA.matrix, AHEAD)
+    off = 1e-6  # px, as cells are rounded
+    ((_, face),) = every(faces_of([WALL], [(0, shapely.box(100, y + off, x + off, 200))], edges=edge))
+    assert (0.3, 10, 1.1) in corners(face.outline)
+    ((_, face),) = every(faces_of([WALL], [(0, shapely.box(100, y + 1e-3, x, 200))], edges=edge))
+    assert (0.3, 10, 1.1) not in corners(face.outline)
+
+
+def test_a_hole_stays_a_hole():
+    hole = shapely.box(120, 120, 140, 150)
+    ((_, face),) = every(faces_of([WALL], [(0, shapely.box(50, 50, 200, 200) - hole)]))
+    assert len(face.holes) == 1
+    assert in_photo(face.holes[0]).symmetric_difference(hole).area < 1e-6
+    assert (face.holes[0][:, 1] == 10).all()
+
+
+def test_what_hides_a_part_of_a_face_is_told():
+    tree, leaf = shapely.box(180, 100, 260, 150), shapely.box(60, 60, 61, 60 + 0.9 * LEAST_HIDDEN * AREA)
+    ((_, face),) = every(faces_of([WALL], [(0, shapely.box(50, 50, 200, 200))], [tree, leaf]))
+    (hidden,) = face.hidden
+    assert in_photo(hidden).symmetric_difference(shapely.box(180, 100, 200, 150)).area < 1e-6
+    assert (hidden[:, 1] == 10).all()
+    assert face.holes == ()
+    assert in_photo(face.outline).area == pytest.approx(150 * 150)
+
+
+def test_a_surface_ends_before_its_horizon_with_one_straight_cut():
+    # A wall on the right whose region reaches to its vanishing point in the middle of the photo, and beyond.
+    side = Surface("wall", 0, 3.0, NO_LINES, None)
+    edge = lines((1, [[3, 4, 0], [3, 12, 0]]))
+    far = 199.5 + 300 * 3 / (FURTHEST * 12)
+    for left in (199.5, 150, far - 1):
+        shapes = [(0, shapely.box(left, 100, 350, 200))]
+        ((_, face),) = every(faces_of([side], shapes, edges=edge))
+        assert in_photo(face.outline).symmetric_difference(shapely.box(far, 100, 350, 200)).area < 1e-3
+        assert face.outline[:, 1].max() == pytest.approx(FURTHEST * 12)
+    ((_, face),) = every(faces_of([side], [(0, shapely.box(far + 1, 100, 350, 200))], edges=edge))
+    assert in_photo(face.outline).area == pytest.approx((350 - far - 1) * 100)
+    assert every(faces_of([side], [(0, shapely.box(50, 100, 150, 200))], edges=edge)) == []
+
+
+def test_no_planes_and_no_regions_have_no_faces():
+    assert faces_of([], [(0, FRAME)], known=()) == ()
+
+
+@st.composite
+def cut_photos(draw):
+    """Cells of a photo along some lines, with a label of two walls and a ground, or sky, or clutter."""
+    place = st.tuples(st.integers(0, WIDTH * 8).map(lambda v: v / 8), st.integers(0, HEIGHT * 8).map(lambda v: v / 8))
+    ends = st.tuples(place, place).filter(lambda s: np.hypot(*np.subtract(*s)) > 10)
+    rows = draw(st.lists(ends, min_size=1, max_size=5))
+    border, _ = partition.extended(np.array(rows, float), WIDTH, HEIGHT, 1.0)
+    cells = partition.cut(border)
+    label = draw(st.lists(st.integers(0, 4), min_size=len(cells), max_size=len(cells)))
+    return cells, label
+
+
+@settings(max_examples=25)
+@given(cut_photos())
+def test_faces_of_any_cells_lie_in_their_planes_and_in_their_cells(photo):
+    cells, label = photo
+    surfaces = [WALL, Surface("wall", 0, 30.0, NO_LINES, None), GROUND]
+    # A wall on the right and a ground below are seen in a half of the photo.
+    halves = [FRAME, shapely.box(210, -0.5, 399.5, 299.5), shapely.box(-0.5, 160, 399.5, 299.5), FRAME, FRAME]
+    shown = [(number, cell) for cell, number in zip(cells, label, strict=True) if cell.within(halves[number])]
+    far = lines((0, [[-3, 1e6, 1], [3, 1e6, 1]]))
+    found = every(faces_of(surfaces, shown, edges=far))
+    shapes = []
     for plane, face in found:
         for ring in (face.outline, *face.holes):
             assert (ring[:, plane.axis] == plane.offset).all()
-            assert (ring.min(axis=0) >= [min(c) - 1e-9 for c in coordinates]).all()
-            assert (ring.max(axis=0) <= [max(c) + 1e-9 for c in coordinates]).all()
-        flat = [axis for axis in range(3) if axis != plane.axis]
-        outline = shapely.Polygon(face.outline[:, flat])
-        assert shapely.Polygon(face.outline[:, flat], [hole[:, flat] for hole in face.holes]).is_valid
-        assert all(shapely.Polygon(hole[:, flat]).within(outline.buffer(1e-9)) for hole in face.holes)
-    shapes = [in_photo(face, rotation) for _, face in found]
-    for first, second in combinations(shapes, 2):
-        assert shapely.intersection(first, second).area < OVERLAP
+        holes = [in_photo(hole).exterior for hole in face.holes]
+        shapes.append(shapely.Polygon(in_photo(face.outline).exterior, holes))
+        assert shapes[-1].is_valid
+        number = [(surface.axis, surface.offset) for surface in surfaces].index((plane.axis, plane.offset))
+        own = shapely.union_all([cell for other, cell in shown if other == number])
+        assert shapely.difference(shapes[-1], own).area < 1e-2
+    for one, other in combinations(shapes, 2):
+        assert shapely.intersection(one, other).area < 1e-2
+    large = [(number, region) for number, region in regions(surfaces, shown).labels.regions
+             if number < 3 and region.area >= LEAST_AREA * AREA]  # fmt: skip
+    assert sum(shape.area for shape in shapes) == pytest.approx(sum(region.area for _, region in large), abs=0.1)

@@ -1,0 +1,82 @@
+"""Planes, faces and openings of scene files."""
+
+from typing import cast
+
+from linecad.arrays import Float
+from linecad.io.members import (
+    LARGEST_NUMBER,
+    count_or_zero,
+    distinct_ids,
+    known_member,
+    line_ids,
+    optional_boolean,
+    optional_items,
+)
+from linecad.io.strict_json import JsonError, Node
+from linecad.scene import AXES, FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
+
+
+def read_planes(nodes: list[Node], known: set[int]) -> tuple[Plane, ...]:
+    """The planes with their faces; `known` are the ids of the scene's lines."""
+    distinct_ids([node["id"] for node in nodes])
+    distinct_ids([face["id"] for node in nodes for face in optional_items(node, "faces")])
+    return tuple(
+        Plane(
+            id=node["id"].integer(),
+            axis=AXES.index(node["axis"].one_of(tuple(AXES))),
+            offset=node["offset"].number(LARGEST_NUMBER),
+            lines=tuple(line_ids(node["lines"], known)),
+            faces=tuple(_face(face) for face in optional_items(node, "faces")),
+        )
+        for node in nodes
+    )
+
+
+def _face(node: Node) -> Face:
+    return Face(
+        id=node["id"].integer(),
+        outline=_ring(node["outline"]),
+        holes=tuple(_ring(hole) for hole in optional_items(node, "holes")),
+        kind="other" if (kind := node.get("kind")) is None else cast(FaceKind, kind.one_of(FACE_KINDS)),
+        hidden=tuple(_ring(part) for part in optional_items(node, "hidden")),
+    )
+
+
+def _ring(node: Node) -> Float:
+    ring = node.array(None, 3, largest=LARGEST_NUMBER)
+    if len(ring) < 3:
+        raise node.wrong("at least 3 points")
+    return ring
+
+
+def read_openings(nodes: list[Node], walls: set[int]) -> tuple[Opening, ...]:
+    """The openings; `walls` are the ids of the vertical planes."""
+    distinct_ids([node["id"] for node in nodes])
+    return tuple(_opening(node, walls) for node in nodes)
+
+
+def _opening(node: Node, walls: set[int]) -> Opening:
+    if node["plane"].integer() not in walls:
+        raise JsonError(f"{node['plane'].place} is {node['plane'].value}, but no vertical plane has this id")
+    u, v = (node[key].array(2, largest=LARGEST_NUMBER).tolist() for key in ("u", "v"))
+    for key, (start, end) in (("u", u), ("v", v)):
+        if start >= end:
+            raise node[key].wrong("two ascending numbers")
+    recess, panel = known_member(node, "recess"), known_member(node, "panel")
+    if (recess is None) != (panel is None):
+        raise JsonError(f"{node.place} has a recess without a panel, or a panel without a recess")
+    if recess is not None and recess.number(LARGEST_NUMBER) <= 0:
+        raise recess.wrong("a positive number or null")
+    return Opening(
+        id=node["id"].integer(),
+        plane=node["plane"].integer(),
+        u0=u[0],
+        u1=u[1],
+        v0=v[0],
+        v1=v[1],
+        kind=cast(OpeningKind, node["kind"].one_of(OPENING_KINDS)),
+        recess=None if recess is None else recess.number(),
+        panel=None if panel is None else panel.number(LARGEST_NUMBER),
+        is_completed=optional_boolean(node, "completed"),
+        shape=count_or_zero(node.get("shape")),
+    )

@@ -1,0 +1,259 @@
+"""What painted photos say about their parts."""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from linecad.model.regions.evidence import (
+    BESIDE_COST,
+    CLUTTER,
+    CLUTTER_COST,
+    GREEN_COST,
+    NEAR_COST,
+    NEVER,
+    SKY,
+    SMOOTH_COST,
+    THROUGH_COST,
+    TURNED_COST,
+    WALLED_COST,
+    Heaven,
+    colour_costs,
+    depths,
+    direction_costs,
+    look_up,
+    sample_costs,
+    sums,
+)  # fmt: skip
+from linecad.model.regions.raster import COLUMNS, NO_AXIS, take_raster
+from linecad.model.regions.segments import limit_of_depth
+from linecad.model.regions.surfaces import Surface, find_surfaces
+
+NO_LINES = np.zeros(0, np.int64)
+NO_HEAVEN = Heaven(np.zeros(360 * COLUMNS, bool), is_sky=False, is_ceiling=False)
+BLUE_SKY, WHITE, BROWN = (120, 170, 235), (215, 212, 200), (120, 90, 70)
+
+
+@pytest.fixture(scope="module")
+def raster(house):
+    return take_raster(house.lines, house.camera, house.rotation, house.photo)
+
+
+@pytest.fixture(scope="module")
+def surfaces(house):
+    return find_surfaces(house.planes, house.lines, house.camera, None, has_ceiling=False)
+
+
+def sample(x, y):
+    """The sample at a pixel."""
+    return (y // 2) * COLUMNS + x // 2
+
+
+def under(top, house, rough=()):
+    """The raster of a photo whose upper third has one colour and whose rest is rough, as are patches (x, y, w, h)."""
+    rng = np.random.default_rng(0)
+    photo = rng.integers(40, 160, (720, 960, 3)).astype(np.uint8)
+    photo = cv2.resize(photo[::4, ::4], (960, 720), interpolation=cv2.INTER_NEAREST)
+    noisy = photo.copy()
+    photo[:240] = top
+    for x, y, width, height in rough:
+        photo[y : y + height, x : x + width] = noisy[y : y + height, x : x + width]
+    return take_raster(house.lines, house.camera, house.rotation, photo)
+
+
+def test_what_is_blue_and_smooth_on_top_is_sky(house):
+    heaven = look_up(under(BLUE_SKY, house))
+    assert (heaven.is_sky, heaven.is_ceiling) == (True, False)
+    seed = heaven.seed.reshape(360, COLUMNS)
+    assert seed[10:110, 10:-10].mean() > 0.5
+    assert not seed[125:].any()
+
+
+def test_what_is_as_light_as_walls_and_not_blue_is_a_ceiling(house):
+    # Light walls, lines apart.
+    photo = np.full((720, 960, 3), WHITE, np.uint8)
+    photo[240:720:12] = (150, 148, 140)
+    photo[:240] = (180, 176, 165)
+    lines = replace(house.lines, segment=house.lines.segment + np.array([0, 250]))
+    heaven = look_up(take_raster(lines, house.camera, house.rotation, photo))
+    assert (heaven.is_sky, heaven.is_ceiling) == (False, True)
+    assert not heaven.seed.any()
+
+
+def test_what_is_rough_on_top_is_neither(house):
+    heaven = look_up(under(BLUE_SKY, house, rough=[(0, 0, 960, 240)]))
+    assert (heaven.is_sky, heaven.is_ceiling) == (False, False)
+    assert not heaven.seed.any()
+
+
+def test_the_ground_is_no_sky_whatever_its_colour(house):
+    photo = np.full((720, 960, 3), BLUE_SKY, np.uint8)
+    rng = np.random.default_rng(0)
+    photo[:360] = cv2.resize(rng.integers(40, 160, (90, 240, 3)).astype(np.uint8), (960, 360), interpolation=0)
+    heaven = look_up(take_raster(house.lines, house.camera, house.rotation, photo))
+    assert (heaven.is_sky, heaven.is_ceiling) == (False, False)
+
+
+def test_a_smooth_part_with_lines_in_it_is_no_sky(house):
+    # The walls of the house are above the horizon in part, and as smooth as they can be.
+    photo = np.full((720, 960, 3), BLUE_SKY, np.uint8)
+    across = np.array([[[u, v], [u + 60, v]] for v in range(10, 355, 10) for u in range(0, 900, 60)], float)
+    count = len(across)
+    lines = replace(
+        house.lines, id=np.arange(count), axis=np.zeros(count, int), segment=across,
+        ends=np.resize(house.lines.ends, (count, 2, 3)), is_boundary=np.zeros(count, bool),
+        component=np.zeros(count, int), confidence=np.full(count, "proven"), by_depth_map=(), role=(), pieces=(),
+    )  # fmt: skip
+    assert not look_up(take_raster(lines, house.camera, house.rotation, photo)).is_sky
+
+
+def test_depths_are_those_of_rays_on_surfaces(raster, surfaces):
+    found = depths(raster, surfaces)
+    for number, surface in enumerate(surfaces):
+        seen = np.isfinite(found[:, number])
+        assert seen.any()
+        assert raster.rays[seen, surface.axis] * found[seen, number] == pytest.approx(surface.offset)
+        assert (found[seen, number] > 0).all()
+        assert (np.sign(raster.rays[~seen, surface.axis]) != np.sign(surface.offset)).all()
+
+
+def test_costs_of_a_photo_are_least_where_the_truth_is(house, raster, surfaces):
+    costs = sample_costs(raster, house.lines, surfaces, look_up(raster), limit_of_depth(raster))
+    assert costs.shape == (raster.size, len(surfaces) + 2)
+    truth = house.truth[::2, ::2].ravel()
+    names = {(0, 2.0): 0, (1, 8.0): 1, (2, -2.0): 2}
+    column = {names[surface.axis, surface.offset]: number for number, surface in enumerate(surfaces)
+              if (surface.axis, surface.offset) in names}  # fmt: skip
+    for number in (0, 1):
+        own, other = costs[truth == number, column[number]], costs[truth == number, column[1 - number]]
+        assert (own < other).mean() > 0.95
+    assert (costs[truth == 3].argmin(axis=1) == len(surfaces) + 2 + SKY).mean() > 0.95
+    below = raster.rays[:, 2] < 0
+    assert (costs[below, SKY] == NEVER).all()
+    assert (costs[~below, column[2]] == NEVER).all()
+
+
+def wall(offset, rows):
+    return Surface("wall", 1, offset, np.array(rows), 0)
+
+
+def test_a_wall_costs_more_away_from_its_lines(house, raster):
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
+    costs = sample_costs(raster, house.lines, [wall(8.0, rows)], NO_HEAVEN, np.inf)[:, 0]
+    on_line = raster.marked(np.isin(raster.line, rows))
+    assert costs[on_line].max() < 0.5 * NEAR_COST
+    # Beside and above its lines; far from all of them.
+    assert costs[sample(700, 120)] > costs[sample(700, 190)] > costs[on_line].max()
+
+
+def test_a_line_behind_a_wall_shows_that_it_is_not_there(house, to_lines):
+    edges = [(axis, ends.copy()) for axis, ends in zip(house.lines.axis.tolist(), house.lines.ends, strict=True)
+             if (ends[:, 1] == 8).all()]  # fmt: skip
+    place = np.array([3.9, 8, -0.4]) * 1.5
+    through = (2, np.array([place, place + np.array([0, 0, 1.2])]))
+    lines, _ = to_lines([*edges, through], house.camera, house.rotation)
+    own = np.arange(len(edges))
+    there = take_raster(lines, house.camera, house.rotation, house.photo)
+    with_it = sample_costs(there, lines, [wall(8.0, own)], NO_HEAVEN, np.inf)[:, 0]
+    elsewhere = replace(lines, component=np.r_[np.zeros(len(own), int), 1])
+    without = sample_costs(there, elsewhere, [wall(8.0, own)], NO_HEAVEN, np.inf)[:, 0]
+    on_line = there.marked(there.line == len(own))
+    more = with_it - without
+    assert more[on_line].min() >= THROUGH_COST - 1e-9
+    assert more[on_line].max() <= THROUGH_COST + BESIDE_COST + 1e-9
+    assert more[there.distance(on_line) > 60] == pytest.approx(0, abs=1e-3)
+
+
+def test_walls_end_at_the_ground_and_no_level_goes_on_for_ever(house, raster):
+    ground = Surface("ground", 2, -2.0, NO_LINES, None)
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
+    alone = sample_costs(raster, house.lines, [wall(8.0, rows)], NO_HEAVEN, np.inf)[:, 0]
+    with_ground = sample_costs(raster, house.lines, [wall(8.0, rows), ground], NO_HEAVEN, 20.0)
+    buried = with_ground[:, 0] - alone
+    assert buried[sample(700, 460)] == 0
+    assert buried[sample(700, 600)] > 2
+    depth = depths(raster, [ground])[:, 0]
+    assert (with_ground[depth > 20, 1] >= NEVER).all()
+    assert (with_ground[depth < 20, 1] < 2).all()
+
+
+def test_the_ground_is_not_seen_through_walls(house, raster):
+    ground = Surface("ground", 2, -2.0, NO_LINES, None)
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
+    alone = sample_costs(raster, house.lines, [ground], NO_HEAVEN, np.inf)[:, 0]
+    more = sample_costs(raster, house.lines, [ground, wall(8.0, rows)], NO_HEAVEN, np.inf)[:, 0] - alone
+    assert more[sample(700, 450)] == pytest.approx(WALLED_COST)
+    assert more[sample(700, 600)] == 0  # before the wall
+    assert more[sample(300, 450)] == more[sample(950, 450)] == 0  # beside it
+
+
+def test_a_depth_map_that_says_another_axis_speaks_against_a_surface(house, raster):
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
+
+    def cost(axis):
+        told = replace(raster, facing=np.full(raster.size, axis))
+        return sample_costs(told, house.lines, [wall(8.0, rows)], NO_HEAVEN, np.inf)[sample(700, 300), 0]
+
+    assert cost(1) == cost(-1)
+    assert cost(0) == cost(2) == pytest.approx(cost(1) + TURNED_COST)
+
+
+def test_green_speaks_against_walls_and_smoothness_against_clutter(house):
+    rng = np.random.default_rng(0)
+    photo = np.full((720, 960, 3), BROWN, np.uint8)
+    photo[:, 720:] = (70, 130, 50)
+    rough = np.clip(photo.astype(int) + rng.integers(-45, 45, (720, 960, 1)), 0, 255).astype(np.uint8)
+    photo[360:] = cv2.resize(rough[360::4, ::4], (960, 360), interpolation=cv2.INTER_NEAREST)
+    raster = take_raster(house.lines, house.camera, house.rotation, photo)
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
+    surfaces = [wall(8.0, rows), Surface("ground", 2, -2.0, NO_LINES, None)]
+    costs = sample_costs(raster, house.lines, surfaces, NO_HEAVEN, np.inf)
+    plain = replace(raster, colour=np.full_like(raster.colour, 128))
+    more = costs - sample_costs(plain, house.lines, surfaces, NO_HEAVEN, np.inf)
+    assert more[sample(600, 300), 0] == 0
+    assert more[sample(850, 300), 0] == pytest.approx(GREEN_COST)
+    assert more[:, 1] == pytest.approx(0)  # a lawn is ground
+    for x in (600, 850):
+        assert costs[sample(x, 200), CLUTTER] == pytest.approx(CLUTTER_COST + SMOOTH_COST)
+        assert costs[sample(x, 600), CLUTTER] == pytest.approx(CLUTTER_COST, abs=1e-3)
+
+
+def test_sums_are_by_cell():
+    values = np.array([[1.0, 10], [2, 20], [4, 40], [8, 80]])
+    assert sums(np.array([2, 0, 2, 0]), 4, values).tolist() == [[10, 100], [0, 0], [5, 50], [0, 0]]
+
+
+def test_edges_say_which_axis_a_cell_does_not_face(raster):
+    cell = np.zeros(raster.size, np.int64)
+    walls = [Surface("wall", axis, 3.0, NO_LINES, axis) for axis in (0, 1)]
+    ground = Surface("ground", 2, -2.0, NO_LINES, None)
+    for axis, likely, unlikely in ((0, 1, 0), (1, 0, 1)):
+        votes = np.zeros((raster.size, 4))
+        votes[:100, axis] = 1
+        costs = direction_costs(replace(raster, votes=votes), [*walls, ground], cell, 1)[0]
+        assert costs[likely] < costs[2] < 0 < costs[unlikely]
+        assert costs[CLUTTER] == 0
+        assert costs[SKY] > 0
+    votes = np.zeros((raster.size, 4))
+    votes[:100, 2] = 1
+    costs = direction_costs(replace(raster, votes=votes), [*walls, ground], cell, 1)[0]
+    assert costs[0] == costs[1] < 0 < costs[2]
+    votes = np.zeros((raster.size, 4))
+    votes[:100, NO_AXIS] = 1
+    costs = direction_costs(replace(raster, votes=votes), [*walls, ground], cell, 1)[0]
+    assert (costs[:3] > 0).all()
+
+
+def test_cells_in_the_colour_of_a_label_are_likely_to_have_it(house):
+    photo = np.full((720, 960, 3), BROWN, np.uint8)
+    photo[:, :480] = WHITE
+    raster = take_raster(house.lines, house.camera, house.rotation, photo)
+    cell = np.repeat([0, 1], COLUMNS // 4)
+    cell = np.tile(np.r_[cell, cell + 2], raster.shape[0])  # two white ones beside two brown ones
+    costs = colour_costs(raster, cell, np.array([0, 0, 1, 1]), 4)
+    assert (costs[:2, 0] < 0).all()
+    assert (costs[:2, 1] > 0).all()
+    assert (costs[2:, 1] < 0).all()
+    assert (costs[2:, 0] > 0).all()
+    assert (costs[:, 2:] == 0).all()  # labels that none has

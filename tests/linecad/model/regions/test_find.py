@@ -1,0 +1,63 @@
+"""All stages together, from lines and a picture to what every part of it shows."""
+
+import numpy as np
+import pytest
+import shapely
+
+from linecad.depth.normals import Normals
+from linecad.model.regions.evidence import NEVER, TURNED_COST
+from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.surfaces import GroundOfFeet
+
+
+def surfaces(found):
+    return {(surface.kind, surface.axis, surface.offset) for surface in found.labels.surfaces}
+
+
+def of_axis(found, axis):
+    """The region of the one surface of an axis."""
+    (number,) = [row for row, surface in enumerate(found.labels.surfaces) if surface.axis == axis]
+    return shapely.union_all([region for own, region in found.labels.regions if own == number])
+
+
+def test_the_photo_tells_walls_from_ground_and_sky(house_regions):
+    assert surfaces(house_regions) == {("wall", 0, 2.0), ("wall", 1, 8.0), ("ground", 2, -2.0)}
+    labels = house_regions.labels
+    assert (labels.label == labels.sky).any()
+    assert sum(region.area for _, region in labels.regions) == pytest.approx(960 * 720)
+
+
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_wall_is_one_region_with_four_corners(house, house_regions, axis):
+    wall = of_axis(house_regions, axis)
+    assert len(shapely.get_coordinates(wall)) - 1 == 4
+    assert wall.area == pytest.approx((house.truth == axis).sum(), rel=0.01)
+
+
+def test_a_tree_before_the_house_takes_no_part_of_its_walls(house, house_regions, make_house):
+    look = Look(make_house([np.array([(600, 350), (660, 340), (670, 600), (595, 610)], float)]).photo, None, None)
+    found = find_regions(house.planes, house.lines, house.camera, house.rotation, look)
+    for axis in (0, 1):
+        wall = of_axis(house_regions, axis)
+        assert of_axis(found, axis).symmetric_difference(wall).area < 0.01 * wall.area
+
+
+def test_the_feet_of_walls_put_the_ground(house):
+    look = Look(house.photo, GroundOfFeet(2.3, 5.0), None)
+    assert ("ground", 2, -2.3) in surfaces(find_regions(house.planes, house.lines, house.camera, house.rotation, look))
+
+
+def test_normals_of_a_depth_map_are_looked_at(house, house_regions):
+    vectors = np.empty((720, 960, 3))
+    vectors[:] = -house.rotation[:, 0]
+    look = Look(house.photo, None, Normals(vectors))
+    labels = find_regions(house.planes, house.lines, house.camera, house.rotation, look).labels
+    more = labels.of_samples - house_regions.labels.of_samples
+    for number, surface in enumerate(labels.surfaces):
+        seen = house_regions.labels.of_samples[:, number] < NEVER
+        assert more[seen, number] == pytest.approx(0.0 if surface.axis == 0 else TURNED_COST)
+
+
+def test_a_scene_without_planes_has_no_walls(house):
+    found = find_regions((), house.lines, house.camera, house.rotation, Look(house.photo, None, None))
+    assert surfaces(found) == {("ground", 2, -2.0)}

@@ -1,0 +1,116 @@
+"""Labels of a painted house: its two walls, the ground and the sky."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+from linecad.model.regions.cuts import Borders, energy
+from linecad.model.regions.evidence import look_up
+from linecad.model.regions.labelling import CORNER, UNIT, Labels, find_labels, united
+from linecad.model.regions.raster import take_raster
+from linecad.model.regions.segments import View, find_segments
+from linecad.model.regions.surfaces import Surface, find_surfaces
+
+LIMIT = 440  # px from the top; the ground ends there, some way behind the house
+
+
+def labels_of(house, more=()):
+    """Labels by the lines and the picture of a house; `more` are surfaces that it does not have."""
+    view = View(house.camera, house.rotation, house.photo)
+    raster = take_raster(house.lines, house.camera, house.rotation, house.photo)
+    surfaces = [*find_surfaces(house.planes, house.lines, house.camera, None, has_ceiling=False), *more]
+    segments = find_segments(house.lines, surfaces, raster, view)
+    return find_labels(segments, house.lines, surfaces, raster, look_up(raster), view)
+
+
+@pytest.fixture(scope="module")
+def found(house):
+    return labels_of(house)
+
+
+def shown(found, house):
+    """What each sample shows, numbered as in the truth of the house; -1 for other surfaces."""
+    names = {(0, 2.0): 0, (1, 8.0): 1, (2, -2.0): 2}
+    numbers = [names.get((surface.axis, surface.offset), -1) for surface in found.surfaces] + [3, 4]
+    return np.array(numbers)[found.label[found.cell]].reshape(house.camera.height // 2, -1)
+
+
+def test_walls_ground_and_sky_are_where_they_are(house, found):
+    picture, truth = shown(found, house), house.truth[::2, ::2]
+    for number in (0, 1, 3):
+        assert ((picture == number) & (truth == number)).sum() > 0.98 * (truth == number).sum()
+    near = np.arange(picture.shape[0])[:, None] > LIMIT / 2
+    assert ((picture == 2) & (truth == 2))[near[:, 0]].sum() > 0.98 * ((truth == 2) & near).sum()
+    assert not ((picture == 2) & (truth != 2)).sum() > 0.01 * picture.size
+
+
+def test_surfaces_that_nothing_shows_are_left_out(house, found):
+    assert sorted((surface.axis, surface.offset) for surface in found.surfaces) == [(0, 2.0), (1, 8.0), (2, -2.0)]
+    assert found.label.max() <= found.clutter == found.sky + 1 == 4
+    # A plane just behind the front with three of its lines would win some of it back, less than a surface costs.
+    rows = np.flatnonzero((house.lines.ends[:, :, 1] == 8).all(axis=1))[:3]
+    assert len(labels_of(house, [Surface("wall", 1, 8.5, rows, 99)]).surfaces) == 3
+
+
+def test_walls_have_few_corners_and_hardly_a_hole(found):
+    for number, surface in enumerate(found.surfaces):
+        if surface.kind == "wall":
+            regions = [region for own, region in found.regions if own == number]
+            wall = max(regions, key=lambda region: region.area)
+            assert wall.area > 0.99 * sum(region.area for region in regions)
+            assert shapely.Polygon(wall.exterior).area < 1.02 * wall.area
+            # But for slivers between collinear lines, thinner than a pixel, that filling gives to it.
+            outline = wall.buffer(0.01, join_style="mitre").buffer(-0.01, join_style="mitre").simplify(0.1).exterior
+            assert len(shapely.get_coordinates(outline)) - 1 <= 6
+
+
+def test_regions_cover_the_photo_once(found):
+    regions = [region for _, region in found.regions]
+    frame = shapely.box(-0.5, -0.5, 959.5, 719.5)
+    assert sum(region.area for region in regions) == pytest.approx(frame.area)
+    assert shapely.union_all(regions).symmetric_difference(frame).area < 1e-3
+
+
+def test_without_a_photo_nothing_is_sky(house):
+    found = labels_of(replace(house, photo=None))
+    assert not (found.label == found.sky).any()
+    assert {(surface.axis, surface.offset) for surface in found.surfaces} >= {(0, 2.0), (1, 8.0)}
+
+
+def squares(label):
+    """A row of unit squares with labels of one surface, sky and clutter."""
+    cells = [shapely.box(x, 0, x + 1, 1) for x in range(len(label))]
+    pairs = np.column_stack([np.arange(len(label) - 1), np.arange(1, len(label))])
+    costs = np.arange(3 * len(label)).reshape(-1, 3)
+    surfaces = [Surface("wall", 1, 8.0, np.zeros(0, np.int64), 0)]
+    return Labels(
+        surfaces,
+        cells,
+        np.zeros(50, np.int64),
+        np.array(label),
+        np.zeros((50, 3)),
+        costs,
+        Borders(pairs, np.full(len(pairs), 7)),
+    )
+
+
+def test_regions_are_connected_unions_without_needless_corners():
+    regions = squares([0, 0, 1, 0]).regions
+    assert sorted((number, region.area) for number, region in regions) == [(0, 1), (0, 2), (1, 1)]
+    assert [len(region.exterior.coords) - 1 for _, region in regions] == [4, 4, 4]
+
+
+def test_the_price_is_that_of_labels_and_of_corners():
+    row = squares([0, 0, 1, 0])
+    assert row.price == pytest.approx(energy(row.costs, row.borders, row.label) / UNIT + 3 * 5 * CORNER * 50)
+
+
+def test_united_cells_are_one_where_they_touch_along_a_side():
+    side = united([shapely.box(0, 0, 1, 1), shapely.box(1, 0, 2, 1)])
+    assert [shapely.get_coordinates(each).shape[0] - 1 for each in side] == [4]
+    assert len(united([shapely.box(0, 0, 1, 1), shapely.box(1, 1, 2, 2)])) == 2
+    ring = [shapely.box(x, y, x + 1, y + 1) for x in range(3) for y in range(3) if (x, y) != (1, 1)]
+    (around,) = united(ring)
+    assert len(around.interiors) == 1

@@ -1,0 +1,114 @@
+"""The walls, the ground and the ceiling of lines."""
+
+import numpy as np
+import pytest
+
+from linecad.geometry import central_camera
+from linecad.model.regions.surfaces import (
+    BELOW,
+    FURTHEST_FOOT,
+    GROUND_STEP,
+    MOST_SURFACES,
+    RELIEF,
+    GroundOfFeet,
+    find_surfaces,
+    ground_height,
+    level_of_ends,
+)  # fmt: skip
+from linecad.scene import Camera, Lines, Plane
+
+CAMERA = Camera(1000, 800, central_camera(800.0, 1000, 800), "file")
+
+
+def upright(*spans, length=100.0, probability=(), component=None):
+    """Lines along z, each from a height to another, `length` px long in the photo, with ids from 10 on."""
+    count = len(spans)
+    ends = np.array([[[x, 5, low], [x, 5, high]] for x, (low, high) in enumerate(spans)], float).reshape(-1, 2, 3)
+    segment = np.zeros((count, 2, 2))
+    segment[:, 1, 1] = length
+    return Lines(
+        id=10 + np.arange(count), axis=np.full(count, 2), segment=segment, ends=ends,
+        is_boundary=np.zeros(count, bool), component=np.zeros(count, int) if component is None else component,
+        confidence=np.full(count, "proven"), probability=probability,
+    )  # fmt: skip
+
+
+def surfaces(planes, lines, feet=None, has_ceiling=False):
+    """What is found, as tuples."""
+    found = find_surfaces(tuple(planes), lines, CAMERA, feet, has_ceiling)
+    return [(each.kind, each.axis, each.offset, each.lines.tolist(), each.plane) for each in found]
+
+
+ABOVE = upright(*[(1, 2)] * 6)
+BOTH = upright(*[(-2, 2)] * 6)
+
+
+def test_planes_are_walls_and_levels_in_the_order_of_the_length_of_their_lines():
+    planes = [Plane(0, 2, 1.0, (10,)), Plane(1, 0, 3.0, (11, 12, 13)), Plane(2, 1, 9.0, (14, 15))]
+    assert surfaces(planes, ABOVE) == [
+        ("wall", 0, 3.0, [1, 2, 3], 1), ("wall", 1, 9.0, [4, 5], 2), ("level", 2, 1.0, [0], 0)
+    ]  # fmt: skip
+
+
+def test_relief_is_one_wall_with_the_plane_of_the_most_lines():
+    for factor, count in ((1 - 0.9 * RELIEF, 1), (1 + 0.9 * RELIEF, 1), (1 + 1.1 * RELIEF, 2), (-1, 2)):
+        planes = [Plane(0, 0, 3.0 * factor, (10, 11)), Plane(1, 0, 3.0, (12, 13, 14))]
+        found = surfaces(planes, ABOVE)
+        assert len(found) == count
+        assert found[0] == ("wall", 0, 3.0, [0, 1, 2, 3, 4] if count == 1 else [2, 3, 4], 1)
+    other_axis = [Plane(0, 1, 3.0, (10, 11)), Plane(1, 0, 3.0, (12, 13, 14))]
+    assert len(surfaces(other_axis, ABOVE)) == 2
+
+
+def test_short_lines_make_no_surface_and_there_are_so_many_at_most():
+    assert surfaces([Plane(0, 0, 3.0, (10,))], upright(*[(1, 2)] * 3, length=19)) == []
+    assert len(surfaces([Plane(0, 0, 3.0, (10,))], upright(*[(1, 2)] * 3, length=21))) == 1
+    many = [Plane(number, 0, 1.0 + number, (10 + number,)) for number in range(MOST_SURFACES + 5)]
+    assert len(surfaces(many, upright(*[(1, 2)] * len(many)))) == MOST_SURFACES
+
+
+def test_the_ground_is_where_nearly_all_lines_end():
+    assert level_of_ends(BOTH, above=False) == 2
+    assert level_of_ends(BOTH, above=True) == 2
+    # One of thirty, which reaches too far down, does not put it there; two of them do.
+    assert level_of_ends(upright(*[(-2, 2)] * 29, (-7, 2)), above=False) == 2
+    assert level_of_ends(upright(*[(-2, 2)] * 28, *[(-7, 2)] * 2), above=False) == 7
+    assert surfaces([], BOTH) == [("ground", 2, -2.0, [], None)]
+
+
+def test_lines_above_the_horizon_have_no_ground():
+    assert ground_height(ABOVE, None) is None
+    assert ground_height(upright((-2, 2), (-2, 2), *[(1, 2)] * 4), None) is None
+    assert surfaces([], ABOVE, GroundOfFeet(1.5, 9.0)) == []
+
+
+def test_lines_whose_place_is_unsure_say_less_about_the_ground():
+    spans = [(-2, 2)] * 28 + [(-7, 2)] * 2
+    sure = [1.0] * 28 + [0.1] * 2
+    assert level_of_ends(upright(*spans, probability=sure), above=False) == 2
+    assert level_of_ends(upright(*spans, component=[0] * 28 + [1] * 2), above=False) == 2
+
+
+def test_feet_put_the_ground_where_no_line_contradicts_them():
+    # All lines end above the feet: the ground is lower than each of them.
+    assert ground_height(BOTH, GroundOfFeet(2.5, 1.0)) == 2.5
+    assert ground_height(BOTH, GroundOfFeet(2.0 / BELOW * 1.001, 0.1)) == 2.0 / BELOW * 1.001
+    # All reach below the feet, which then need log-odds of more than 20.
+    low = GroundOfFeet(1.0, 19.0)
+    assert ground_height(BOTH, low) == 2
+    assert ground_height(BOTH, GroundOfFeet(1.0, 21.0)) == 1.0
+    # Feet far below all lines are no feet of theirs.
+    assert ground_height(BOTH, GroundOfFeet(FURTHEST_FOOT * 2 * 1.01, 99.0)) == 2
+
+
+def test_levels_near_the_ground_become_it_and_kerbs_join_it():
+    kerb = -2 * np.exp(-0.9 * GROUND_STEP)
+    planes = [Plane(0, 2, -2.0, (10, 11)), Plane(1, 2, kerb, (12,)), Plane(2, 2, 2.0, (13,))]
+    assert surfaces(planes, BOTH) == [("level", 2, 2.0, [3], 2), ("ground", 2, -2.0, [0, 1, 2], 0)]
+    far = -2 * np.exp(-1.1 * GROUND_STEP)
+    assert surfaces([Plane(1, 2, far, (12,))], BOTH) == [("level", 2, far, [2], 1), ("ground", 2, -2.0, [], None)]
+
+
+def test_a_ceiling_is_where_nearly_all_lines_end_above():
+    assert surfaces([], BOTH, has_ceiling=True) == [("ground", 2, -2.0, [], None), ("ceiling", 2, 2.0, [], None)]
+    assert surfaces([Plane(4, 2, 2.0, (10,))], ABOVE, has_ceiling=True) == [("ceiling", 2, pytest.approx(2), [0], 4)]
