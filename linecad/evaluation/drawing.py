@@ -11,6 +11,7 @@ from linecad.evaluation.draughting.ground import GroundCounts, count_ground
 from linecad.evaluation.draughting.lines import LineCounts, count_lines
 from linecad.evaluation.draughting.shapes import NO_FACE, nearest_faces, shapes_of
 from linecad.evaluation.drawing_truth import Shown, TrueCounts, compare_faces
+from linecad.evaluation.openings import windows_f1
 from linecad.evaluation.references import Reference, pixel_grid
 from linecad.scene import Scene
 
@@ -29,6 +30,7 @@ class DrawingScore:
     faces: FaceCounts
     lines: LineCounts
     truth: TrueCounts | None  # made photos alone
+    windows: float | None  # F1 at overlap 0.5; None where the truth does not know windows
 
 
 def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> DrawingScore:
@@ -53,10 +55,11 @@ def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> Dr
         faces=count_faces(scene, shapes, np.array([shape.face.kind in OPENINGS for shape in shapes], bool)),
         lines=count_lines(scene, shapes, _details(scene)),
         truth=truth,
+        windows=None if reference.truth is None else windows_f1(scene, reference.truth),
     )
 
 
 def _details(scene: Scene) -> Bool:
-    """Which lines (N,) are on the layer of details; none in scenes that do not tell."""
-    role = getattr(scene.lines, "role", ())
-    return np.array(role) == DETAIL if len(role) else np.zeros(len(scene.lines), bool)
+    """Which lines (N,) are on the layer of details."""
+    details: Bool = np.asarray(scene.lines.role) == DETAIL
+    return details

@@ -53,6 +53,7 @@ TRUTH: dict[Column, Reader] = {
     Column("ground in one face", "%"): _of_truth(lambda truth: truth.ground_covered),
     Column("one ground", "%"): _of_truth(lambda truth: truth.has_one_ground),
     Column("ground height right", "%"): _of_truth(lambda truth: truth.has_right_height),
+    Column("windows F1", "%"): lambda score: score.windows,
 }
 TABLES: dict[str, tuple[str, dict[Column, Reader]]] = {
     "Drawing: faces": ("What a draughtsman would object to in the faces.", FACES),

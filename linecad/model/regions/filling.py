@@ -14,7 +14,7 @@ from linecad.arrays import Bool, Float
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, expand
 from linecad.model.regions.evidence import sums
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labelling import UNIT, Labels
 from linecad.model.regions.raster import Raster
 from linecad.scene import Camera
 
@@ -22,6 +22,7 @@ SURROUNDED = 0.5  # share of the outline of clutter that is along surfaces
 LEAST_AREA = 0.0015  # of the photo, of a region that becomes a face
 NEVER = 10**7  # cost of a label that a cell may not take
 TOUCH = 1e-3  # px
+UNREACHED = 10.0  # cost a sample, from which on a good part of a cell lies where a surface is not seen
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +51,16 @@ def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
     own = sums(cell, len(cells), found.of_samples)
     whole = np.full(own.shape, NEVER, np.int64)
     whole[np.arange(len(cells)), label] = 0
-    whole[inside] = np.minimum(np.rint(own[inside] * 100), NEVER)
+    count = np.maximum(np.bincount(cell, minlength=len(cells)), 1)[:, None]
+    # What a surface does not reach it does not show, however little else there is.
+    reached = own[inside] < UNREACHED * count[inside]
+    whole[inside] = np.where(reached, np.minimum(np.rint(own[inside] * UNIT), NEVER), NEVER)
     small = inside & (label < found.sky)
     whole[small, label[small]] = NEVER
-    whole[inside, found.clutter] = NEVER
+    whole[inside, found.clutter] = NEVER - 1  # where nothing is reached, it stays what it is
     started = np.where(inside, whole.argmin(axis=1), label)
     borders = _neighbours(cells)
-    label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky])
+    label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky, found.clutter])
     return Filled(replace(found, cells=cells, cell=cell, label=label, costs=whole, borders=borders), clutter)
 
 

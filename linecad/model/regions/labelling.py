@@ -117,7 +117,20 @@ def _labels(cells: list[shapely.Polygon], costs: Float, drawn: Bool, surfaces: l
     whole = _whole(own + colour_costs(raster, cell, label, own.shape[1]))
     label = expand(whole, borders, label, candidates)
     label = _without_doubtful(whole, borders, label, len(surfaces), SURFACE * raster.size * UNIT)
-    return Labels(surfaces, cells, cell, label, costs, whole, borders)
+    return Labels(surfaces, cells, cell, _like_neighbours(cells, cell, label), costs, whole, borders)
+
+
+def _like_neighbours(cells: list[shapely.Polygon], cell: Int, label: Int) -> Int:
+    """The labels, where a cell that is too thin for a sample has that of the neighbour with which it shares most."""
+    seen = np.bincount(cell, minlength=len(cells)) > 0
+    shapes, label = np.array(cells, object), label.copy()
+    thin = np.flatnonzero(~seen)
+    number, other = shapely.STRtree(cells).query(shapes[thin], predicate="intersects")
+    number, other = number[seen[other]], other[seen[other]]
+    shared = shapely.length(shapely.intersection(shapes[thin[number]], shapes[other]))
+    order = np.argsort(shared, kind="stable")  # the longest is written last
+    label[thin[number[order]]] = label[other[order]]
+    return label
 
 
 def _whole(costs: NDArray[np.floating[Any]]) -> Int:

@@ -20,7 +20,13 @@ from linecad.evaluation.tables import all_tables, calibration, depths, depths_by
 
 SETTINGS = Settings(formulations=("paper",))
 DRAWING = DrawingScore(
-    0.5, None, GroundCounts(1, 2, 1), FaceCounts(9, 0, 1, 2, 4, 3, 1, 2, 5, 4), LineCounts(20, 0, 3, 6, 40, 7, 10), None
+    0.5,
+    None,
+    GroundCounts(1, 2, 1),
+    FaceCounts(9, 0, 1, 2, 4, 3, 1, 2, 5, 4),
+    LineCounts(20, 0, 3, 6, 40, 7, 10),
+    None,
+    windows=None,
 )
 ALL = DepthScore(10, 8, 0.3, 0.6, 0.375, 0.75, 1.0)
 LARGEST = DepthScore(10, 5, 0.2, 0.4, 0.5, 1.0, 1.0)
