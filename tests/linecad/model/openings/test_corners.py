@@ -32,7 +32,7 @@ def test_flush_opening_has_no_panel():
         ({"kind": "gate"}, "expected window or door"),
         ({"recess": 0.1}, "has recess 0.1 and panel None"),
         ({"recess": -0.1, "panel": 3.9}, "has recess -0.1"),
-        ({"u0": np.inf}, "not finite"),
+        ({"u0": np.inf}, "finite numbers"),
     ],
 )
 def test_opening_that_cannot_be_is_refused(change, message):
