@@ -9,7 +9,7 @@ from itertools import permutations
 
 import numpy as np
 
-from linecad.arrays import Float
+from linecad.arrays import Float, Int
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
 DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
@@ -49,6 +49,17 @@ def world_rays(pixels: Float, K: Float, R: Float) -> Float:
     """World rays (..., 3) of pixels (..., 2), scaled so that their camera depth is 1."""
     rays: Float = homogeneous(pixels) @ np.linalg.inv(K).T @ R
     return rays
+
+
+def depths_beside(rays: Float, points: Float, axis: Int) -> Float:
+    """Camera depths (M,) at which rays pass nearest to lines, measured across these.
+
+    The world rays (M, 3) have camera depth 1; the lines run along `axis` (M,) through points (M, 3).
+    """
+    across = np.stack([(axis + 1) % 3, (axis + 2) % 3], axis=1)
+    ray, fixed = (np.take_along_axis(places, across, axis=1) for places in (rays, points))
+    depths: Float = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
+    return depths
 
 
 def project(points: Float, K: Float, R: Float) -> Float:

@@ -6,7 +6,7 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.corrections.apply import CorrectedLines
-from linecad.geometry import world_rays
+from linecad.geometry import depths_beside, world_rays
 from linecad.scene import Scene
 
 LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
@@ -46,7 +46,5 @@ def _length(scene: Scene, row: int, segment: Float) -> float:
     if not len(scene.lines.pieces[row]):
         return float(np.linalg.norm(ends[1] - ends[0]))
     rays = world_rays(segment, scene.camera.matrix, scene.rotation)
-    across = [each for each in range(3) if each != axis]
-    # Where each ray passes nearest to the line.
-    depth = (rays[:, across] * ends[0, across]).sum(axis=1) / (rays[:, across] ** 2).sum(axis=1)
+    depth = depths_beside(rays, ends[[0, 0]], np.full(2, axis))
     return float(np.abs(np.diff(depth * rays[:, axis]))[0])

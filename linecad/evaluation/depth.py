@@ -6,7 +6,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.evaluation.draughting.shapes import nearest_faces
-from linecad.geometry import segment_coordinates, world_rays
+from linecad.geometry import depths_beside, segment_coordinates, world_rays
 from linecad.scene import Face, Plane, Scene
 
 REACH = 4.0  # px between a surveyed point and the line that is taken to show it
@@ -96,9 +96,7 @@ def depths_of(scene: Scene, pixels: Float, which: Int) -> Float:
     """Camera depth (M,) at which the ray of each pixel (M, 2) passes nearest to line `which` (M,); NaN for NO_LINE."""
     has = which != NO_LINE
     line = which[has]
-    across = np.array([np.delete(np.arange(3), axis) for axis in range(3)])[scene.lines.axis[line]]
-    fixed = np.take_along_axis(scene.lines.ends[line, 0], across, axis=1)
-    ray = np.take_along_axis(world_rays(pixels[has], scene.camera.matrix, scene.rotation), across, axis=1)
+    rays = world_rays(pixels[has], scene.camera.matrix, scene.rotation)
     found = np.full(len(pixels), np.nan)
-    found[has] = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
+    found[has] = depths_beside(rays, scene.lines.ends[line, 0], scene.lines.axis[line])
     return found

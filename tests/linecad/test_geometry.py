@@ -14,6 +14,7 @@ from linecad.geometry import (
     angle_between_frames,
     angles_to,
     central_camera,
+    depths_beside,
     directions_to,
     homogeneous,
     plane_normals,
@@ -134,3 +135,18 @@ def test_segment_coordinates_are_along_and_to_the_right():
 
 def test_a_segment_without_length_has_no_direction():
     assert segment_coordinates(np.array([3.0, 4.0]), np.zeros((2, 2))) == (0, 0)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_a_ray_passes_nearest_to_a_line_at_its_depth(axis):
+    rng = np.random.default_rng(axis)
+    rays, points = rng.normal(size=(5, 3)), rng.normal(size=(5, 3))
+    depth = depths_beside(rays, points, np.full(5, axis))
+    across = np.delete(np.arange(3), axis)
+
+    def distance(at):
+        return np.linalg.norm((rays * at[:, None] - points)[:, across], axis=1)
+
+    assert (distance(depth) <= np.minimum(distance(depth + 1e-3), distance(depth - 1e-3))).all()
+    met = depths_beside(rays, 3 * rays + 7 * np.eye(3)[axis], np.full(5, axis))
+    assert met == pytest.approx(np.full(5, 3.0))

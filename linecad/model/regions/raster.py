@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.normals import UNTOLD, Normals
-from linecad.geometry import directions_to, vanishing_points, world_rays
+from linecad.geometry import depths_beside, directions_to, vanishing_points, world_rays
 from linecad.scene import Camera, Lines
 
 COLUMNS = 480  # of samples across the photo
@@ -84,9 +84,6 @@ def take_raster(
     small = np.asarray(cv2.resize(photo, shape[::-1], interpolation=cv2.INTER_AREA), np.uint8)
     line, at, points = _points_on_lines(lines, shape, step)
     rays = world_rays(points, camera.matrix, rotation)
-    across = np.stack([(lines.axis + 1) % 3, (lines.axis + 2) % 3], axis=1)
-    ray = np.take_along_axis(rays, across[line], axis=1)
-    fixed = np.take_along_axis(lines.ends[:, 0], across, axis=1)[line]
     return Raster(
         shape=shape,
         step=step,
@@ -98,7 +95,7 @@ def take_raster(
         line=line,
         at=at,
         line_rays=rays,
-        line_depth=(ray * fixed).sum(axis=1) / (ray**2).sum(axis=1),
+        line_depth=depths_beside(rays, lines.ends[line, 0], lines.axis[line]),
     )
 
 
