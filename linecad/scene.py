@@ -25,7 +25,7 @@ AXES = "xyz"
 CameraSource = Literal["file", "focal option", "exif", "vanishing points", "default"]
 Confidence = Literal["proven", "supported", "weak"]
 Quality = Literal["good", "doubtful", "poor"]
-FaceKind = Literal["wall", "ground", "ceiling", "roof", "window", "door", "other"]
+FaceKind = Literal["wall", "ground", "ceiling", "roof", "window", "door", "reveal", "other"]
 Role = Literal["outline", "opening", "detail"]  # what a line is drawn for (linecad.model.clean.roles)
 DepthKind = Literal["z", "distance", "inverse", "affine-inverse"]  # what a depth map measures (linecad.depth)
 OpeningKind = Literal["window", "door"]
@@ -138,14 +138,12 @@ class Lines:
         freeze(self, "role", np.str_, (None,))
         self._freeze_pieces()
         same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map", "role", "pieces"]
-        check_lengths(self, len(self.id), same)
-        if len(self.probability):
-            check_lengths(self, len(self.id), ["probability"])
+        check_lengths(self, len(self.id), same + ["probability"] * (len(self.probability) > 0))
         check_not_negative(self, ["id", "component"])
         check_words(self, "confidence", CONFIDENCES)
         check_words(self, "role", ROLES)
         check_unique("Lines", self.id.tolist())
-        if len(self.axis) and not (self.axis.min() >= 0 and self.axis.max() <= 2):
+        if not np.isin(self.axis, (0, 1, 2)).all():
             raise ValueError("Lines.axis holds a number outside 0, 1, 2")
         if len(self.probability) and not (min(self.probability) >= 0 and max(self.probability) <= 1):
             raise ValueError("Lines.probability holds a number outside 0 to 1")
@@ -185,10 +183,9 @@ class Intersections:
         for name in ("real", "in_tree"):
             freeze(self, name, np.bool_, (None,))
         freeze(self, "weight", np.float64, (None,))
-        freeze(self, "reason", np.str_, (None,))
         if len(self.reason) == 0:
             object.__setattr__(self, "reason", np.full(len(self.lines), ""))
-            freeze(self, "reason", np.str_, (None,))
+        freeze(self, "reason", np.str_, (None,))
         check_lengths(self, len(self.lines), ["kind", "pixel", "real", "in_tree", "weight", "reason"])
         check_words(self, "kind", EDGE_KINDS)
         check_words(self, "reason", (*REASONS, ""))
@@ -206,6 +203,7 @@ class Face:
     holes: tuple[Float, ...] = ()  # each (H, 3) world, not closed
     kind: FaceKind = "other"
     hidden: tuple[Float, ...] = ()  # each (H, 3) world, not closed: parts of it that something hides in the photo
+    opening: int | None = None  # id of the opening that a pane or a reveal is of
 
     def __post_init__(self) -> None:
         freeze(self, "outline", np.float64, (None, 3))
@@ -227,10 +225,9 @@ class Plane:
     faces: tuple[Face, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.axis not in (0, 1, 2):
-            raise ValueError(f"Plane {self.id} has axis {self.axis}, expected 0, 1 or 2")
-        if not np.isfinite(self.offset):
-            raise ValueError(f"Plane {self.id} has offset {self.offset}, expected a finite number")
+        if self.axis not in (0, 1, 2) or not np.isfinite(self.offset):
+            found = f"axis {self.axis} and offset {self.offset}"
+            raise ValueError(f"Plane {self.id} has {found}, expected 0, 1 or 2 and a finite number")
 
 
 @dataclass(frozen=True)
@@ -330,11 +327,14 @@ class Scene:
                 raise ValueError(f"{name} names line {min(ids - known)}, which the scene does not have")
         check_unique("Scene.planes", [plane.id for plane in self.planes])
         check_unique("Scene.openings", [opening.id for opening in self.openings])
-        walls = {plane.id for plane in self.planes if plane.axis != 2}
+        walls, openings = {plane.id for plane in self.planes if plane.axis != 2}, {each.id for each in self.openings}
         for opening in self.openings:
             if opening.plane not in walls:
                 raise ValueError(f"Opening {opening.id} is in plane {opening.plane}, which is no wall of the scene")
-        check_unique("Scene.faces", [face.id for plane in self.planes for face in plane.faces])
+        for _, face in self.faces:
+            if face.opening is not None and face.opening not in openings:
+                raise ValueError(f"Face {face.id} is of opening {face.opening}, which the scene does not have")
+        check_unique("Scene.faces", [face.id for _, face in self.faces])
         if self.metres_per_unit is not None and not 0 < self.metres_per_unit < np.inf:
             raise ValueError(f"Scene.metres_per_unit is {self.metres_per_unit}, expected a positive number")
 

@@ -106,6 +106,7 @@ def _plane_record(plane: Plane) -> dict[str, object]:
                 "outline": face.outline.tolist(),
                 "holes": [hole.tolist() for hole in face.holes],
                 **({"hidden": [part.tolist() for part in face.hidden]} if face.hidden else {}),
+                **({} if face.opening is None else {"opening": int(face.opening)}),
             }
             for face in plane.faces
         ],

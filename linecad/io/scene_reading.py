@@ -54,7 +54,8 @@ def scene_of(top: Node) -> Scene:
     camera, rotation = _camera(top["camera"])
     lines = _lines(top["lines"].items())
     known = set(lines.id.tolist())
-    planes = read_planes(top["planes"].items(), known)
+    told = optional_items(top, "openings")
+    planes = read_planes(top["planes"].items(), known, {node["id"].integer() for node in told})
     scene = Scene(
         photo=top["photo"].text(),
         camera=camera,
@@ -68,7 +69,7 @@ def scene_of(top: Node) -> Scene:
         notes=tuple(note.text() for note in optional_items(top, "notes")),
         certainty=_certainty(top.get("certainty")),
         depth_map=_depth_map(top.get("depth_map")),
-        openings=read_openings(optional_items(top, "openings"), {plane.id for plane in planes if plane.axis != 2}),
+        openings=read_openings(told, {plane.id for plane in planes if plane.axis != 2}),
     )
     _check_flatness(scene)
     return scene

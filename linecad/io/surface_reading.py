@@ -16,8 +16,8 @@ from linecad.io.strict_json import JsonError, Node
 from linecad.scene import AXES, FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
 
 
-def read_planes(nodes: list[Node], known: set[int]) -> tuple[Plane, ...]:
-    """The planes with their faces; `known` are the ids of the scene's lines."""
+def read_planes(nodes: list[Node], known: set[int], openings: set[int]) -> tuple[Plane, ...]:
+    """The planes with their faces; `known` are the ids of the scene's lines, `openings` those of its openings."""
     distinct_ids([node["id"] for node in nodes])
     distinct_ids([face["id"] for node in nodes for face in optional_items(node, "faces")])
     return tuple(
@@ -26,19 +26,23 @@ def read_planes(nodes: list[Node], known: set[int]) -> tuple[Plane, ...]:
             axis=AXES.index(node["axis"].one_of(tuple(AXES))),
             offset=node["offset"].number(LARGEST_NUMBER),
             lines=tuple(line_ids(node["lines"], known)),
-            faces=tuple(_face(face) for face in optional_items(node, "faces")),
+            faces=tuple(_face(face, openings) for face in optional_items(node, "faces")),
         )
         for node in nodes
     )
 
 
-def _face(node: Node) -> Face:
+def _face(node: Node, openings: set[int]) -> Face:
+    opening = known_member(node, "opening")
+    if opening is not None and opening.integer() not in openings:
+        raise JsonError(f"{opening.place} is {opening.value}, but no opening has this id")
     return Face(
         id=node["id"].integer(),
         outline=_ring(node["outline"]),
         holes=tuple(_ring(hole) for hole in optional_items(node, "holes")),
         kind="other" if (kind := node.get("kind")) is None else cast(FaceKind, kind.one_of(FACE_KINDS)),
         hidden=tuple(_ring(part) for part in optional_items(node, "hidden")),
+        opening=None if opening is None else opening.integer(),
     )
 
 

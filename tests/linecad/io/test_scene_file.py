@@ -148,6 +148,15 @@ def openings(draw: st.DrawFn, found: tuple[Plane, ...]) -> tuple[Opening, ...]:
 
 
 @st.composite
+def owned(draw: st.DrawFn, found: tuple[Plane, ...], made: tuple[Opening, ...]) -> tuple[Plane, ...]:
+    """The planes, some of whose faces are of openings."""
+    owner = st.sampled_from([None, *(opening.id for opening in made)])
+    return tuple(
+        replace(plane, faces=tuple(replace(face, opening=draw(owner)) for face in plane.faces)) for plane in found
+    )
+
+
+@st.composite
 def scenes(draw: st.DrawFn) -> Scene:
     line_ids = draw(st.lists(ids, max_size=5, unique=True))
     n = len(line_ids)
@@ -158,6 +167,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         return draw(st.lists(element, min_size=count, max_size=count))
 
     found = draw(planes(line_ids))
+    made = draw(openings(found))
     return Scene(
         photo=draw(words),
         camera=draw(cameras()),
@@ -184,7 +194,7 @@ def scenes(draw: st.DrawFn) -> Scene:
             weight=several(m, numbers),
             reason=several(m, st.sampled_from(REASONS)),
         ),
-        planes=found,
+        planes=draw(owned(found, made)),
         solve=SolveReport(
             draw(words),
             draw(words),
@@ -195,7 +205,7 @@ def scenes(draw: st.DrawFn) -> Scene:
         notes=tuple(draw(st.lists(words, max_size=3))),
         certainty=draw(st.none() | certainties()),
         depth_map=draw(st.none() | depth_map_reports()),
-        openings=draw(openings(found)),
+        openings=made,
     )
 
 
@@ -457,9 +467,10 @@ WRONG = [
     (
         "planes[0].faces[0].kind",
         "floor",
-        'planes[0].faces[0].kind is "floor", expected one of wall, ground, ceiling, roof, window, door, other',
+        'planes[0].faces[0].kind is "floor", expected one of wall, ground, ceiling, roof, window, door, reveal, other',
     ),
     ("planes[0].faces[0].kind", 3, "planes[0].faces[0].kind is 3, expected one of wall, ground"),
+    ("planes[0].faces[0].opening", 9, "planes[0].faces[0].opening is 9, but no opening has this id"),
     ("planes[0].faces[0].hidden", [[]], "planes[0].faces[0].hidden[0] is a list of 0, expected at least 3 points"),
     ("planes[0].faces[0].hidden[0][1][1]", 4.1, "face 0 leaves plane 0 (y = 4) by 0.1, expected at most 2.45e-06"),
     ("planes[0].faces[0].outline[2][1]", 4.00001, "face 0 leaves plane 0 (y = 4) by 1e-05, expected at most 2.45e-06"),
@@ -785,7 +796,7 @@ def named_in_tables(heading: str) -> list[str]:
         ("`lines[]`", "lines[2]", (*CONFIDENCES, *ROLES, "pieces")),
         ("`intersections[]`", "intersections[0]", REASONS),
         ("`planes[]`", "planes[0]", ()),
-        ("`planes[].faces[]`", "planes[0].faces[0]", FACE_KINDS),
+        ("`planes[].faces[]`", "planes[0].faces[0]", (*FACE_KINDS, "opening")),
         ("`solve`", "solve", STATUSES),
         ("`depth_map`", "depth_map", DEPTH_KINDS),
     ],
