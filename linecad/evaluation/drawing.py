@@ -17,7 +17,7 @@ from linecad.scene import Scene
 
 COLUMNS = 192  # of the grid of pixels that covered shares are counted on
 DETAIL = "detail"  # the role of lines that are drawn on a layer of their own
-OPENINGS = ("window", "door")  # kinds of faces
+OPENINGS = ("window", "door", "reveal")  # kinds of faces
 
 
 @dataclass(frozen=True)

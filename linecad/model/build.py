@@ -18,7 +18,9 @@ from linecad.model.clean.roles import with_roles
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
+from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
+from linecad.model.openings.homes import at_home
 from linecad.model.planes import find_planes
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet
@@ -118,6 +120,7 @@ def build_scene(
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
     openings = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
     lines = with_roles(lines, planes, forward, _rectangles(openings, planes))
+    planes, openings = with_openings(planes, at_home(openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     cleaning = cleaned.note(lines)
     notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []))

@@ -31,7 +31,7 @@ class FaceCounts:
     faces: int
     of_openings: int  # panes and what is beside them, which are small, thin and near a wall by right
     too_many: int  # pieces that a larger face could be: one wall in one plane, and near each other
-    alone: int  # that share no edge with another face
+    alone: int  # that share no edge with another face that is not of an opening
     steps: int  # of staircases, in outlines and holes
     steps_without_line: int  # of them, those with no line along the step
     slivers: int
@@ -47,12 +47,18 @@ def count_faces(scene: Scene, shapes: list[Shape], of_openings: Bool) -> FaceCou
     shape_number = np.array([_longest(shape) ** 2 for shape in shapes]) / np.maximum(area, np.finfo(float).tiny)
     odd = (area < SLIVER_AREA * largest) | (shape_number > SLIVER_SHAPE)
     walls = [shape for shape, is_part in zip(shapes, of_openings.tolist(), strict=True) if not is_part]
-    steps = [step for shape in shapes for step in steps_of(shape)]
+    parts = [shape.face for shape, is_part in zip(shapes, of_openings.tolist(), strict=True) if is_part]
+    corners = {tuple(corner) for part in parts for corner in part.outline.tolist()}
+    # A door that stands on the foot of its wall is a step of it, but nobody drew it jagged.
+    steps = [
+        step for shape in walls for step in steps_of(shape)
+        if not all(tuple(end) in corners for end in step.tolist())
+    ]
     return FaceCounts(
         faces=len(shapes),
         of_openings=int(of_openings.sum()),
         too_many=_too_many(walls),
-        alone=_alone(shapes),
+        alone=_alone(walls),
         steps=len(steps),
         steps_without_line=sum(not _follows_line(scene, step) for step in steps),
         slivers=int((odd & ~of_openings).sum()),
@@ -143,7 +149,7 @@ def _recesses(scene: Scene, shapes: list[Shape]) -> int:
             pixels = project(points[own > 0], scene.camera.matrix, scene.rotation)
             which, depth = nearest_faces(scene, pixels, parallel)
             behind = depth[which != NO_FACE] / own[own > 0][which != NO_FACE] - 1
-            count += int(((behind > 0) & (behind < RECESS)).sum()) > len(points) / 2
+            count += int(((behind > SAME_EDGE) & (behind < RECESS)).sum()) > len(points) / 2
     return count
 
 

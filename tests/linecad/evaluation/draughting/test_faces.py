@@ -123,3 +123,22 @@ def test_a_pane_is_neither_a_piece_of_its_wall_nor_small(drawing, outline):
     strip = [faces[0], (0, 0.0, outline((10, 0), (10.01, 0.8)))]
     assert counted(drawing, strip).slivers == 1
     assert counted(drawing, strip, of_openings=[1]).slivers == 0
+
+
+def test_a_door_is_no_step_of_its_wall(drawing, outline):
+    notched = [(-5, -2), (0, -2), (0, -1.8), (0.1, -1.8), (0.1, -2), (5, -2), (5, 3), (-5, 3)]
+    faces = [(1, 10.0, notched), (1, 10.0, outline((0, -2), (0.1, -1.8)))]
+    assert counted(drawing, faces).steps == 2
+    assert counted(drawing, faces, of_openings=[1]).steps == 0
+
+
+def test_a_wall_with_a_window_alone_is_alone(drawing, outline):
+    faces = [(1, 10.0, outline(*WALL)), (1, 10.0, outline((-5, -2), (0, 0)))]
+    assert counted(drawing, faces).alone == 0
+    assert counted(drawing, faces, of_openings=[1]).alone == 1
+
+
+def test_a_flush_pane_is_in_no_recess(drawing, outline):
+    hole = outline((0, 0), (1, 1))
+    assert counted(drawing, [(1, 10.0, outline(*WALL), hole), (1, 10.0, hole)], of_openings=[1]).recesses == 0
+    assert counted(drawing, [(1, 10.0, outline(*WALL), hole), (1, 10.1, hole)], of_openings=[1]).recesses == 1

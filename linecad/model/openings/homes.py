@@ -1,0 +1,69 @@
+"""Openings on the walls that the photo shows around them.
+
+An opening is found in the plane of the lines around it. Which surface a place of the photo shows is decided by the
+labels of regions, which know more: then the opening goes where its rays meet that surface. On a parallel plane it stays
+a rectangle, since the camera is the origin; on one at right angles it would be none, so the photo shows no opening.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+import shapely
+
+from linecad.arrays import Float
+from linecad.geometry import project
+from linecad.model.openings.corners import rectangle_in_space
+from linecad.scene import Camera, Face, Opening, Plane
+
+LEAST_SHARE = 0.5  # of an opening in the photo, which a face must show to be its wall
+
+
+def at_home(
+    openings: tuple[Opening, ...], planes: tuple[Plane, ...], camera: Camera, rotation: Float
+) -> tuple[Opening, ...]:
+    """The openings on the planes whose faces show them, with ids and shapes numbered anew.
+
+    Openings that no face shows, such as those behind a tree beside the sky, stay where they are; those on a face that
+    is not parallel to their plane are left out. `rotation` (3, 3) takes world to camera.
+    """
+    plane_of = {plane.id: plane for plane in planes}
+    faces = [(plane, _in_photo(face, camera, rotation)) for plane in planes for face in plane.faces]
+    shapes = np.array([shape for _, shape in faces], object)
+    kept: list[Opening] = []
+    numbers: dict[tuple[int, int], int] = {}
+    for opening in openings:
+        wall = plane_of[opening.plane]
+        seen = shapely.Polygon(project(rectangle_in_space(opening, wall), camera.matrix, rotation))
+        shared = shapely.area(shapely.intersection(shapes, seen)) if len(shapes) else np.zeros(0)
+        if shared.max(initial=0.0) >= LEAST_SHARE * seen.area:
+            home = faces[int(shared.argmax())][0]
+            if home.axis != wall.axis or home.offset * wall.offset <= 0:
+                continue
+            opening = _moved(opening, wall, home)
+        shape = numbers.setdefault((opening.shape, opening.plane), len(kept))
+        kept.append(replace(opening, id=len(kept), shape=shape))
+    return tuple(kept)
+
+
+def _in_photo(face: Face, camera: Camera, rotation: Float) -> shapely.Polygon:
+    outline, *holes = (project(ring, camera.matrix, rotation) for ring in (face.outline, *face.holes))
+    return shapely.make_valid(shapely.Polygon(outline, holes))
+
+
+def _moved(opening: Opening, wall: Plane, home: Plane) -> Opening:
+    """An opening of a wall as its rays meet a parallel plane; openings of one size stay so, but for rounding."""
+    if home.id == wall.id:
+        return opening
+    ratio = home.offset / wall.offset
+    u0, v0 = opening.u0 * ratio, opening.v0 * ratio
+    recess = None if opening.recess is None else opening.recess * ratio
+    return replace(
+        opening,
+        plane=home.id,
+        u0=u0,
+        u1=u0 + (opening.u1 - opening.u0) * ratio,
+        v0=v0,
+        v1=v0 + (opening.v1 - opening.v0) * ratio,
+        recess=recess,
+        panel=None if recess is None else home.offset + float(np.sign(home.offset)) * recess,
+    )

@@ -1,0 +1,65 @@
+"""Openings go to the walls whose faces show them, where they look the same in the photo."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linecad.geometry import project
+from linecad.model.openings.corners import panel_in_space, rectangle_in_space
+from linecad.model.openings.homes import at_home
+from linecad.scene import Camera, Face, Opening, Plane
+
+CAMERA = Camera(1200, 900, np.array([[900.0, 0, 599.5], [0, 900, 449.5], [0, 0, 1]]), "file")
+AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+WINDOW = Opening(4, 7, 0.5, 1.5, -0.2, 1.3, "window", 0.2, 8.2, shape=4)
+NEAR = Plane(7, 1, 8.0, ())
+
+
+def wall(number, offset, u0=-5.0, u1=5.0):
+    ring = np.array([[u0, offset, -3], [u1, offset, -3], [u1, offset, 4], [u0, offset, 4]], float)
+    return Plane(number, 1, offset, (), (Face(number, ring, kind="wall"),))
+
+
+def homes(openings, *planes):
+    return at_home(openings, planes, CAMERA, AHEAD)
+
+
+def test_an_opening_stays_in_the_plane_that_shows_it():
+    (found,) = homes((WINDOW,), wall(7, 8.0))
+    assert found == replace(WINDOW, id=0, shape=0)
+
+
+@pytest.mark.parametrize("offset", [6.4, 9.1, 12.0])
+def test_an_opening_moves_along_its_rays_to_the_wall_behind_or_before(offset):
+    home = wall(3, offset)
+    (found,) = homes((WINDOW,), NEAR, home)
+    assert found.plane == 3
+    assert found.panel == pytest.approx(offset + found.recess)
+    for corners in (rectangle_in_space, panel_in_space):
+        before, after = (project(corners(*each), CAMERA.matrix, AHEAD) for each in ((WINDOW, NEAR), (found, home)))
+        np.testing.assert_allclose(after, before, atol=1e-9)
+
+
+def test_an_opening_that_no_face_shows_stays_where_it_is():
+    found = homes((WINDOW,), NEAR, wall(3, 9.0, u0=1.3))
+    assert found == (replace(WINDOW, id=0, shape=0),)
+
+
+def test_an_opening_on_another_kind_of_face_is_none():
+    ring = np.array([[-5.0, 6, -1], [5, 6, -1], [5, 60, -1], [-5, 60, -1]])
+    below = replace(WINDOW, v0=-0.9, v1=-0.2)
+    assert homes((below,), NEAR, Plane(3, 2, -1.0, (), (Face(0, ring, kind="ground"),))) == ()
+
+
+def test_equal_openings_stay_equal_and_those_of_two_walls_part():
+    others = [replace(WINDOW, id=5, u0=-2.5, u1=-1.5), replace(WINDOW, id=6, u0=-1.0, u1=0.0), WINDOW]
+    found = homes(tuple(others), NEAR, wall(3, 9.0, u1=0.2), replace(wall(8, 10.0, u0=0.3), id=8))
+    assert [each.id for each in found] == [0, 1, 2]
+    assert [each.plane for each in found] == [3, 3, 8]
+    assert [each.shape for each in found] == [0, 0, 2]
+    assert found[0].u1 - found[0].u0 == pytest.approx(9 / 8, rel=1e-12)
+
+
+def test_without_faces_all_stay():
+    assert homes((WINDOW,), NEAR) == (replace(WINDOW, id=0, shape=0),)
