@@ -51,8 +51,7 @@ def count_faces(scene: Scene, shapes: list[Shape], of_openings: Bool) -> FaceCou
     corners = {tuple(corner) for part in parts for corner in part.outline.tolist()}
     # A door that stands on the foot of its wall is a step of it, but nobody drew it jagged.
     steps = [
-        step for shape in walls for step in steps_of(shape)
-        if not all(tuple(end) in corners for end in step.tolist())
+        step for shape in walls for step in steps_of(shape) if not all(tuple(end) in corners for end in step.tolist())
     ]
     return FaceCounts(
         faces=len(shapes),

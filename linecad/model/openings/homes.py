@@ -2,7 +2,8 @@
 
 An opening is found in the plane of the lines around it. Which surface a place of the photo shows is decided by the
 labels of regions, which know more: then the opening goes where its rays meet that surface. On a parallel plane it stays
-a rectangle, since the camera is the origin; on one at right angles it would be none, so the photo shows no opening.
+a rectangle, since the camera is the origin; on one at right angles it would be none, so the photo shows no opening. Nor
+does it where something stands before the wall: the window of a tractor is none of the house's.
 """
 
 from dataclasses import replace
@@ -13,9 +14,10 @@ import shapely
 from linecad.arrays import Float
 from linecad.geometry import project
 from linecad.model.openings.corners import rectangle_in_space
-from linecad.scene import Camera, Face, Opening, Plane
+from linecad.scene import Camera, Opening, Plane
 
 LEAST_SHARE = 0.5  # of an opening in the photo, which a face must show to be its wall
+MOST_HIDDEN = 0.5  # of an opening that was seen
 
 
 def at_home(
@@ -23,17 +25,22 @@ def at_home(
 ) -> tuple[Opening, ...]:
     """The openings on the planes whose faces show them, with ids and shapes numbered anew.
 
-    Openings that no face shows, such as those behind a tree beside the sky, stay where they are; those on a face that
-    is not parallel to their plane are left out. `rotation` (3, 3) takes world to camera.
+    Openings that no face shows, such as those behind a tree beside the sky, stay where they are. Left out are those on
+    a face that is not parallel to their plane, and those seen where the wall is hidden; what rows and columns ask for
+    stays there. `rotation` (3, 3) takes world to camera.
     """
     plane_of = {plane.id: plane for plane in planes}
-    faces = [(plane, _in_photo(face, camera, rotation)) for plane in planes for face in plane.faces]
+    faces = [(plane, _polygon(face.outline, face.holes, camera, rotation)) for plane in planes for face in plane.faces]
     shapes = np.array([shape for _, shape in faces], object)
+    hidden = [ring for plane in planes for face in plane.faces for ring in face.hidden]
+    clutter = shapely.union_all([_polygon(ring, (), camera, rotation) for ring in hidden])
     kept: list[Opening] = []
     numbers: dict[tuple[int, int], int] = {}
     for opening in openings:
         wall = plane_of[opening.plane]
         seen = shapely.Polygon(project(rectangle_in_space(opening, wall), camera.matrix, rotation))
+        if not opening.is_completed and clutter.intersection(seen).area > MOST_HIDDEN * seen.area:
+            continue
         shared = shapely.area(shapely.intersection(shapes, seen)) if len(shapes) else np.zeros(0)
         if shared.max(initial=0.0) >= LEAST_SHARE * seen.area:
             home = faces[int(shared.argmax())][0]
@@ -45,9 +52,10 @@ def at_home(
     return tuple(kept)
 
 
-def _in_photo(face: Face, camera: Camera, rotation: Float) -> shapely.Polygon:
-    outline, *holes = (project(ring, camera.matrix, rotation) for ring in (face.outline, *face.holes))
-    return shapely.make_valid(shapely.Polygon(outline, holes))
+def _polygon(ring: Float, holes: tuple[Float, ...], camera: Camera, rotation: Float) -> shapely.Geometry:
+    """A ring (V, 3) with its holes in the photo."""
+    outline, *inner = (project(each, camera.matrix, rotation) for each in (ring, *holes))
+    return shapely.make_valid(shapely.Polygon(outline, inner))
 
 
 def _moved(opening: Opening, wall: Plane, home: Plane) -> Opening:

@@ -63,3 +63,17 @@ def test_equal_openings_stay_equal_and_those_of_two_walls_part():
 
 def test_without_faces_all_stay():
     assert homes((WINDOW,), NEAR) == (replace(WINDOW, id=0, shape=0),)
+
+
+def test_what_stands_before_the_wall_has_no_opening_of_it():
+    home = wall(7, 8.0)
+    u0, u1, v0 = WINDOW.u0, WINDOW.u1, WINDOW.v0
+
+    def found(v1, **change):
+        tree = np.array([[u0 - 1, 8.0, v0 - 1], [u1 + 1, 8, v0 - 1], [u1 + 1, 8, v1], [u0 - 1, 8, v1]])
+        face = replace(home.faces[0], hidden=(tree,))
+        return homes((replace(WINDOW, **change),), replace(home, faces=(face,)))
+
+    assert len(found(v0 + 0.4 * 1.5)) == 1
+    assert found(v0 + 0.6 * 1.5) == ()
+    assert len(found(v0 + 0.6 * 1.5, is_completed=True)) == 1
