@@ -8,7 +8,7 @@ import numpy as np
 
 from linecad.arrays import Bool
 from linecad.errors import ConfidenceError
-from linecad.scene import Intersections, Lines, Plane, Scene
+from linecad.scene import Intersections, Lines, Opening, Plane, Scene
 
 Record = TypeVar("Record", Lines, Intersections)
 
@@ -17,7 +17,7 @@ def keep_probable(scene: Scene, least: float) -> Scene:
     """The scene of the lines whose probability is at least `least` (0 to 1), everything else by its id as before.
 
     With a line go its crossings and its place in planes. A plane goes, with its faces, where none of its lines stays;
-    where one stays, all its faces do. Openings go with the planes of their walls.
+    where one stays, all its faces do. Openings go, with their panes and reveals, with the planes of their walls.
     A note counts what was left out; where that is nothing, the scene comes back as it is. Raises ConfidenceError where
     the scene tells no probabilities, or no line is left.
     """
@@ -37,9 +37,10 @@ def keep_probable(scene: Scene, least: float) -> Scene:
             f"{probability.max():.3g}; choose a smaller --confidence"
         )
     rest = with_lines(scene, kept)
-    bare = {plane.id for plane in scene.planes if not plane.lines}
-    planes = tuple(plane for plane in rest.planes if plane.lines or plane.id in bare)  # a ground has no lines
-    openings = tuple(each for each in scene.openings if each.plane in {plane.id for plane in planes})
+    bare = {plane.id for plane in scene.planes if not plane.lines}  # a ground and reveals have no lines
+    staying = {plane.id for plane in rest.planes if plane.lines or plane.id in bare}
+    openings = tuple(each for each in scene.openings if each.plane in staying)
+    planes = _with_parts_of(openings, rest.planes, staying)
     note = _note(scene, int(kept.sum()), len(planes), least)
     return replace(rest, planes=planes, openings=openings, notes=(*scene.notes, note))
 
@@ -66,6 +67,18 @@ def _masked(entries: Any, kept: Bool) -> Any:
 
 def _plane_of(plane: Plane, ids: set[int]) -> Plane:
     return replace(plane, lines=tuple(line for line in plane.lines if line in ids))
+
+
+def _with_parts_of(openings: tuple[Opening, ...], planes: tuple[Plane, ...], staying: set[int]) -> tuple[Plane, ...]:
+    """The `staying` planes (ids) without parts of other openings, and of the others what is part of an opening."""
+    known = {each.id for each in openings}
+    found = []
+    for plane in planes:
+        is_whole = plane.id in staying
+        faces = tuple(face for face in plane.faces if face.opening in known or (is_whole and face.opening is None))
+        if faces or (is_whole and not (plane.faces and not plane.lines)):
+            found.append(replace(plane, faces=faces))
+    return tuple(found)
 
 
 def _note(scene: Scene, lines: int, planes: int, least: float) -> str:

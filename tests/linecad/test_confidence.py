@@ -117,3 +117,24 @@ def test_openings_go_with_the_planes_of_their_walls(scene):
     windows = tuple(Opening(wall, wall, 0.0, 1.0, 0.0, 1.0, "window") for wall in (0, 3))
     left = keep_probable(replace(scene, openings=windows), 0.5)
     assert [each.plane for each in left.openings] == [0]
+
+
+def test_panes_and_reveals_stay_and_go_with_their_openings(scene):
+    recess = {"recess": 0.5, "panel": 7.0}
+    windows = (
+        Opening(0, 0, 0.1, 0.2, 0.1, 0.2, "window", **recess),  # its pane lies in the plane of line 2
+        Opening(1, 3, 0.1, 0.2, 0.1, 0.2, "window"),
+    )
+
+    def part(number, offset, opening, kind):
+        return Face(number, RING + np.array([0, offset - 4, 0]), kind=kind, opening=opening)
+
+    planes = (
+        scene.planes[0],
+        replace(scene.planes[3], faces=(*scene.planes[3].faces, part(10, 7, 0, "window"), part(11, 7, 1, "window"))),
+        Plane(8, 1, 9.0, (), (part(12, 9, 0, "reveal"), part(13, 9, 1, "reveal"))),
+        Plane(9, 1, 9.5, (), (part(14, 9.5, 1, "reveal"),)),
+    )
+    kept = keep_probable(replace(scene, planes=planes, openings=windows), 0.5)
+    assert [each.id for each in kept.openings] == [0]
+    assert {plane.id: [face.id for face in plane.faces] for plane in kept.planes} == {0: [0], 3: [10], 8: [12]}
