@@ -95,6 +95,7 @@ for suffix, row in FORMATS.items():
 """
 
 
+@pytest.mark.thorough
 def test_the_same_scene_gives_the_same_bytes_in_fresh_processes(scene, reference, tmp_path):
     write_scene(scene, tmp_path / "scene.json")
     folders = [tmp_path / seed for seed in ("1", "2")]

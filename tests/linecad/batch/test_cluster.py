@@ -98,6 +98,7 @@ def test_photos_travel_as_bytes_and_results_are_those_of_convert(cluster, survey
     assert not list(output.rglob(".linecad-*"))
 
 
+@pytest.mark.thorough
 def test_maps_travel_with_what_lies_beside_them(cluster, survey, output):
     photos = survey(2)
     folder = photos / "p01"
@@ -115,6 +116,7 @@ def test_maps_travel_with_what_lies_beside_them(cluster, survey, output):
     assert [Path(rows[name]["depth"]).name for name in ("p00", "p01")] == ["p00.depth.npy", "depth.exr"]
 
 
+@pytest.mark.thorough
 def test_with_shared_files_a_worker_that_is_killed_costs_no_photo(cluster, survey, plan_of, output):
     plan = plan_of(sorted(survey(6).iterdir()))
     killed = []

@@ -27,6 +27,7 @@ def without_seconds(value):
     return [without_seconds(each) for each in value] if isinstance(value, list) else value
 
 
+@pytest.mark.thorough
 def test_the_figures_do_not_hang_on_the_number_of_workers(york_folder, tmp_path, capsys):
     documents = []
     for workers in (1, 2):

@@ -98,6 +98,7 @@ def test_keys_say_what_the_crossing_under_the_pointer_is(screen):
         assert by_id(screen.served.ask("state"), "crossings", crossing["id"])["label"] == value
 
 
+@pytest.mark.thorough
 def test_thirty_edits_are_undone_and_redone_exactly(screen):
     chosen = apart(screen.state["crossings"], 40.0)[:10]
     assert len(chosen) == 10
@@ -355,6 +356,7 @@ def test_a_reload_and_a_killed_server_bring_everything_back(new_screen, start):
     first.complaints = [text for text in first.complaints if "ERR_CONNECTION_REFUSED" not in text]
 
 
+@pytest.mark.thorough
 def test_a_search_tells_how_far_it_is_and_stop_keeps_the_best(new_screen, start, long_search):
     slow = new_screen(
         start("--option", "extension=200", "--option", "formulation=gain", "--time-limit", "120", photo=long_search)
