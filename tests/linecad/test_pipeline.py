@@ -229,6 +229,7 @@ def test_scene_files_give_the_scene_back(any_scene, tmp_path):
     assert written(read_scene(tmp_path / "a.json"), tmp_path / "b.json") == first
 
 
+@pytest.mark.thorough
 def test_two_runs_give_the_same_bytes(room, room_scene, tmp_path):
     again = reconstruct(room, SOLVED)
     first = written(room_scene, tmp_path / "a.json")

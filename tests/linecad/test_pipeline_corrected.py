@@ -33,6 +33,7 @@ class Made:
 
     def __init__(self, made):
         self.made = made
+        self.free = {}  # the scene without corrections, by options
         self.photo = Photo("made.jpg", np.zeros((made.camera.height, made.camera.width, 3), np.uint8), made.camera)
 
     def found(self, options):
@@ -55,8 +56,13 @@ class Made:
     def scene(self, *edits, options=None):
         corrected = self.corrected(*edits)
         options = options or NEAR
+        if not edits and options in self.free:
+            return self.free[options]
         made = reconstruct_lines("made.jpg", self.found(options), options, corrected=corrected)
-        return measured(made.scene, corrected)
+        scene = measured(made.scene, corrected)
+        if not edits:
+            self.free[options] = scene
+        return scene
 
     def decision(self, scene, graph, edge):
         """Whether a crossing of the graph of all lines is real in a scene; None if the scene does not have it."""

@@ -181,7 +181,7 @@ focals = st.floats(60, 40_000)
 sane = st.builds(lambda fx, fy, x, y: [[fx, 0, x], [0, fy, y], [0, 0, 1]], focals, focals, numbers, numbers)
 
 
-@settings(max_examples=300)
+@settings(max_examples=settings.default.max_examples * 3)
 @given(
     content=st.binary(max_size=60)
     | anything.map(lambda value: json.dumps(value).encode())
@@ -211,7 +211,7 @@ def test_garbage_gives_a_camera_or_one_line(tmp_path_factory: pytest.TempPathFac
 coefficient = st.floats(-0.05, 0.05)
 
 
-@settings(max_examples=60)
+@settings(max_examples=settings.default.max_examples * 3 // 5)
 @given(
     st.tuples(coefficient, coefficient, st.floats(-0.01, 0.01), st.floats(-0.01, 0.01), coefficient),
     st.floats(0.8, 1.25),

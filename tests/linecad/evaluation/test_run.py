@@ -195,6 +195,7 @@ def test_maps_beside_the_photos_are_used_where_they_are_asked_for(mapped_folder,
     assert dataset.with_depth_maps().cases[0].files[-1] == mapped_folder / "boxes.depth.npz"
 
 
+@pytest.mark.thorough
 def test_the_report_says_that_maps_were_used(mapped_folder, tmp_path, capsys):
     files = [tmp_path / name for name in ("a.json", "a.html")]
     command = ["evaluate", str(mapped_folder), "--json", str(files[0]), "--report", str(files[1]), "--no-ablation"]
