@@ -219,6 +219,7 @@ for suffix, row in FORMATS.items():
 """
 
 
+@pytest.mark.thorough
 def test_a_full_disk_keeps_the_old_file_and_leaves_no_other(scene, tmp_path):
     write_scene(scene, tmp_path / "scene.json")
     folder = tmp_path / "out"

@@ -140,6 +140,7 @@ def test_textures_find_the_photo_beside_the_scene_or_by_its_name(folder, scene_f
     assert len(pictures[0]) == 1
 
 
+@pytest.mark.thorough
 def test_a_photo_that_its_own_lines_straightened_is_straightened_again_for_its_textures(folder, capsys):
     """The courtyard without its camera file: the scene alone says by how much."""
     shutil.copy(COURTYARD, folder / "courtyard.jpg")

@@ -59,6 +59,7 @@ def test_labels_made_by_hand_give_the_papers_tables(labels_folder, tmp_path, cap
     assert files[2].read_text().startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.thorough
 def test_without_ablation_only_the_default_settings_are_solved(labels_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
     assert main(["evaluate", str(labels_folder), "--json", str(out), "--no-ablation", "--quiet"]) == 0
@@ -81,6 +82,7 @@ def test_options_reach_the_reconstruction_and_the_record(labels_folder, tmp_path
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.thorough
 def test_the_samples_can_be_evaluated(tmp_path, capsys):
     samples = Path(__file__).parents[3] / "samples"
     assert main(["evaluate", str(samples), "--fast", "--limit", "1", "--report", str(tmp_path / "a.html")]) == 0

@@ -282,6 +282,7 @@ def smaller(setting, by):
     return replace(setting, graph=graph, sight=Sight(matrix, setting.sight.rotation, width, pixels))
 
 
+@pytest.mark.thorough
 def test_a_large_photo_gives_the_strip_of_a_small_one(front):
     setting = front(0.05, 0.03, block=1)
     assert setting.sight.width > WIDEST
