@@ -10,6 +10,8 @@ from linecad.cli.main import main
 from linecad.evaluation.depth import score_depth
 from linecad.io.scene_file import read_scene
 
+pytestmark = pytest.mark.thorough  # stage by stage, maps have their everyday tests in tests/linecad
+
 SAMPLES = Path(__file__).resolve().parents[1] / "samples"
 WIDTH = 0.012  # of the errors of the map that is drawn
 
@@ -85,12 +87,10 @@ def test_depths_are_truer_with_the_map(without, mapped):
     assert after.precision_5 > before.precision_5
 
 
-@pytest.mark.thorough
 def test_two_runs_give_the_same_bytes(convert, mapped, room_map):
     assert convert("--depth", room_map).read_bytes() == mapped.read_bytes()
 
 
-@pytest.mark.thorough
 def test_a_map_that_is_left_out_changes_nothing_but_what_is_said_of_it(convert, without, room_map, tmp_path):
     with np.load(room_map) as arrays:
         depth = arrays["depth"]

@@ -93,6 +93,7 @@ def test_a_script_of_a_user_passes_the_strict_type_checker(tmp_path):
     assert ended.stdout.splitlines()[-1].startswith("Found ")
 
 
+@pytest.mark.thorough
 def test_the_script_of_the_readme_runs(tmp_path, monkeypatch, capsys):
     (script,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
     for name, sample in (("facade.jpg", "room.jpg"), ("facade.camera.json", "room.json")):

@@ -162,6 +162,7 @@ def small(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], dict[str,
 
 
 @everyday
+@pytest.mark.thorough
 def test_making_them_twice_gives_the_same_bytes(
     small: Callable[[str], dict[str, bytes]], tmp_path: Path, name: str
 ) -> None:

@@ -244,7 +244,7 @@ def test_point_that_no_ray_reaches_is_nan() -> None:
 DARK, BRIGHT, BLUR = 40, 215, 1.2  # grey levels on both sides of an edge; px
 
 
-@pytest.mark.parametrize("fy", [800.0, 815.0])
+@pytest.mark.parametrize("fy", [pytest.param(800.0, marks=pytest.mark.thorough), 815.0])
 def test_bent_line_becomes_straight_to_a_twentieth_of_a_pixel(fy: float) -> None:
     matrix = np.array([[800.0, 0, 318], [0, fy, 236], [0, 0, 1]])
     calibration = Calibration(640, 480, matrix, BARREL)

@@ -69,6 +69,7 @@ def test_without_ablation_only_the_default_settings_are_solved(labels_folder, tm
     assert "Table 1" not in capsys.readouterr().out
 
 
+@pytest.mark.thorough
 def test_options_reach_the_reconstruction_and_the_record(labels_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
     options = ["--fast", "--no-ablation", "--option", "weights=ones", "--option", "without=planarity,boundary"]
