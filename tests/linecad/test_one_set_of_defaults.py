@@ -136,7 +136,9 @@ def expected(photo):
     return by_python(photo, None, None)
 
 
-@pytest.mark.parametrize("way", [by_convert, by_batch, by_page, by_evaluation])
+@pytest.mark.parametrize(
+    "way", [by_convert, pytest.param(by_batch, marks=pytest.mark.thorough), by_page, by_evaluation]
+)
 def test_every_way_gives_the_same_scene(expected, photo, tmp_path, monkeypatch, way):
     scene = way(photo, tmp_path, monkeypatch)
     assert scene.camera.matrix == pytest.approx(expected.camera.matrix)

@@ -180,6 +180,7 @@ def test_an_exported_scene_file_is_the_same(folder, scene_file):
     assert (folder / "again.json").read_bytes() == scene_file.read_bytes()
 
 
+@pytest.mark.thorough
 def test_the_picture_finds_the_photo_beside_the_scene(folder, scene_file):
     shutil.copy(scene_file, folder / "room.json")
     assert main(["export", "room.json", "-o", "without.png", "--quiet"]) == 0
