@@ -14,11 +14,12 @@ WORKERS := 2
 SECONDS := 10
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint check results clean
+.PHONY: help demo test test-all lint check results clean
 
 help:
 	@echo 'make demo    reconstruct the sample photo of a street: CAD files and a picture in demo/'
-	@echo 'make test    run the tests (some of them: make test ARGS="tests/solver -k gap"; in one process: PROCESSES=)'
+	@echo 'make test    the everyday tests, minutes (some: make test ARGS="tests/solver -k gap"; in one process: PROCESSES=)'
+	@echo 'make test-all  all tests, with more examples each: what the CI runs'
 	@echo 'make lint    ruff and mypy'
 	@echo 'make check   lint and test, what every change must pass'
 	@echo 'make results measure datasets (DATASETS="folders", WORKERS=2): docs/results/tables/, and more in results/'
@@ -33,6 +34,9 @@ demo: $(READY)
 
 test: $(READY)
 	$(BIN)/python -m pytest $(PROCESSES) $(ARGS)
+
+test-all: $(READY)
+	$(BIN)/python -m pytest $(PROCESSES) --thorough $(ARGS)
 
 lint: $(READY)
 	$(BIN)/ruff check

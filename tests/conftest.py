@@ -1,4 +1,4 @@
-"""What all tests share: the photographs for measuring, permissions that bind root too, and no skips in CI."""
+"""What all tests share: two tiers, the photographs for measuring, permissions that bind root too, no skips in CI."""
 
 import ctypes
 import importlib
@@ -16,14 +16,39 @@ from hypothesis import HealthCheck, settings
 NO_SKIPS = "LINECAD_NO_SKIPS"  # 1 where everything that a test may need is there, so that a skip is a failure
 DATA = "LINECAD_DATA"  # the folder with the photographs for measuring, which are no part of the project
 
-# How long an example takes says how busy the machine is.
-settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-settings.load_profile("any machine")
+# How long an example takes says how busy the machine is. A test that needs more examples than these says so itself.
+settings.register_profile("thorough", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.register_profile("everyday", settings.get_profile("thorough"), max_examples=25)
 
 # A shell starts what it runs in the background with SIGINT ignored, and every child inherits that: no Ctrl-C that a
 # test sends would arrive.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--thorough", action="store_true", help="run the tests marked thorough too, with more examples")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    settings.load_profile("thorough" if config.getoption("thorough") else "everyday")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Without --thorough, the tests that are marked so are left out: they are not skipped, which CI would refuse."""
+    if config.getoption("thorough"):
+        return
+    left_out = [item for item in items if item.get_closest_marker("thorough")]
+    if left_out:
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if not item.get_closest_marker("thorough")]
+
+
+@pytest.fixture(scope="session")
+def thorough(request: pytest.FixtureRequest) -> bool:
+    """Whether this is the thorough run, for tests that take more of the same there."""
+    return bool(request.config.getoption("thorough"))
+
 
 Report = TypeVar("Report", pytest.TestReport, pytest.CollectReport)
 

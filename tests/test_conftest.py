@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 CONFTEST = Path(__file__).with_name("conftest.py")
+IN_PROCESSES = ("-p", "xdist", "--numprocesses", "1")
 SKIPPING = {
     "in the test": "import pytest\ndef test_it():\n    pytest.skip('too cold')\n",
     "by a mark": "import pytest\n@pytest.mark.skipif(True, reason='too cold')\ndef test_it():\n    pass\n",
@@ -21,7 +22,11 @@ SKIPPING = {
 def run(folder: Path, text: str, no_skips: str, *options: str, data: str = "") -> subprocess.CompletedProcess[str]:
     (folder / "conftest.py").write_text(CONFTEST.read_text())
     (folder / "test_it.py").write_text(text)
-    environment = os.environ | {"LINECAD_NO_SKIPS": no_skips, "LINECAD_DATA": data}
+    environment = os.environ | {
+        "LINECAD_NO_SKIPS": no_skips,
+        "LINECAD_DATA": data,
+        "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
+    }
     command = [
         sys.executable,
         "-m",
@@ -29,8 +34,6 @@ def run(folder: Path, text: str, no_skips: str, *options: str, data: str = "") -
         "-q",
         "-p",
         "no:cacheprovider",
-        "-p",
-        "no:hypothesispytest",
         *options,
         "test_it.py",
     ]
@@ -47,7 +50,7 @@ def test_skip_is_a_failure_when_no_skip_is_allowed(tmp_path: Path, text: str) ->
 
 @pytest.mark.parametrize("where", ["in the test", "the whole module"])
 def test_so_it_is_where_tests_run_in_several_processes(tmp_path: Path, where: str) -> None:
-    result = run(tmp_path, SKIPPING[where], "1", "--numprocesses", "1")
+    result = run(tmp_path, SKIPPING[where], "1", *IN_PROCESSES)
     assert result.returncode != 0
     assert "allows no skip" in result.stdout
 
@@ -67,7 +70,7 @@ def test_expected_failure_is_no_skip(tmp_path: Path) -> None:
 NEEDS_PHOTOGRAPHS = "def test_it(photographs):\n    assert (photographs / 'castle').is_dir()\n"
 
 
-@pytest.mark.parametrize("options", [(), ("--numprocesses", "1")])
+@pytest.mark.parametrize("options", [(), IN_PROCESSES])
 def test_without_photographs_a_test_is_skipped_and_says_why_even_where_no_skip_is_allowed(
     tmp_path: Path, options: tuple[str, ...]
 ) -> None:
@@ -100,3 +103,21 @@ def test_permissions_bind_whoever_runs_the_tests(tmp_path: Path) -> None:
     tmp_path.chmod(0o500)
     with pytest.raises(PermissionError):
         (tmp_path / "new").write_text("")
+
+
+TIERS = "import pytest\ndef test_it():\n    pass\n@pytest.mark.thorough\ndef test_more():\n    pass\n"
+
+
+@pytest.mark.parametrize(("options", "says"), [((), "1 passed, 1 deselected"), (("--thorough",), "2 passed")])
+def test_what_is_thorough_runs_only_where_that_is_asked_for(
+    tmp_path: Path, options: tuple[str, ...], says: str
+) -> None:
+    result = run(tmp_path, TIERS, "1", "-W", "ignore::pytest.PytestUnknownMarkWarning", *options)
+    assert result.returncode == 0
+    assert says in result.stdout
+
+
+@pytest.mark.parametrize(("options", "count"), [((), 25), (("--thorough",), 100)])
+def test_a_thorough_run_tries_more_examples(tmp_path: Path, options: tuple[str, ...], count: int) -> None:
+    text = f"from hypothesis import settings\ndef test_it():\n    assert settings.default.max_examples == {count}\n"
+    assert run(tmp_path, text, "", *options).returncode == 0

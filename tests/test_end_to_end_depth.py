@@ -10,6 +10,8 @@ from linecad.cli.main import main
 from linecad.evaluation.depth import score_depth
 from linecad.io.scene_file import read_scene
 
+pytestmark = pytest.mark.thorough  # stage by stage, maps have their everyday tests in tests/linecad
+
 SAMPLES = Path(__file__).resolve().parents[1] / "samples"
 WIDTH = 0.012  # of the errors of the map that is drawn
 

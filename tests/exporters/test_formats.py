@@ -95,6 +95,7 @@ for suffix, row in FORMATS.items():
 """
 
 
+@pytest.mark.thorough
 def test_the_same_scene_gives_the_same_bytes_in_fresh_processes(scene, reference, tmp_path):
     write_scene(scene, tmp_path / "scene.json")
     folders = [tmp_path / seed for seed in ("1", "2")]
@@ -218,6 +219,7 @@ for suffix, row in FORMATS.items():
 """
 
 
+@pytest.mark.thorough
 def test_a_full_disk_keeps_the_old_file_and_leaves_no_other(scene, tmp_path):
     write_scene(scene, tmp_path / "scene.json")
     folder = tmp_path / "out"

@@ -17,7 +17,10 @@ from linecad.io.scene_file import write_scene
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="forks and signals as on POSIX")
 
 REPOSITORY = Path(__file__).parents[2]
-SUFFIXES = [".dxf", ".step", ".glb", ".usda", ".usdz", ".obj"]
+SUFFIXES = [
+    ".dxf",
+    *(pytest.param(suffix, marks=pytest.mark.thorough) for suffix in (".step", ".glb", ".usda", ".usdz", ".obj")),
+]
 
 COMMON = """
 import json, os, signal, sys, time
@@ -124,7 +127,7 @@ def run(script, *arguments):
     return json.loads(ended.stdout)
 
 
-@pytest.mark.parametrize("suffix", [".dxf", ".usdz"])
+@pytest.mark.parametrize("suffix", [".dxf", pytest.param(".usdz", marks=pytest.mark.thorough)])
 def test_killed_at_any_call_it_leaves_the_old_file_or_the_new_one(scenes, tmp_path, suffix):
     outcomes = run(AT_EVERY_CALL, scenes, tmp_path, suffix)
     assert outcomes[-1] == [False, "new"]  # the last one ran to its end, so every call had its turn
@@ -142,7 +145,9 @@ def test_killed_at_any_moment_it_leaves_the_old_file_or_the_new_one(scenes, tmp_
     assert sum(killed for killed, _ in outcomes) >= 2  # the others had ended before
 
 
-@pytest.mark.parametrize("suffix", [".dxf", ".step", ".usdc"])
+@pytest.mark.parametrize(
+    "suffix", [".dxf", *(pytest.param(suffix, marks=pytest.mark.thorough) for suffix in (".step", ".usdc"))]
+)
 def test_four_processes_at_once_leave_one_whole_file_and_nothing_else(scenes, tmp_path, suffix):
     outcomes = run(AT_ONCE, scenes, tmp_path, suffix)
     assert {failed for failed, _ in outcomes} == {False}

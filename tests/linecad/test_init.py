@@ -79,6 +79,7 @@ def test_every_package_may_be_the_first_one_loaded(start):
     subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True, timeout=60)
 
 
+@pytest.mark.thorough
 def test_a_script_of_a_user_passes_the_strict_type_checker(tmp_path):
     (tmp_path / "script.py").write_text(SCRIPT)
     (tmp_path / "wrong.py").write_text("import linecad\nlinecad.reconstruct(3)\nlinecad.reconstrut\n")
@@ -92,6 +93,7 @@ def test_a_script_of_a_user_passes_the_strict_type_checker(tmp_path):
     assert ended.stdout.splitlines()[-1].startswith("Found ")
 
 
+@pytest.mark.thorough
 def test_the_script_of_the_readme_runs(tmp_path, monkeypatch, capsys):
     (script,) = re.findall(r"```python\n(.*?)```", (ROOT / "README.md").read_text(encoding="utf-8"), re.DOTALL)
     for name, sample in (("facade.jpg", "room.jpg"), ("facade.camera.json", "room.json")):
@@ -112,10 +114,14 @@ def test_a_photo_becomes_files(scene, tmp_path):
     assert "AC1032" in (tmp_path / "a.dxf").read_text()[:400]
 
 
+@pytest.mark.thorough
 def test_the_camera_may_be_named_in_two_ways():
     given = linecad.reconstruct(ROOM, camera=ROOM.with_suffix(".json"), options=FAST)
     assert given.camera.source == "file"
     assert linecad.reconstruct(ROOM, focal=given.camera.focal, options=FAST).camera.source == "focal option"
+
+
+def test_the_camera_is_not_named_in_both_ways():
     with pytest.raises(linecad.LinecadError, match="both a camera file and a focal length"):
         linecad.reconstruct(ROOM, ROOM.with_suffix(".json"), 900.0)
 

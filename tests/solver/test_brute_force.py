@@ -19,6 +19,7 @@ from solver.start import Starter
 ALL_WITHOUT = [frozenset(c) for c in chain.from_iterable(combinations(FAMILIES, n) for n in range(4))]
 MOST_EDGES = 10  # here, for time; tests/benchmarks/brute_force.py draws up to 12
 MOST_COLLINEAR = 3
+USUAL = settings.default.max_examples
 GRID = 0.37  # keeps every line off the coordinate planes of the camera
 
 # Uneven numbers, so that no sum of logarithms of grid coordinates comes to lie on the border of an interval.
@@ -185,7 +186,7 @@ def values(graph, options):
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @pytest.mark.parametrize("without", ALL_WITHOUT, ids=lambda families: "-".join(sorted(families)) or "none")
 @given(problem=problems())
-@settings(max_examples=60)
+@settings(max_examples=USUAL * 3 // 5)
 def test_the_optimum_is_that_of_brute_force(build_graph, formulation, without, problem):
     graph = build_graph(**problem[0])
     options = SolveOptions(formulation=formulation, without=without, **problem[1])
@@ -200,7 +201,7 @@ def test_the_optimum_is_that_of_brute_force(build_graph, formulation, without, p
 
 @pytest.mark.parametrize("without", ALL_WITHOUT, ids=lambda families: "-".join(sorted(families)) or "none")
 @given(problem=problems())
-@settings(max_examples=40)
+@settings(max_examples=USUAL * 2 // 5)
 def test_branch_and_cut_alone_finds_it_too(build_graph, without, problem):
     """Without relaxations, seeds and a good start before it, which decide most graphs of this size."""
     graph = build_graph(**problem[0])
@@ -247,7 +248,7 @@ def said(words, graph, word):
 @pytest.mark.parametrize("backend", BACKENDS)
 @pytest.mark.parametrize("formulation", FORMULATIONS)
 @given(problem=problems_with_facts())
-@settings(max_examples=60)
+@settings(max_examples=USUAL * 3 // 5)
 def test_with_facts_too_and_a_contradiction_names_a_smallest_set(build_graph, formulation, backend, problem):
     graph = build_graph(**problem[0])
     real = tuple(edge for edge in said(problem[2], graph, "real") if graph.possible[edge])

@@ -307,6 +307,7 @@ for suffix in suffixes:
 """
 
 
+@pytest.mark.thorough
 def test_a_fresh_process_writes_the_same_bytes(scene, spotted, folder, tmp_path):
     write_scene(scene, tmp_path / "scene.json")
     cv2.imwrite(str(tmp_path / "photo.png"), spotted[..., ::-1])

@@ -29,11 +29,15 @@ def kills():
 
 
 @pytest.fixture(scope="module")
-def undisturbed(kills, tmp_path_factory):
-    """The photos, and what a batch makes of them that nobody disturbs."""
-    folder = tmp_path_factory.mktemp("kills")
-    photos = kills.make_photos(folder / "photos", 4)
-    return photos, kills.run_calm(photos, folder / "calm")
+def photos(kills, tmp_path_factory):
+    """Four small photos in a folder."""
+    return kills.make_photos(tmp_path_factory.mktemp("kills") / "photos", 4)
+
+
+@pytest.fixture(scope="module")
+def calm(kills, photos, tmp_path_factory):
+    """What a batch makes of the photos that nobody disturbs."""
+    return kills.run_calm(photos, tmp_path_factory.mktemp("calm"))
 
 
 def state(process):
@@ -58,14 +62,13 @@ def stop_a_worker(kills, parent, end):
         time.sleep(0.001)
 
 
-def test_after_random_kills_every_photo_is_done_once(kills, undisturbed, tmp_path):
-    photos, calm = undisturbed
+@pytest.mark.thorough
+def test_after_random_kills_every_photo_is_done_once(kills, photos, calm, tmp_path):
     *_, killed = kills.run_rounds(photos, tmp_path, calm, random.Random(1), kills=3)
     assert killed.total() >= 3
 
 
-def test_all_processes_die_with_the_one_that_gives_out_photos(kills, undisturbed, tmp_path):
-    photos, _ = undisturbed
+def test_all_processes_die_with_the_one_that_gives_out_photos(kills, photos, tmp_path):
     batch = kills.start(photos[0].parent, tmp_path / "out")
     end = time.monotonic() + 60
     while not (family := kills.family(batch.pid))["worker"]:
@@ -79,8 +82,8 @@ def test_all_processes_die_with_the_one_that_gives_out_photos(kills, undisturbed
         time.sleep(0.01)
 
 
-def test_ctrl_c_ends_the_batch_in_one_line_and_leaves_it_ready_to_go_on(kills, undisturbed, tmp_path):
-    photos, calm = undisturbed
+@pytest.mark.thorough
+def test_ctrl_c_ends_the_batch_in_one_line_and_leaves_it_ready_to_go_on(kills, photos, calm, tmp_path):
     output = tmp_path / "out"
     batch = kills.start(photos[0].parent, output)
     end = time.monotonic() + 60
@@ -100,8 +103,7 @@ def test_ctrl_c_ends_the_batch_in_one_line_and_leaves_it_ready_to_go_on(kills, u
     kills.check_done(output, photos, calm.contents)
 
 
-def test_a_second_batch_in_the_folder_is_refused_in_one_line(kills, undisturbed, tmp_path):
-    photos, _ = undisturbed
+def test_a_second_batch_in_the_folder_is_refused_in_one_line(kills, photos, tmp_path):
     batch = kills.start(photos[0].parent, tmp_path / "out")
     end = time.monotonic() + 60
     while not (tmp_path / "out" / "batch.jsonl").exists():

@@ -164,6 +164,7 @@ def test_a_killed_process_is_an_outcome_and_harms_no_other(executor, slow, slow_
     assert found[1].status == "done"
 
 
+@pytest.mark.thorough
 def test_when_the_fork_server_dies_its_photos_are_lost_and_the_next_one_starts_another(
     executor, slow, slow_job, survey, job_of
 ):

@@ -72,7 +72,7 @@ anything = (
 )
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=settings.default.max_examples * 2, deadline=None)
 @given(st.dictionaries(st.sampled_from([*NUMBERS, *TEXT_TAGS]).map(int), anything))
 def test_whatever_stands_in_exif_becomes_positive_numbers_and_short_lines(exif: dict[int, Any]) -> None:
     tags = read_tags(exif)

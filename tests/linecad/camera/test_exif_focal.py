@@ -208,7 +208,7 @@ said_tags = st.builds(
 )
 
 
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=settings.default.max_examples * 3, deadline=None)
 @given(said_tags, st.integers(64, 9000), st.integers(64, 9000))
 def test_any_tags_give_a_sensible_focal_length_or_none(told: Tags, width: int, height: int) -> None:
     focal, note = found(told, width, height)
@@ -237,7 +237,7 @@ tag_numbers = st.sampled_from(
 ).map(int)
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=settings.default.max_examples * 2, deadline=None)
 @given(st.dictionaries(tag_numbers, values), st.booleans())
 def test_any_exif_gives_a_sensible_focal_length_or_none(exif: dict[int, Any], turned: bool) -> None:
     told = read_tags(exif)

@@ -1,9 +1,11 @@
 """A working folder, a command that must fail in one line, and a scene file."""
 
+import zlib
 from pathlib import Path
 
 import pytest
 
+import linecad.pipeline
 from linecad.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -41,6 +43,27 @@ def fails(folder, capsys):
         return err.strip()
 
     return run
+
+
+@pytest.fixture(scope="session", autouse=True)
+def reconstructed_once():
+    """One photo with one camera and the same options is reconstructed once for all tests: it takes longer than they do.
+
+    With corrections or a depth map it is done each time.
+    """
+    reconstruct, known = linecad.pipeline.reconstruct, {}
+
+    def remember(photo, options, on_progress=None, on_stage=lambda _: None, *more):
+        if any(each is not None for each in more):
+            return reconstruct(photo, options, on_progress, on_stage, *more)
+        key = (zlib.crc32(photo.pixels), repr(photo), options)
+        if key not in known:
+            known[key] = reconstruct(photo, options, on_progress, on_stage)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linecad.pipeline, "reconstruct", remember)
+        yield
 
 
 @pytest.fixture(scope="session")

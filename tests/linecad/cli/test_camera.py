@@ -5,6 +5,7 @@ import shutil
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 
 from linecad.cli.main import main
@@ -31,6 +32,7 @@ def test_camera_writes_all_its_files_and_says_how_good_it_is(folder, capsys):
     assert sorted(path.name for path in folder.iterdir()) == sorted(outputs)
 
 
+@pytest.mark.thorough
 def test_convert_with_the_written_camera_has_the_same_frame(folder, capsys):
     assert main(["camera", str(ROOM), "-o", "camera.json", "--quiet"]) == 0
     for name, more in (("a.json", []), ("b.json", ["--camera", "camera.json"])):

@@ -177,6 +177,7 @@ def read_terminal(descriptor):
 
 
 @posix
+@pytest.mark.thorough
 def test_ctrl_c_keeps_the_best_answer_and_writes_the_files(folder):
     street = [SAMPLES / "street.jpg", "--camera", SAMPLES / "street.json", "--option", "extension=90",
               "--option", "formulation=gain"]  # fmt: skip

@@ -33,7 +33,11 @@ def edited(monkeypatch):
 
 @pytest.mark.parametrize(
     ("photo", "options", "source"),
-    [(ROOM, [], "exif"), (COURTYARD, [], "vanishing points"), (COURTYARD, ["--focal", "1040"], "focal option")],
+    [
+        (ROOM, [], "exif"),
+        pytest.param(COURTYARD, [], "vanishing points", marks=pytest.mark.thorough),
+        pytest.param(COURTYARD, ["--focal", "1040"], "focal option", marks=pytest.mark.thorough),
+    ],
 )
 def test_the_page_of_a_scene_begins_with_the_camera_of_the_scene(folder, edited, photo, options, source):
     """It once forgot what EXIF had said, and by how much the photo had been straightened."""
@@ -49,6 +53,7 @@ def test_the_page_of_a_scene_begins_with_the_camera_of_the_scene(folder, edited,
     assert certainty.focal == pytest.approx(scene.certainty.focal)
 
 
+@pytest.mark.thorough
 def test_the_page_of_a_scene_takes_another_focal_length(folder, edited, scene_file):
     shutil.copy(scene_file, folder / "scene.json")
     camera, _ = edited("scene.json", "--photo", str(ROOM), "--focal", "950")

@@ -140,6 +140,7 @@ def test_textures_find_the_photo_beside_the_scene_or_by_its_name(folder, scene_f
     assert len(pictures[0]) == 1
 
 
+@pytest.mark.thorough
 def test_a_photo_that_its_own_lines_straightened_is_straightened_again_for_its_textures(folder, capsys):
     """The courtyard without its camera file: the scene alone says by how much."""
     shutil.copy(COURTYARD, folder / "courtyard.jpg")
@@ -179,6 +180,7 @@ def test_an_exported_scene_file_is_the_same(folder, scene_file):
     assert (folder / "again.json").read_bytes() == scene_file.read_bytes()
 
 
+@pytest.mark.thorough
 def test_the_picture_finds_the_photo_beside_the_scene(folder, scene_file):
     shutil.copy(scene_file, folder / "room.json")
     assert main(["export", "room.json", "-o", "without.png", "--quiet"]) == 0

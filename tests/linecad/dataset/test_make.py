@@ -75,6 +75,7 @@ def test_another_seed_gives_another_scene() -> None:
     assert draw_draft(3, 9).model.quads(np.zeros(3)).shape != draw_draft(4, 9).model.quads(np.zeros(3)).shape
 
 
+@pytest.mark.thorough
 def test_a_run_goes_on_where_another_one_was_killed(with_maps: Path, tmp_path: Path) -> None:
     folder = tmp_path / "set"
     shutil.copytree(with_maps, folder)

@@ -65,7 +65,7 @@ def test_depth_of_the_ground_follows_from_the_height_of_the_camera() -> None:
     assert (ids[:15] == NOTHING).all()
 
 
-@settings(max_examples=60)
+@settings(max_examples=settings.default.max_examples * 3 // 5)
 @given(seed=st.integers(0, 10**6), count=st.integers(1, 12))
 def test_depth_agrees_with_a_search_through_all_quads(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)

@@ -145,7 +145,7 @@ edges_of_a_graph = st.sets(
 )
 
 
-@settings(max_examples=150)
+@settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(edges_of_a_graph)
 def test_no_single_line_parts_two_lines_of_a_block(edges):
     net = nx.Graph(sorted(edges))

@@ -139,6 +139,7 @@ def test_kill_9_loses_nothing_that_was_saved_and_leaves_no_process(serve, folder
 
 
 @posix
+@pytest.mark.thorough
 def test_it_solves_at_the_start_and_stop_keeps_the_best(serve, folder):
     served = serve("--option", "formulation=paper", "-o", "said.json", "--labels", "room.labels.json")
     served.until(lambda progress: progress["solve"]["objective"] is not None)
@@ -161,6 +162,7 @@ def test_it_solves_at_the_start_and_stop_keeps_the_best(serve, folder):
 
 
 @posix
+@pytest.mark.thorough
 def test_a_solver_that_dies_is_said_so_and_started_again(serve):
     served = serve()
     (child,) = [pid for pid in served.children() if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()]

@@ -487,6 +487,7 @@ class TestExport:
             assert answer.headers["content-disposition"] == f'attachment; filename="made{suffix}"'
             assert answer.content == (tmp_path / f"scene{suffix}").read_bytes(), suffix
 
+    @pytest.mark.thorough
     def test_convert_with_the_corrections_file_makes_the_same_scene(self, page, tmp_path, made_photo):
         first = page.solve()
         page.edit(op="label", crossing=crossings(first, real=True)[2]["id"], value="fake")

@@ -320,7 +320,7 @@ def test_the_datasets_that_we_measure_on_are_recognised(photographs):
     assert 0 < len(castle.edges.depth) < len(castle.dense.depth)
 
 
-@pytest.mark.parametrize("focal", [None, 1050.0])
+@pytest.mark.parametrize("focal", [pytest.param(None, marks=pytest.mark.thorough), 1050.0])
 def test_labels_set_in_a_straightened_photo_are_read_in_one(tmp_path, focal):
     """They were once judged on the bent photo, whose pixels are others."""
     photo = Path(__file__).parents[3] / "samples" / "courtyard.jpg"  # without its camera file its lens bends it

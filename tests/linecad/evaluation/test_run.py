@@ -27,6 +27,7 @@ def without_seconds(value):
     return [without_seconds(each) for each in value] if isinstance(value, list) else value
 
 
+@pytest.mark.thorough
 def test_the_figures_do_not_hang_on_the_number_of_workers(york_folder, tmp_path, capsys):
     documents = []
     for workers in (1, 2):
@@ -58,6 +59,7 @@ def test_labels_made_by_hand_give_the_papers_tables(labels_folder, tmp_path, cap
     assert files[2].read_text().startswith("<!DOCTYPE html>")
 
 
+@pytest.mark.thorough
 def test_without_ablation_only_the_default_settings_are_solved(labels_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
     assert main(["evaluate", str(labels_folder), "--json", str(out), "--no-ablation", "--quiet"]) == 0
@@ -67,6 +69,7 @@ def test_without_ablation_only_the_default_settings_are_solved(labels_folder, tm
     assert "Table 1" not in capsys.readouterr().out
 
 
+@pytest.mark.thorough
 def test_options_reach_the_reconstruction_and_the_record(labels_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
     options = ["--fast", "--no-ablation", "--option", "weights=ones", "--option", "without=planarity,boundary"]
@@ -80,6 +83,7 @@ def test_options_reach_the_reconstruction_and_the_record(labels_folder, tmp_path
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.thorough
 def test_the_samples_can_be_evaluated(tmp_path, capsys):
     samples = Path(__file__).parents[3] / "samples"
     assert main(["evaluate", str(samples), "--fast", "--limit", "1", "--report", str(tmp_path / "a.html")]) == 0
@@ -194,6 +198,7 @@ def test_maps_beside_the_photos_are_used_where_they_are_asked_for(mapped_folder,
     assert dataset.with_depth_maps().cases[0].files[-1] == mapped_folder / "boxes.depth.npz"
 
 
+@pytest.mark.thorough
 def test_the_report_says_that_maps_were_used(mapped_folder, tmp_path, capsys):
     files = [tmp_path / name for name in ("a.json", "a.html")]
     command = ["evaluate", str(mapped_folder), "--json", str(files[0]), "--report", str(files[1]), "--no-ablation"]

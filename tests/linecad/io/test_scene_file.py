@@ -220,7 +220,7 @@ def exactly(value: Any) -> Any:
     return struct.pack("<d", value) if isinstance(value, float) else (type(value), value)
 
 
-@settings(max_examples=150)
+@settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(scenes())
 def test_scene_reads_back_bit_for_bit(scene: Scene) -> None:
     text = scene_to_json(scene)
@@ -276,7 +276,7 @@ def parses(text: str) -> bool:
     return False
 
 
-@settings(max_examples=400)
+@settings(max_examples=settings.default.max_examples * 4)
 @given(st.data())
 def test_damaged_file_is_refused_with_one_line_or_read(data: st.DataObject) -> None:
     document = json.loads(EXAMPLE)
@@ -289,19 +289,18 @@ def test_damaged_file_is_refused_with_one_line_or_read(data: st.DataObject) -> N
     parses(json.dumps(document))
 
 
-@settings(max_examples=200)
+@settings(max_examples=settings.default.max_examples * 2)
 @given(st.integers(0, len(EXAMPLE) - 3))
 def test_cut_file_is_refused(length: int) -> None:
     assert not parses(EXAMPLE[:length])
 
 
-@settings(max_examples=200)
+@settings(max_examples=settings.default.max_examples * 2)
 @given(st.integers(0, len(EXAMPLE) - 1), st.characters())
 def test_file_with_a_changed_character_is_refused_with_one_line_or_read(place: int, character: str) -> None:
     parses(EXAMPLE[:place] + character + EXAMPLE[place + 1 :])
 
 
-@settings(max_examples=100)
 @given(st.binary(max_size=200))
 def test_any_bytes_are_refused(tmp_path_factory: pytest.TempPathFactory, data: bytes) -> None:
     path = tmp_path_factory.getbasetemp() / "any.json"

@@ -282,6 +282,7 @@ def smaller(setting, by):
     return replace(setting, graph=graph, sight=Sight(matrix, setting.sight.rotation, width, pixels))
 
 
+@pytest.mark.thorough
 def test_a_large_photo_gives_the_strip_of_a_small_one(front):
     setting = front(0.05, 0.03, block=1)
     assert setting.sight.width > WIDEST
@@ -310,7 +311,7 @@ places = st.floats(0.5, 20).flatmap(lambda far: st.sampled_from([-far, far]))
 alongs = st.tuples(st.floats(-30, 30), st.floats(0.01, 40)).map(lambda at: (at[0], at[0] + at[1]))
 
 
-@settings(max_examples=60)
+@settings(max_examples=settings.default.max_examples * 3 // 5)
 @given(turns, st.floats(150, 600), st.integers(0, 1), places, alongs)
 def test_every_strip_is_finite_and_in_its_range(noisy, turn, focal, normal, place, along):
     setting = noisy(turn, focal)
@@ -330,7 +331,7 @@ def test_every_strip_is_finite_and_in_its_range(noisy, turn, focal, normal, plac
     assert (points @ setting.sight.rotation[2] > 0).all()
 
 
-@settings(max_examples=40)
+@settings(max_examples=settings.default.max_examples * 2 // 5)
 @given(turns, st.floats(150, 600), st.integers(0, 1), places, alongs, st.floats(-2, 2))
 def test_no_scale_changes_a_strip(noisy, turn, focal, normal, place, along, moved):
     setting, by = noisy(turn, focal), np.exp(moved)

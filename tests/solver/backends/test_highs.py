@@ -12,7 +12,7 @@ from solver.solve import solve
 pytest.importorskip("highspy", reason="HiGHS is the extra highs")
 
 
-@pytest.mark.parametrize("off", [(), ("planarity",), ("boundary",)])
+@pytest.mark.parametrize("off", [(), ("planarity",), pytest.param(("boundary",), marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("mu_boundary", [0.4, 10.0])
 def test_formulation_gain_has_one_optimum(alley, off, mu_boundary):
     options = {"without": frozenset(off), "mu_boundary": mu_boundary}

@@ -70,7 +70,7 @@ def test_a_status_of_a_later_scip_is_an_error():
         ({"time_limit_s": 0.6}, "time limit"),
         ({"time_limit_s": 1e-6}, "time limit"),
         ({"gap": 0.6}, "gap limit"),
-        ({"node_limit": 1}, "node limit"),
+        pytest.param({"node_limit": 1}, "node limit", marks=pytest.mark.thorough),
         ({"memory_limit_mb": 1.0}, "memory limit"),
     ],
 )

@@ -139,6 +139,7 @@ def test_without_a_depth_map_there_is_nothing_of_one(screen):
     assert not [url for url in screen.requests if "/api/depth/" in url]
 
 
+@pytest.mark.thorough
 def test_the_depth_map_and_where_the_model_differs_from_it_lie_over_the_photo(new_screen, start, tmp_path, map_of_made):
     np.savez(tmp_path / "map.npz", depth=map_of_made.values)
     screen = new_screen(start("--depth", str(tmp_path / "map.npz"), "--option", "depth-kind=z"))

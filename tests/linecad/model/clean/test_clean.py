@@ -208,7 +208,7 @@ def meets(lines, i, j):
     return lines.ends[i, 0, third] == lines.ends[j, 0, third]
 
 
-@settings(max_examples=150)
+@settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(buildings())
 def test_every_line_stays_parallel_to_its_axis_and_goes_forward(building):
     lines, crossings = building
@@ -224,7 +224,7 @@ def test_every_line_stays_parallel_to_its_axis_and_goes_forward(building):
         assert len(set(values.tolist())) == len(set(numbers.tolist())) == len({*zip(values, numbers, strict=True)})
 
 
-@settings(max_examples=150)
+@settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(buildings())
 def test_real_crossings_still_meet_to_the_last_digit(building):
     lines, crossings = building
@@ -237,7 +237,7 @@ def test_real_crossings_still_meet_to_the_last_digit(building):
     assert found.intersections.real.all()
 
 
-@settings(max_examples=150)
+@settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(buildings())
 def test_no_line_leaves_its_segment(building):
     """By more than twice FARTHEST in the image, across; nothing of a line goes but the last percent at its ends."""
@@ -258,7 +258,7 @@ def test_no_line_leaves_its_segment(building):
     assert (lost <= 0.03 * lines.ends[..., Y].max(axis=1)).all()
 
 
-@settings(max_examples=150)
+@settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(buildings())
 def test_what_is_clean_stays_as_it_is(building):
     once = clean_lines(*building, FORWARD)
