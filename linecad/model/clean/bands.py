@@ -33,10 +33,12 @@ def _crosses(strokes: Strokes, own: Int, plane: Plane, face: Face, axis: int) ->
     low, high = face.outline[:, axis].min(), face.outline[:, axis].max()
     onto = plane.offset / strokes.offset[own, plane.axis]  # along the rays of the camera
     at, reach = strokes.offset[own, other] * onto, strokes.reach[own] * onto[:, None]
-    way = shapely.intersection(polygon, _level(np.tile([low, high], (len(own), 1)), at))
+    crosses: Bool = np.ptp(reach, axis=1) >= LEAST_ACROSS * LEAST_WAY * (high - low)  # others are soon left out
+    at, reach = at[crosses], reach[crosses]
+    way = shapely.intersection(polygon, _level(np.tile([low, high], (len(at), 1)), at))
     length = np.asarray(shapely.length(way))
     run = np.asarray(shapely.length(shapely.intersection(way, _level(reach, at))))
-    crosses: Bool = (length > 0) & (length >= LEAST_WAY * (high - low)) & (run >= LEAST_ACROSS * length)
+    crosses[crosses] = (length > 0) & (length >= LEAST_WAY * (high - low)) & (run >= LEAST_ACROSS * length)
     return crosses
 
 
