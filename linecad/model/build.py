@@ -15,6 +15,8 @@ from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
 from linecad.model.clean.clean import clean_lines
 from linecad.model.clean.roles import with_roles
+from linecad.model.clean.settling import settled
+from linecad.model.clean.sight import Sight
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
@@ -111,15 +113,15 @@ def build_scene(
     if depth_map is not None and depth_map.scale is not None:
         depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
     new_id = np.cumsum(found.kept) - 1
-    forward = view.frame.rotation[2]
-    cleaned = clean_lines(lines, _intersections(graph, decision, found, new_id), forward)
+    sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
+    cleaned = clean_lines(lines, _intersections(graph, decision, found, new_id), sight)
     lines = cleaned.lines
     planes = find_planes(lines.ends[:, 0], cleaned.shared, lines.id)
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
     openings = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
-    lines = with_roles(lines, planes, forward, _rectangles(openings, planes))
+    lines = with_roles(settled(lines, planes, sight), planes, sight.forward, _rectangles(openings, planes))
     planes, openings = with_openings(planes, at_home(openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     cleaning = cleaned.note(lines)

@@ -35,7 +35,7 @@ class LineCounts:
     parallel_pairs: int  # beside each other within TIGHT over half of the shorter, neither a detail
     ends: int
     missing: int  # ends that miss a line of another axis by less than NEAR
-    in_air: int  # ends at no line, no outline of a face, and not at the photo's border
+    in_air: int  # ends at no line, no outline of a face in the photo, and not at the photo's border
 
 
 def count_lines(scene: Scene, shapes: list[Shape], is_detail: Bool) -> LineCounts:
@@ -52,8 +52,7 @@ def count_lines(scene: Scene, shapes: list[Shape], is_detail: Bool) -> LineCount
     free: Bool = np.array(gap >= NEAR, np.bool_)
     free[free] = ~_at_border(scene, scene.lines.ends[free])
     if shapes and free.any():
-        outlines = np.concatenate([shape.edges for shape in shapes])
-        free[free] = distances(scene.lines.ends[free], outlines) >= ON_OUTLINE * depth[free]
+        free[free] = ~_at_outlines(scene, scene.lines.ends[free], depth[free], shapes)
     return LineCounts(
         lines=count,
         details=int(is_detail.sum()),
@@ -116,6 +115,30 @@ def _at_border(scene: Scene, points: Float) -> Bool:
     inner = np.array([scene.camera.width, scene.camera.height]) - 1 - margin
     beyond: Bool = np.asarray(((pixels < margin) | (pixels > inner)).any(axis=1))
     return beyond
+
+
+def _at_outlines(scene: Scene, points: Float, depth: Float, shapes: list[Shape]) -> Bool:
+    """Which points (M, 3) lie on an outline: in space, or in the photo on one of what is not behind them.
+
+    Behind a nearer face, or behind what hides a part of a face, nobody sees where a line ends.
+    """
+    rings = [ring for shape in shapes for ring in shape.face.hidden]
+    hidden = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
+    edges = np.concatenate([*(shape.edges for shape in shapes), *hidden])
+    found: Bool = np.array(distances(points, edges) < ON_OUTLINE * depth, np.bool_)
+    before = ((edges @ scene.rotation[2]) > SMALLEST_DEPTH).all(axis=1)
+    seen = project(edges[before], scene.camera.matrix, scene.rotation)
+    nearness = 1 / (edges[before] @ scene.rotation[2])  # in a photo it is linear along an edge
+    ask = np.flatnonzero(~found & (points @ scene.rotation[2] > SMALLEST_DEPTH))
+    pixels = project(points[ask], scene.camera.matrix, scene.rotation)
+    start, along = seen[:, 0], seen[:, 1] - seen[:, 0]
+    square = np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+    for row, pixel, own in zip(ask.tolist(), pixels, depth[ask].tolist(), strict=True):
+        share = np.clip(((pixel - start) * along).sum(axis=1) / square, 0.0, 1.0)
+        off = np.linalg.norm(pixel - start - share[:, None] * along, axis=1)
+        at = nearness[:, 0] + share * (nearness[:, 1] - nearness[:, 0])
+        found[row] = bool(((off < ON_OUTLINE * scene.camera.focal) & (at * own * (1 + NEAR) >= 1)).any())
+    return found
 
 
 def distances(points: Float, segments: Float) -> Float:

@@ -12,8 +12,10 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.graph.connectivity import group_numbers
 from linecad.model.clean.ends import NEAR, close_ends, missed_offsets
+from linecad.model.clean.gaps import continued
 from linecad.model.clean.joining import joined_crossings, joined_lines, joined_strokes
 from linecad.model.clean.offsets import join_offsets, offsets_of, with_offsets
+from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import SAME, Strokes, parallel_pairs, strokes_of
 from linecad.scene import Intersections, Lines
 
@@ -46,27 +48,31 @@ class Cleaned:
                 f"planes that were nearly one became one, which moved lines by up to {self.moved:.2%} of their depth"
             )
         if ends.max(initial=0) > self.moved:
-            parts.append(f"ends were moved along their lines to others, by up to {ends.max():.1%}")
+            far = int((ends > NEAR).sum())
+            parts.append(
+                f"ends were moved along their lines to where these stop, {far} of {ends.size} by more than "
+                f"{NEAR:.0%}, at most by {ends.max():.1%}"
+            )
         return "; ".join(parts)
 
 
-def clean_lines(lines: Lines, crossings: Intersections, forward: Float) -> Cleaned:
-    """The lines joined and closed, the crossings between those that are left; `forward` (3,) is the camera's z.
+def clean_lines(lines: Lines, crossings: Intersections, sight: Sight) -> Cleaned:
+    """The lines joined and closed, and the crossings between those that are left.
 
     Lines that a person said are two stay two. Ids are new, from 0 on, in the order of the old ones.
     """
-    before = strokes = strokes_of(lines, forward)
+    before = strokes = strokes_of(lines, sight.forward)
     offsets = offsets_of(strokes)
-    two = _kept_apart(lines, crossings)
+    two, pieces = _kept_apart(lines, crossings), continued(strokes, sight)
     row = np.arange(len(lines))
     for _ in range(MOST_ROUNDS):
         lead = offsets.lead
-        first, second = _alike(strokes, row[two])
+        first, second = _alike(strokes, row[two], row[pieces])
         at, normal = np.nonzero(strokes.number[first] != strokes.number[second])
         same = np.column_stack([strokes.number[first[at], normal], strokes.number[second[at], normal]])
         old, offsets = offsets, join_offsets(offsets, strokes, same, FARTHEST)
         strokes = with_offsets(strokes, old, offsets)
-        first, second = _alike(strokes, row[two])
+        first, second = _alike(strokes, row[two], row[pieces])
         are_one = (strokes.number[first] == strokes.number[second]).all(axis=1)
         group = group_numbers(len(strokes.axis), np.column_stack([first[are_one], second[are_one]]))
         strokes, row = joined_strokes(strokes, group), group[row]
@@ -94,11 +100,15 @@ def _kept_apart(lines: Lines, crossings: Intersections) -> Int:
     return np.asarray(order[np.searchsorted(lines.id[order], crossings.lines[said])]).reshape(-1, 2)
 
 
-def _alike(strokes: Strokes, two: Int) -> tuple[Int, Int]:
-    """Pairs of parallel strokes that are nearly one, nearest first, but for the pairs `two` (P, 2)."""
+def _alike(strokes: Strokes, two: Int, pieces: Int) -> tuple[Int, Int]:
+    """Pairs of parallel strokes that are nearly one, nearest first, but for the pairs `two` (P, 2).
+
+    Those that overlap or have a gap below NEAR come before those of `pieces` (Q, 2), which go on to each other.
+    """
     first, second, apart, overlap = parallel_pairs(strokes, SAME)
     depth, count = np.abs(strokes.depth), len(strokes.axis)
+    number, kept, gone_on = (np.sort(each) @ [count, 1] for each in (np.column_stack([first, second]), two, pieces))
     near = overlap >= -NEAR * np.minimum(depth[first], depth[second])
-    near &= ~np.isin(first * count + second, np.sort(two, axis=1) @ np.array([count, 1]))
-    order = np.flatnonzero(near)[np.argsort(apart[near], kind="stable")]
+    alike = (near | np.isin(number, gone_on)) & ~np.isin(number, kept)
+    order = np.flatnonzero(alike)[np.lexsort((apart[alike], ~near[alike]))]
     return first[order], second[order]

@@ -24,7 +24,7 @@ def close_ends(strokes: Strokes) -> tuple[Strokes, Bool]:
 
     Lines only move along themselves. One that would lose more than half of its length on the way stays as it was.
     """
-    pairs, found = _meeting(strokes), strokes
+    pairs, found = _meeting(strokes, SEVERAL * NEAR), strokes
     for _ in range(MOST_SWEEPS):
         reach, meets = _closed_once(found, pairs)
         if np.array_equal(reach, found.reach):
@@ -47,11 +47,13 @@ class _Pairs:
     across: Float  # (P,) along the other
 
 
-def _meeting(strokes: Strokes) -> _Pairs:
-    """Pairs of lines of different axes that have their third offset in common and would meet near an end of the
-    first."""
+def _meeting(strokes: Strokes, share: float) -> _Pairs:
+    """Pairs of lines of different axes that have their third offset in common and would meet near an end of the first.
+
+    Near is within a `share` of the depth.
+    """
     firsts, seconds = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    near = SEVERAL * NEAR * np.abs(strokes.end_depth).max(axis=1)
+    near = share * np.abs(strokes.end_depth).max(axis=1)
     for axis, other in permutations(range(3), 2):
         third = 3 - axis - other
         line, others = np.flatnonzero(strokes.axis == axis), np.flatnonzero(strokes.axis == other)
@@ -154,7 +156,33 @@ def missed_offsets(strokes: Strokes, meets: Bool) -> Int:
 
 def ends_that_meet(strokes: Strokes) -> Bool:
     """Which ends (N, 2) meet a line of another axis."""
-    return _closed_once(strokes, _meeting(strokes))[1]
+    return _closed_once(strokes, _meeting(strokes, 2 * MEETS))[1]
+
+
+def nearest_crossings(strokes: Strokes, line: Int, end: Int) -> tuple[Float, Float]:
+    """How far (P,) the ends `end` (P,) of lines (P,) are from the first line of their plane that crosses their way,
+    and how far from the last that crosses the line itself.
+
+    Lines that end short of the way by no more than NEAR cross it too. Infinite where there is none.
+    """
+    ahead, back = np.full(len(line), np.inf), np.full(len(line), np.inf)
+    at, outwards = strokes.reach[line, end], np.where(end == 1, 1.0, -1.0)
+    near = NEAR * np.abs(strokes.end_depth[line, end])
+    for axis, other in permutations(range(3), 2):
+        third = 3 - axis - other
+        own, others = np.flatnonzero(strokes.axis[line] == axis), np.flatnonzero(strokes.axis == other)
+        order = others[np.argsort(strokes.number[others, third], kind="stable")]
+        numbers, wanted = strokes.number[order, third], strokes.number[line[own], third]
+        low = np.searchsorted(numbers, wanted, "left")
+        row, place = ragged(low, np.searchsorted(numbers, wanted, "right") - low)
+        row, crossed = own[row], order[place]
+        way = (strokes.offset[crossed, axis] - at[row]) * outwards[row]
+        crosses = strokes.component[crossed] == strokes.component[line[row]]
+        crosses &= _short(strokes, crossed, strokes.offset[line[row], other]) <= near[row]
+        for found, side in ((ahead, way), (back, -way)):
+            there = crosses & (side > 0)
+            np.minimum.at(found, row[there], side[there])
+    return ahead, back
 
 
 def without_new_twins(before: Strokes, after: Strokes) -> Strokes:

@@ -1,7 +1,7 @@
 """What each line is drawn for: the outline of walls, ground and roofs, the sides of an opening, or detail within them.
 
 - opening: a side of a window or door, or of a hole in a face;
-- outline: an edge of a face;
+- outline: an edge of a face, or a line across most of it, such as eaves, a cornice or a plinth;
 - detail: all others, such as courses and joints, bars and panes: a ladder of lines that are close together, the weaker
   of two that are almost one, and short lines that end in the air.
 """
@@ -12,6 +12,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.graph.connectivity import group_numbers
+from linecad.model.clean.bands import run_across
 from linecad.model.clean.edges import Edges, drawn_to_corners, lie_on, ring_edges, sides_of
 from linecad.model.clean.ends import close_ends, ends_that_meet, without_new_twins
 from linecad.model.clean.joining import with_ends
@@ -42,7 +43,7 @@ def with_roles(lines: Lines, planes: tuple[Plane, ...], forward: Float, openings
     is_side = lie_on(strokes, sides)
     is_inner = _between_rungs(strokes) & ~is_side
     is_opening = (is_side | lie_on(strokes, holes)) & ~is_inner
-    is_outline = lie_on(strokes, outlines) & ~is_inner & ~is_opening
+    is_outline = (lie_on(strokes, outlines) | run_across(strokes, planes)) & ~is_inner & ~is_opening
     is_opening &= ~_doubles(strokes, is_opening)
     is_outline &= ~_doubles(strokes, is_outline | is_opening)
     free = ~ends_that_meet(strokes) & (is_outline | is_opening)[:, None]

@@ -94,6 +94,14 @@ def test_an_end_on_the_outline_of_a_face_is_not_in_the_air(drawing, outline):
     assert counted(drawing, lines, [(1, 10.0, outline((-1, -1), (3, 1)), hole)]).in_air == 1
 
 
+def test_an_end_is_not_in_the_air_where_something_nearer_hides_what_follows(drawing, outline):
+    lines = [level(0, 1, 0)]
+    for depth, high, in_air in ((5.0, 0.5, 1), (9.95, 1.0, 1), (20.0, 2.0, 2), (5.0, -0.1, 2)):
+        half = 0.5 * depth / 5  # the right side of the face is seen where the line ends
+        face = (1, depth, outline((-half, -half), (half, high)))
+        assert counted(drawing, lines, [face]).in_air == in_air
+
+
 def test_an_end_where_the_photo_ends_is_not_in_the_air(drawing):
     half = 479.5 / 600 * 10  # of the photo's width, at the wall
     assert counted(drawing, [level(-half, half - 0.5, 0)]).in_air == 1

@@ -30,6 +30,24 @@ def build_crossings(pairs, kind="T", real=True, reason="", in_tree=False):
     )  # fmt: skip
 
 
+def build_photo(rows, step=40):
+    """A grey photo (H, W) with a step of brightness of 15 px beside rows (axis, start, end), level or upright in it."""
+    grey = np.full((CAMERA.height, CAMERA.width), 100.0, np.float32)
+    for _, start, end in rows:
+        (x0, y0), (x1, y1) = project(np.array([start, end], float), CAMERA.matrix, AHEAD)
+        is_level = abs(y1 - y0) < abs(x1 - x0)
+        picture = grey if is_level else grey.T
+        (low, high), at = (sorted([x0, x1]), y0) if is_level else (sorted([y0, y1]), x0)
+        low, high, at = (max(0, round(each + 0.5)) for each in (low, high, at))
+        picture[at : at + 15, low:high] += step
+    return grey
+
+
+@pytest.fixture
+def photo():
+    return build_photo
+
+
 @pytest.fixture
 def crossings():
     return build_crossings

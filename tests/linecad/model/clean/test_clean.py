@@ -8,13 +8,14 @@ from hypothesis import strategies as st
 from linecad.geometry import project
 from linecad.graph.connectivity import group_numbers
 from linecad.model.clean.clean import FARTHEST, clean_lines
+from linecad.model.clean.sight import Sight
 from linecad.scene import Intersections, Lines
 
 X, Y, Z = range(3)
 FOCAL = 2500.0
 MATRIX = np.array([[FOCAL, 0, 1499.5], [0, FOCAL, 999.5], [0, 0, 1]])
 AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
-FORWARD = AHEAD[2]
+SIGHT = Sight(MATRIX, AHEAD, None)
 NONE = Intersections([], [], [], [], [], [])
 DEPTH = 10.0
 
@@ -25,7 +26,7 @@ def reaches(lines):
 
 
 def cleaned(lines, rows, crossings=NONE, **more):
-    return clean_lines(lines(rows, **more), crossings, FORWARD)
+    return clean_lines(lines(rows, **more), crossings, SIGHT)
 
 
 # --- one line ------------------------------------------------------------------------------------------------------
@@ -46,6 +47,14 @@ def test_near_duplicates_are_one_line_between_them(lines, apart, count):
     if count == 1:
         assert 1 < found.lines.ends[0, 0, Z] == found.lines.ends[0, 1, Z] < 1 + apart
         assert found.moved == pytest.approx(apart / 2 / DEPTH, rel=0.01)
+
+
+@pytest.mark.parametrize(("is_shown", "said", "count"), [(True, False, 1), (False, False, 2), (True, True, 2)])
+def test_pieces_are_one_line_where_the_photo_shows_the_edge_between(lines, crossings, photo, is_shown, said, count):
+    rows = [(X, (-3, DEPTH, 1), (-1, DEPTH, 1)), (X, (0.5, DEPTH, 1), (3, DEPTH, 1))]
+    grey = photo([(X, (-3, DEPTH, 1), (3, DEPTH, 1))] if is_shown else rows)
+    two = crossings([(0, 1)], kind="collinear", real=False, reason="annotated") if said else NONE
+    assert len(clean_lines(lines(rows), two, Sight(MATRIX, AHEAD, grey)).lines) == count
 
 
 def test_lines_of_different_components_stay_two(lines):
@@ -88,7 +97,7 @@ def test_planes_move_as_a_whole(lines):
 def test_a_line_has_the_segment_of_its_longest_piece_as_far_as_all_reach(lines):
     rows = [(X, (-2, DEPTH, 1), (-1, DEPTH, 1)), (X, (2, DEPTH, 1), (-0.95, DEPTH, 1))]
     before = lines(rows)
-    found = clean_lines(before, NONE, FORWARD).lines
+    found = clean_lines(before, NONE, SIGHT).lines
     np.testing.assert_allclose(found.segment, project(np.array([[[2, DEPTH, 1], [-2, DEPTH, 1]]]), MATRIX, AHEAD))
     assert found.ends[0].tolist() == [[2, DEPTH, 1], [-2, DEPTH, 1]]  # in the order of the segment
     np.testing.assert_array_equal(found.pieces[0], before.segment)
@@ -96,7 +105,7 @@ def test_a_line_has_the_segment_of_its_longest_piece_as_far_as_all_reach(lines):
 
 def test_a_line_that_is_alone_keeps_its_segment_and_has_no_pieces(lines):
     before = lines([(X, (-2, DEPTH, 1), (-1, DEPTH, 1))])
-    found = clean_lines(before, NONE, FORWARD).lines
+    found = clean_lines(before, NONE, SIGHT).lines
     np.testing.assert_array_equal(found.segment, before.segment)
     assert [len(each) for each in found.pieces] == [0]
 
@@ -150,14 +159,15 @@ def test_the_note_says_what_moved_and_how_far(lines):
     found = cleaned(lines, rows)
     assert found.note(found.lines) == (
         "1 lines that continue or repeat others were joined to them; planes that were nearly one became one, which "
-        "moved lines by up to 0.04% of their depth; ends were moved along their lines to others, by up to 0.5%"
+        "moved lines by up to 0.04% of their depth; ends were moved along their lines to where "
+        "these stop, 0 of 4 by more than 1%, at most by 0.5%"
     )
 
 
 def test_where_nothing_happens_nothing_is_said(lines):
     found = cleaned(lines, [(X, (-2, DEPTH, 1), (0, DEPTH, 1))])
     assert found.note(found.lines) == ""
-    assert clean_lines(lines([]), NONE, FORWARD).note(lines([])) == ""
+    assert clean_lines(lines([]), NONE, SIGHT).note(lines([])) == ""
 
 
 # --- properties ----------------------------------------------------------------------------------------------------
@@ -212,7 +222,7 @@ def meets(lines, i, j):
 @given(buildings())
 def test_every_line_stays_parallel_to_its_axis_and_goes_forward(building):
     lines, crossings = building
-    found = clean_lines(lines, crossings, FORWARD)
+    found = clean_lines(lines, crossings, SIGHT)
     across = np.arange(3) != found.lines.axis[:, None]
     np.testing.assert_array_equal(found.lines.ends[:, 0][across], found.lines.ends[:, 1][across])
     np.testing.assert_array_equal(found.lines.axis[found.row], lines.axis)
@@ -228,7 +238,7 @@ def test_every_line_stays_parallel_to_its_axis_and_goes_forward(building):
 @given(buildings())
 def test_real_crossings_still_meet_to_the_last_digit(building):
     lines, crossings = building
-    found = clean_lines(lines, crossings, FORWARD)
+    found = clean_lines(lines, crossings, SIGHT)
     place = {number: row for row, number in enumerate(lines.id.tolist())}
     for one, other in crossings.lines.tolist():
         i, j = found.row[place[one]], found.row[place[other]]
@@ -242,7 +252,7 @@ def test_real_crossings_still_meet_to_the_last_digit(building):
 def test_no_line_leaves_its_segment(building):
     """By more than twice FARTHEST in the image, across; nothing of a line goes but the last percent at its ends."""
     lines, crossings = building
-    found = clean_lines(lines, crossings, FORWARD)
+    found = clean_lines(lines, crossings, SIGHT)
     assert found.moved <= np.sqrt(2) * FARTHEST
     image = project(found.lines.ends, MATRIX, AHEAD)[found.row]
     along = image[:, 1] - image[:, 0]
@@ -261,8 +271,8 @@ def test_no_line_leaves_its_segment(building):
 @settings(max_examples=settings.default.max_examples * 3 // 2)
 @given(buildings())
 def test_what_is_clean_stays_as_it_is(building):
-    once = clean_lines(*building, FORWARD)
-    twice = clean_lines(once.lines, once.intersections, FORWARD)
+    once = clean_lines(*building, SIGHT)
+    twice = clean_lines(once.lines, once.intersections, SIGHT)
     np.testing.assert_array_equal(twice.lines.ends, once.lines.ends)
     np.testing.assert_array_equal(twice.intersections.lines, once.intersections.lines)
     assert twice.moved == 0

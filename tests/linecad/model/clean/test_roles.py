@@ -38,8 +38,15 @@ def roles(lines, rows, holes=(), openings=None):
 
 
 def test_edges_of_faces_are_outline_and_what_lies_within_is_detail(lines):
+    rows = [*WALL, (X, (-4, DEPTH, 0), (0, DEPTH, 0)), (Z, (0, DEPTH, -3), (0, DEPTH, 0))]
+    assert roles(lines, rows) == ["outline"] * 4 + ["detail"] * 2
+
+
+def test_a_line_across_a_face_is_outline_unless_it_is_a_rung(lines):
     rows = [*WALL, (X, (-4, DEPTH, 0), (4, DEPTH, 0))]
-    assert roles(lines, rows) == ["outline"] * 4 + ["detail"]
+    assert roles(lines, rows) == ["outline"] * 5
+    rows = [*WALL, *[(X, (-4, DEPTH, z), (4, DEPTH, z)) for z in np.linspace(0, 0.8, 9)]]
+    assert roles(lines, rows) == ["outline"] * 5 + ["detail"] * 7 + ["outline"]
 
 
 def test_edges_of_holes_are_openings(lines):
@@ -66,7 +73,7 @@ def test_three_sides_are_no_opening(lines, gone):
     window = frame((-1, -1), (1, 1))
     del window[gone]
     courses = [(X, (-4, DEPTH, z), (4, DEPTH, z)) for z in (-2.5, 2.5)]
-    assert roles(lines, [*WALL, *window, *courses])[4:] == ["detail"] * 5
+    assert roles(lines, [*WALL, *window, *courses])[4:7] == ["detail"] * 3
 
 
 def test_rungs_of_a_ladder_are_detail_but_for_the_last(lines):

@@ -1,0 +1,140 @@
+"""Ends in the air drawn on to where they stop: at a line of their plane, or at the outline of a face in the photo.
+
+Detection loses an edge where it grows faint. So an end that meets no line goes on to the first stop on its way if the
+photo shows the edge between. Outlines stop a line in the photo: that of its own face, and that of a face before it,
+behind which nobody sees where the line ends. An end that is near an outline already ends there.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.geometry import depths_beside, world_rays
+from linecad.model.clean.ends import MEETS, NEAR, close_ends, ends_that_meet, nearest_crossings, without_new_twins
+from linecad.model.clean.joining import with_ends
+from linecad.model.clean.sight import NEAREST, Sight
+from linecad.model.clean.strokes import Strokes, strokes_of
+from linecad.scene import Lines, Plane
+
+FURTHEST = 3.0  # times what was seen of a line, that it is drawn on at most
+OVERSHOOT = 0.025  # of the depth, and
+MOST_CUT = 0.25  # of what was seen of a line: as much of it beyond the last line that it crosses is cut off
+MOST_ROUNDS = 2  # a line that was drawn on stops others
+
+
+@dataclass(frozen=True, eq=False)
+class Stops:
+    """The nearest stop of each of P ends."""
+
+    place: Float  # (P,) along the line; nan for none
+    is_sure: Bool  # (P,) so near that the end belongs there, whatever the photo shows
+
+
+def settled(lines: Lines, planes: tuple[Plane, ...], sight: Sight) -> Lines:
+    """The lines with their ends drawn on to where they stop."""
+    strokes = settle_ends(strokes_of(lines, sight.forward), outlines_of(planes), sight)
+    return with_ends(lines, strokes)
+
+
+def outlines_of(planes: tuple[Plane, ...]) -> Float:
+    """The edges (E, 2, 3) of all faces, of their holes, and of what hides parts of them."""
+    rings = [ring for plane in planes for face in plane.faces for ring in (face.outline, *face.holes, *face.hidden)]
+    edges = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
+    return np.concatenate([np.zeros((0, 2, 3)), *edges])
+
+
+def settle_ends(strokes: Strokes, outlines: Float, sight: Sight) -> Strokes:
+    """The strokes with the ends that meet no line at their stops; `outlines` (E, 2, 3) are edges of faces."""
+    edges, depths = _seen(outlines, sight)
+    found = strokes
+    for _ in range(MOST_ROUNDS):
+        drawn = without_new_twins(found, _drawn_once(found, strokes, edges, depths, sight))
+        if np.array_equal(drawn.reach, found.reach):
+            break
+        found = close_ends(drawn)[0]
+    return close_ends(_cut(found, strokes, at_outlines(found, outlines, sight)))[0]
+
+
+def _drawn_once(found: Strokes, seen: Strokes, edges: Float, depths: Float, sight: Sight) -> Strokes:
+    """The strokes `found` with each end in the air at its stop, where the photo leads `seen` strokes there."""
+    line, end = np.nonzero(~ends_that_meet(found))
+    stops = _nearest(found, line, end, edges, depths, sight)
+    way = np.abs(stops.place - found.reach[line, end])
+    goes = (way > MEETS * np.abs(found.end_depth[line, end])) & (way <= FURTHEST * np.ptp(seen.reach[line], axis=1))
+    ask = np.flatnonzero(goes & ~stops.is_sure)
+    ways = found.points(found.reach)[line[ask], end[ask]][:, None].repeat(2, axis=1)
+    ways[np.arange(len(ask)), 1, found.axis[line[ask]]] = stops.place[ask]
+    goes[ask] = sight.shows(sight.pixels(seen.points(seen.reach)[line[ask]]), sight.pixels(ways))
+    reach = found.reach.copy()
+    reach[line[goes], end[goes]] = stops.place[goes]
+    return replace(found, reach=reach)
+
+
+def _cut(found: Strokes, seen: Strokes, stopped: Bool) -> Strokes:
+    """The strokes with the ends in the air that overshoot a line by little at that line; not those `stopped` (N, 2)."""
+    line, end = np.nonzero(~ends_that_meet(found) & ~stopped)
+    over = nearest_crossings(found, line, end)[1]
+    most = np.minimum(OVERSHOOT * np.abs(found.end_depth[line, end]), MOST_CUT * np.ptp(seen.reach[line], axis=1))
+    cut = over <= most
+    reach = found.reach.copy()
+    reach[line[cut], end[cut]] -= np.where(end[cut] == 1, 1.0, -1.0) * over[cut]
+    return replace(found, reach=reach)
+
+
+def at_outlines(strokes: Strokes, outlines: Float, sight: Sight) -> Bool:
+    """Which ends (N, 2) lie on an outline in the photo."""
+    line, end = np.nonzero(np.ones(strokes.reach.shape, bool))
+    place = _outlines_on(strokes, line, *_seen(outlines, sight), sight)
+    off = np.abs(place - strokes.reach[line, end][:, None]) / np.abs(strokes.end_depth[line, end])[:, None]
+    found: Bool = np.nan_to_num(off, nan=np.inf).min(axis=1, initial=np.inf) <= MEETS
+    return found.reshape(strokes.reach.shape)
+
+
+def _nearest(strokes: Strokes, line: Int, end: Int, edges: Float, depths: Float, sight: Sight) -> Stops:
+    """The nearest stop of the ends `end` (P,) of lines (P,): an outline within NEAR, else the first ahead."""
+    at, outwards = strokes.reach[line, end], np.where(end == 1, 1.0, -1.0)
+    near = NEAR * np.abs(strokes.end_depth[line, end])
+    way = (_outlines_on(strokes, line, edges, depths, sight) - at[:, None]) * outwards[:, None]
+    closest = np.where(np.isnan(way), np.inf, np.abs(way)).min(axis=1, initial=np.inf)
+    is_sure = closest <= near
+    ahead = np.where(way > 0, way, np.inf).min(axis=1, initial=np.inf)
+    ahead = np.minimum(ahead, nearest_crossings(strokes, line, end)[0])
+    if way.shape[1]:
+        pick = np.where(np.isnan(way), np.inf, np.abs(way)).argmin(axis=1)
+        ahead = np.where(is_sure, way[np.arange(len(line)), pick], ahead)
+    return Stops(np.where(np.isfinite(ahead), at + outwards * ahead, np.nan), is_sure)
+
+
+def _seen(outlines: Float, sight: Sight) -> tuple[Float, Float]:
+    """The edges (E, 2, 2) px of faces that lie before the camera, and the depths (E, 2) of their ends."""
+    depths = outlines @ sight.forward
+    before = (depths > NEAREST).all(axis=1)
+    return sight.pixels(outlines[before]), depths[before]
+
+
+def _outlines_on(strokes: Strokes, line: Int, edges: Float, depths: Float, sight: Sight) -> Float:
+    """Where (P, E) along lines (P,) they cross edges in the photo that are not behind them; nan for nowhere."""
+    ends = sight.pixels(strokes.points(strokes.reach))[line]  # (P, 2, 2)
+    start, along = ends[:, None, 0], (ends[:, 1] - ends[:, 0])[:, None]
+    first, across = edges[None, :, 0], (edges[:, 1] - edges[:, 0])[None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        turn = _cross(along, across)
+        share = _cross(start - first, along) / -turn  # along the edge
+        pixel = first + share[..., None] * across
+        row, edge = np.nonzero((share >= -MEETS) & (share <= 1 + MEETS) & np.isfinite(pixel).all(axis=2))
+    place = np.full(turn.shape, np.nan)
+    own = line[row]
+    rays = world_rays(pixel[row, edge], sight.matrix, sight.rotation)
+    depth = depths_beside(rays, strokes.offset[own], strokes.axis[own])
+    near, far = depths[edge].T
+    behind = 1 / ((1 - share[row, edge]) / near + share[row, edge] / far) > depth * (1 + NEAR)
+    keeps = (depth > NEAREST) & ~behind
+    place[row[keeps], edge[keeps]] = (rays[np.arange(len(row)), strokes.axis[own]] * depth)[keeps]
+    return place
+
+
+def _cross(first: Float, second: Float) -> Float:
+    """The turn from one vector (..., 2) to another."""
+    turn: Float = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
+    return turn
