@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from exporters.model import FREE_UNIT, KNOWN_UNIT, SHORTEST_LINE, build_model, signed_area
+from exporters.faces import signed_area
+from exporters.model import FREE_UNIT, KNOWN_UNIT, SHORTEST_LINE, build_model
 from linecad.scene import ROLES
 
 BANDS = {"sure": 0.99, "likely": 0.7, "guess": 0.2}  # the probabilities that the scene has

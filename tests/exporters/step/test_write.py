@@ -15,8 +15,9 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
 from exporters.colours import FACE, line_colour
+from exporters.faces import signed_area
 from exporters.formats import export
-from exporters.model import FREE_UNIT, build_model, signed_area
+from exporters.model import FREE_UNIT, build_model
 from linecad.errors import OutputError
 
 MILLIMETRES = 1000.0  # per metre
