@@ -34,7 +34,7 @@ FLAT = [
     (2, 4.2, rectangle((8, -1.2), (11, 0)), []),
     (1, -1.2, rectangle((8, 4.2), (11, 4.9)), []),
 ]
-KINDS = ["wall", "wall", "ground", "window", "window", "window", "door", "other", "other"]
+KINDS = ["wall", "wall", "other", "window", "window", "window", "door", "other", "other"]
 FLAT_LINES = [
     *[((0, 0, z), (12, 0, z)) for z in (3.4, 7.4)],
     *[((-4, y, 0), (13, y, 0)) for y in (-3.5, -2.0)],
@@ -215,6 +215,16 @@ def no_lines(scene):
     planes = tuple(replace(plane, lines=()) for plane in scene.planes)
     lines = Lines(**{name: getattr(scene.lines, name)[:0] for name in names})
     return replace(scene, lines=lines, intersections=empty, planes=planes)
+
+
+@pytest.fixture(scope="session")
+def grounded(scene):
+    """The scene with a ground, EYE's height below the camera: its exports have that at z = 0."""
+    planes = [
+        replace(plane, faces=tuple(replace(face, kind="ground") if face.id == 2 else face for face in plane.faces))
+        for plane in scene.planes
+    ]
+    return replace(scene, planes=tuple(planes))
 
 
 @pytest.fixture(scope="session")

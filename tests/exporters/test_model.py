@@ -149,7 +149,7 @@ def test_groups_have_their_plain_names_where_nobody_asks_for_roles_and_tell_them
 
 def test_faces_are_labelled_by_kind_and_counted_where_there_are_several(model):
     assert [face.label for face in model.faces] == [
-        "wall 1", "wall 2", "ground", "window 1", "window 2", "window 3", "door", "other 1", "other 2",
+        "wall 1", "wall 2", "other 1", "window 1", "window 2", "window 3", "door", "other 2", "other 3",
     ]  # fmt: skip
     assert [face.kind for face in model.faces] == [face.label.split()[0] for face in model.faces]
 

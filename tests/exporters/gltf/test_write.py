@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from exporters.colours import FACE, line_colour, linear
+from exporters.colours import face_colour, line_colour, linear
 from exporters.formats import export
 from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
 from exporters.triangulation import triangulate
@@ -96,11 +96,11 @@ def test_every_face_is_there_as_its_triangles_with_normals_towards_the_camera(gl
         np.testing.assert_array_equal(np.stack([x, -z, y], axis=1), np.tile(face.normal, (len(face.vertices), 1)))
 
 
-def test_the_mesh_of_a_face_is_named_by_its_kind(glb, model):
+def test_the_mesh_of_a_face_is_named_by_its_kind_and_its_node_says_what_it_is(glb, model):
     for face in model.faces:
         mesh = glb.tree["meshes"][glb.node(face.name)["mesh"]]
         assert mesh["name"] == face.label
-        assert mesh["extras"] == {
+        assert glb.node(face.name)["extras"] == {
             "face_id": face.id, "kind": face.kind, "label": face.label, "plane_id": face.plane,
             "axis": "xyz"[face.axis], "offset": face.offset,
         }  # fmt: skip
@@ -119,7 +119,7 @@ def test_faces_are_two_sided(glb, model):
     for face in model.faces:
         material = glb.material(face.name)
         assert material["doubleSided"]
-        assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx([*linear(FACE), 1.0])
+        assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx([*linear(face_colour(face.kind)), 1.0])
 
 
 def test_no_material_is_left_over(glb):
@@ -200,7 +200,7 @@ def test_faces_alone_use_no_extension(no_lines, tmp_path):
     export(no_lines, tmp_path / "a.glb")
     glb = Glb(tmp_path / "a.glb")
     assert "extensionsUsed" not in glb.tree
-    assert [material["name"] for material in glb.tree["materials"]] == ["face"]
+    assert [material["name"] for material in glb.tree["materials"]] == ["face", "window", "door"]
 
 
 def test_lines_can_be_tubes_with_the_same_names_colours_and_ids(scene, model, glb, tmp_path):

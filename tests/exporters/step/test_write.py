@@ -14,7 +14,7 @@ from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from exporters.colours import FACE, line_colour
+from exporters.colours import face_colour, line_colour
 from exporters.faces import signed_area
 from exporters.formats import export
 from exporters.model import FREE_UNIT, build_model
@@ -140,7 +140,7 @@ def test_lines_and_faces_have_their_colours(read, model):
             assert colour == linear_light(line_colour(group.axis, group.is_boundary))
     for face in model.faces:
         (shape,) = read.parts[face.name].faces()
-        assert read.colour(shape, XCAFDoc_ColorType.XCAFDoc_ColorSurf) == linear_light(FACE)
+        assert read.colour(shape, XCAFDoc_ColorType.XCAFDoc_ColorSurf) == linear_light(face_colour(face.kind))
 
 
 def test_the_camera_is_a_point_where_it_stood(read):

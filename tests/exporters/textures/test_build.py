@@ -380,7 +380,7 @@ def painted(scene, photo, number, size=4096):
     """The pixels of the one patch of a face with its margin, and the patch."""
     model = build_model(scene)
     layout = build_layout(model, view_of(scene), size)
-    pages = paint_pages(model, layout, view_of(scene), photo)
+    pages, _ = paint_pages(model, layout, view_of(scene), photo)
     patch = layout.patches[[face.id for face in model.faces].index(number)]
     rows = slice(patch.top - MARGIN, patch.top + patch.rows + MARGIN)
     return pages[patch.page][rows, patch.left - MARGIN : patch.left + patch.columns + MARGIN], patch

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdValidation
 
-from exporters.colours import FACE, line_colour, linear
+from exporters.colours import face_colour, line_colour, linear
 from exporters.formats import export
 from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
 from exporters.triangulation import triangulate
@@ -129,7 +129,7 @@ def test_every_face_is_a_mesh(stage, model):
 
 def test_everything_has_a_material_of_its_colour(stage, model):
     colours = {f"Lines/{g.name}": ("emissiveColor", line_colour(g.axis, g.is_boundary)) for g in model.groups}
-    colours |= {f"Faces/{face.name}": ("diffuseColor", FACE) for face in model.faces}
+    colours |= {f"Faces/{face.name}": ("diffuseColor", face_colour(face.kind)) for face in model.faces}
     for name, (channel, colour) in colours.items():
         material, _ = UsdShade.MaterialBindingAPI(stage.GetPrimAtPath(f"{ROOT}/{name}")).ComputeBoundMaterial()
         shader, _, _ = material.ComputeSurfaceSource()
