@@ -119,7 +119,9 @@ def test_faces_are_two_sided(glb, model):
     for face in model.faces:
         material = glb.material(face.name)
         assert material["doubleSided"]
-        assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx([*linear(face_colour(face.kind)), 1.0])
+        assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx(
+            [*linear(face_colour(face.kind)), 1.0]
+        )
 
 
 def test_no_material_is_left_over(glb):
