@@ -7,7 +7,7 @@ import trimesh
 
 from exporters.colours import face_colour, line_colour, linear
 from exporters.formats import export
-from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
+from exporters.model import FREE_UNIT, KNOWN_UNIT, ORIGINS, build_model
 from exporters.triangulation import triangulate
 
 COUNTS = {"SCALAR": 1, "VEC3": 3}
@@ -153,6 +153,18 @@ def test_every_line_falls_on_the_photo_through_the_camera_of_the_file(glb, model
         expected = np.concatenate([line_pixels[number] for number in group.ids.tolist()])
         worst = max(worst, np.abs(np.stack([across, down], axis=1) - expected).max())
     assert worst <= 0.05
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_on_the_ground_the_camera_stands_as_high_as_it_did(grounded, tmp_path, origin):
+    export(grounded, tmp_path / "a.glb", options={"origin": origin})
+    glb, model = Glb(tmp_path / "a.glb"), build_model(grounded, origin=origin)
+    x, y, z = glb.node("photo_camera")["matrix"][12:15]
+    assert (x, -z, y) == pytest.approx(tuple(model.eye))
+    for face in model.faces:
+        np.testing.assert_allclose(glb.positions(face.name), face.vertices, atol=1e-5)
+    offsets = [plane["offset"] for plane in glb.tree["scenes"][0]["extras"]["linecad_planes"]]
+    assert offsets == [plane.offset for plane in model.planes]
 
 
 def test_the_extras_tell_the_camera_matrix_from_the_corner(glb, scene):

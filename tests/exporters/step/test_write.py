@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from build123d import GeomType, Shape
+from build123d import GeomType, Shape, import_step
 from OCP.collections import Sequence_TDF_Label
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
@@ -146,6 +146,43 @@ def test_lines_and_faces_have_their_colours(read, model):
 def test_the_camera_is_a_point_where_it_stood(read):
     assert points(read.parts["camera"]).tolist() == [[0.0, 0.0, 0.0]]
     assert not read.parts["camera"].edges()
+
+
+def test_on_the_ground_the_camera_stands_above_it(grounded, tmp_path):
+    export(grounded, tmp_path / "a.step")
+    read = Reader(tmp_path / "a.step")
+    model = build_model(grounded, origin="ground")
+    np.testing.assert_allclose(points(read.parts["camera"]), [model.eye])
+    for face in model.faces:
+        np.testing.assert_allclose(points(read.parts[face.name])[:, face.axis], face.offset, atol=1e-9)
+
+
+def test_an_opening_is_an_assembly_of_its_faces_in_their_places(row, tmp_path):
+    export(row, tmp_path / "a.step")
+    read, model = Reader(tmp_path / "a.step"), build_model(row)
+    for fitting in model.fittings:
+        assert read.parents[fitting.label] == "faces"
+        for face in fitting.faces:
+            assert read.parents[face.name] == fitting.label
+            assert read.places[face.name] == face.label
+            found = sorted(points(read.parts[face.name]).round(6).tolist())
+            np.testing.assert_allclose(found, sorted(face.vertices.round(6).tolist()), atol=2e-6)
+
+
+def test_as_instances_equal_openings_are_one_assembly_in_many_places(row, tmp_path):
+    path = tmp_path / "a.step"
+    export(row, path, options={"instances": True})
+    text = path.read_text()
+    model = build_model(row)
+    assert text.count("PRODUCT('window shape 4'") == 1
+    assert text.count("ADVANCED_FACE") == len(model.loose_faces) + 5
+    for fitting in model.fittings:
+        assert f"'{fitting.label}'" in text
+    whole = import_step(path)
+    assert len(whole.faces()) == len(model.faces)
+    boxes = sorted(tuple(np.round(points(face).mean(axis=0), 6)) for face in whole.faces())
+    wanted = sorted(tuple(np.round(np.unique(face.vertices, axis=0).mean(axis=0), 6)) for face in model.faces)
+    np.testing.assert_allclose(boxes, wanted, atol=2e-6)
 
 
 def test_sewn_faces_that_share_edges_are_one_shell(scene, model, tmp_path):
