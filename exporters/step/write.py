@@ -92,11 +92,12 @@ class _Assembly:
             self.place(parent, label, name)
         return label
 
-    def add_part(self, parent: TDF_Label, name: str, shape: TopoDS_Shape, place_name: str = "") -> TDF_Label:
-        """Add a part; its place in the parent has a name of its own where one is given."""
+    def add_part(self, parent: TDF_Label | None, name: str, shape: TopoDS_Shape, place_name: str = "") -> TDF_Label:
+        """Add a part; its place in the parent, if it has one, has a name of its own where one is given."""
         label = self._shapes.AddShape(shape, False)
         _set_name(label, name)
-        self.place(parent, label, place_name or name)
+        if parent is not None:
+            self.place(parent, label, place_name or name)
         return label
 
     def paint(self, part: TDF_Label, colour: RGB, kind: XCAFDoc_ColorType) -> None:
@@ -142,23 +143,32 @@ def _build_document(model: Model, sewn: bool, instances: bool) -> TDocStd_Docume
     return assembly.finish()
 
 
-def _add_face(assembly: _Assembly, parent: TDF_Label, face: FlatFace, name: str) -> None:
-    assembly.paint(assembly.add_part(parent, name, _face_shape(face), face.label), face_colour(face.kind), _SURFACE)
+def _add_face(assembly: _Assembly, parent: TDF_Label | None, face: FlatFace, name: str) -> TDF_Label:
+    part = assembly.add_part(parent, name, _face_shape(face), face.label)
+    assembly.paint(part, face_colour(face.kind), _SURFACE)
+    return part
 
 
 def _add_fitting(assembly: _Assembly, parent: TDF_Label, fitting: Fitting) -> None:
-    """An opening as an assembly of its faces, which tell their places themselves: FreeCAD's parts have none else."""
-    opening = assembly.add_assembly(parent, fitting.label)
+    """An opening as an assembly of its faces, which tell their places themselves: FreeCAD's parts have none else.
+
+    A pane alone is no assembly, because FreeCAD would give it the name of that.
+    """
+    opening = parent if len(fitting.faces) == 1 else assembly.add_assembly(parent, fitting.label)
     for face in fitting.faces:
         _add_face(assembly, opening, face, face.name)
 
 
 def _add_equal(assembly: _Assembly, parent: TDF_Label, equal: tuple[Fitting, ...]) -> None:
-    """Equal openings as one assembly in several places."""
-    first = equal[0]
-    shape = assembly.add_assembly(None, f"{first.kind} shape {first.shape}")
-    for number, face in enumerate(first.local_faces):
-        _add_face(assembly, shape, face, f"{face.kind} {number}")
+    """Equal openings as one assembly in several places, or as one part where they are panes alone."""
+    first, name = equal[0], f"{equal[0].kind} shape {equal[0].shape}"
+    faces = first.local_faces
+    if len(faces) == 1:
+        shape = _add_face(assembly, None, faces[0], name)
+    else:
+        shape = assembly.add_assembly(None, name)
+        for number, face in enumerate(faces):
+            _add_face(assembly, shape, face, f"{face.kind} {number}")
     for fitting in equal:
         assembly.place(parent, shape, fitting.label, fitting.place)
 

@@ -185,6 +185,36 @@ def test_as_instances_equal_openings_are_one_assembly_in_many_places(row, tmp_pa
     np.testing.assert_allclose(boxes, wanted, atol=2e-6)
 
 
+@pytest.fixture(scope="module")
+def panes(row):
+    """The row with its panes alone."""
+    planes = [
+        replace(plane, faces=tuple(face for face in plane.faces if face.kind != "reveal")) for plane in row.planes
+    ]
+    return replace(row, planes=tuple(planes))
+
+
+def test_a_pane_alone_is_a_part_and_no_assembly_that_would_take_its_name(panes, tmp_path):
+    export(panes, tmp_path / "a.step")
+    read = Reader(tmp_path / "a.step")
+    for fitting in build_model(panes).fittings:
+        (face,) = fitting.faces
+        assert read.parents[face.name] == "faces"
+        assert read.places[face.name] == fitting.label
+        assert fitting.label not in read.parents
+
+
+def test_as_instances_panes_alone_are_one_part_in_many_places(panes, tmp_path):
+    path = tmp_path / "a.step"
+    export(panes, path, options={"instances": True})
+    assert path.read_text().count("ADVANCED_FACE") == 3
+    middles = sorted(tuple(points(face).mean(axis=0)) for face in import_step(path).faces())
+    wanted = sorted(tuple(face.vertices.mean(axis=0)) for face in build_model(panes).faces)
+    panes_only = [each for each in wanted if any(np.allclose(each, other, atol=2e-6) for other in middles)]
+    assert len(middles) == len(wanted)
+    assert len(panes_only) >= 3
+
+
 def test_sewn_faces_that_share_edges_are_one_shell(scene, model, tmp_path):
     export(scene, tmp_path / "a.step", options={"sewn": True})
     sewn = Reader(tmp_path / "a.step")
