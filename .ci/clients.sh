@@ -153,6 +153,32 @@ check_photo() {
         "${linecad[@]}" export "$made.json" --photo "$photo" "${camera[@]}" "${again[@]}"
 }
 
+# The same scene with a known scale stands on its ground, if it has one.
+check_metric() {
+    local name folder metric expected suffix outputs=()
+    name=$(basename "${1%.*}")
+    folder=$out/$name
+    metric=$folder/metric
+    expected=$metric-expectation.json
+    if [ ! -f "$folder/expectation.json" ]; then
+        return
+    fi
+    sed 's/"metres_per_unit": null/"metres_per_unit": 1.7/' "$folder/$name.json" >"$metric.json"
+    for suffix in dxf step glb usdc; do
+        outputs+=(-o "$metric.$suffix")
+    done
+    if ! "${linecad[@]}" export "$metric.json" "${outputs[@]}" >"$log" 2>&1 ||
+        ! "$python" "$checkers/expectation.py" "$metric.json" "$expected" >"$log" 2>&1; then
+        report_failure "$name in metres: linecad export"
+        return
+    fi
+    check "$name.dxf in metres, ezdxf" "$python" "$checkers/check_dxf.py" "$metric.dxf" "$expected"
+    check "$name.usdc in metres, usd-core" "$python" "$checkers/check_usd.py" "$metric.usdc" "$expected"
+    check "$name.glb in metres, Khronos" "${by_khronos[@]}" "$metric.glb" "$expected"
+    check "$name.glb in metres, Blender" "${in_blender[@]}" "$metric.glb" "$expected"
+    check "$name.step in metres, FreeCAD" "${in_freecad[@]}" "$metric.step" "$expected"
+}
+
 # A checker that never fails shows nothing. Those of ezdxf and usd-core have tests of their own in tests/clients.
 check_faults() {
     local name folder made fault wrong broken
@@ -187,6 +213,7 @@ fi
 for photo in "${photos[@]}"; do
     check_photo "$photo"
 done
+check_metric "${photos[0]}"
 check_faults "${photos[0]}"
 
 echo "clients: $passed passed, $failed failed"

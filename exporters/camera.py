@@ -29,13 +29,14 @@ class PaddedFrame:
     top: float
 
 
-def camera_to_world(rotation: Float) -> Float:
-    """(4, 4) the pose of a camera that looks along -z with y up, in the scene's frame, as M @ column.
+def camera_to_world(rotation: Float, eye: Float) -> Float:
+    """(4, 4) the pose of a camera that looks along -z with y up, as M @ column.
 
-    `rotation` (3, 3) is the scene's, from world to camera.
+    `rotation` (3, 3) is the scene's, from world to camera; `eye` (3,) is where the camera stands.
     """
     pose = np.eye(4)
     pose[:3, :3] = rotation.T @ np.diag([1.0, -1.0, -1.0])
+    pose[:3, 3] = eye
     return pose
 
 
@@ -62,16 +63,17 @@ def padded_frame(camera: Camera) -> PaddedFrame:
     return PaddedFrame(width, height, width / 2 - cx, height / 2 - cy)
 
 
-def clipping_range(model: Model, rotation: Float) -> tuple[float, float]:
+def clipping_range(model: Model) -> tuple[float, float]:
     """Distances in m of a near and a far plane with everything in front of the camera between them."""
-    depth = model.points @ rotation[2]
-    distance = np.linalg.norm(model.points, axis=1)
+    points = model.points - model.eye
+    depth = points @ model.scene.rotation[2]
+    distance = np.linalg.norm(points, axis=1)
     far = _MARGIN * float(distance.max(initial=0.0)) or 1.0
     seen = depth[depth > 0]
     near = float(seen.min()) / _MARGIN if len(seen) else far
     return max(min(near, far / _MARGIN), far * _NEAREST_SHARE), far
 
 
-def line_width(model: Model, rotation: Float, is_boundary: bool) -> float:
+def line_width(model: Model, is_boundary: bool) -> float:
     """How thick lines are drawn that have a body, in m: thin as seen from the camera, whatever the scene's scale."""
-    return _WIDTH_SHARE[is_boundary] * float(np.median(np.abs(model.points @ rotation[2])))
+    return _WIDTH_SHARE[is_boundary] * float(np.median(np.abs((model.points - model.eye) @ model.scene.rotation[2])))

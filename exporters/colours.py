@@ -2,9 +2,12 @@
 
 import numpy as np
 
+from linecad.scene import FaceKind
+
 RGB = tuple[float, float, float]
 
 FACE: RGB = (0.80, 0.79, 0.74)  # sRGB, 0 to 1: a light stone grey against which all line colours stand out
+_PART: dict[FaceKind, RGB] = {"window": (0.49, 0.62, 0.72), "door": (0.56, 0.41, 0.29), "reveal": (0.69, 0.66, 0.60)}
 _AXIS: tuple[RGB, RGB, RGB] = ((0.87, 0.16, 0.16), (0.10, 0.62, 0.22), (0.15, 0.36, 0.92))
 _PALE = 0.5  # share of white in the colour of a line that is no boundary
 
@@ -14,6 +17,16 @@ def line_colour(axis: int, is_boundary: bool) -> RGB:
     white = 0.0 if is_boundary else _PALE
     red, green, blue = (round(white + (1.0 - white) * value, 4) for value in _AXIS[axis])
     return (red, green, blue)
+
+
+def face_colour(kind: FaceKind) -> RGB:
+    """sRGB, 0 to 1, of a face without a texture: panes and reveals differ from the walls that they are in."""
+    return _PART.get(kind, FACE)
+
+
+def face_colour_name(kind: FaceKind) -> str:
+    """What the colour of such faces is called among materials."""
+    return kind if kind in _PART else "face"
 
 
 def linear(colour: RGB) -> RGB:

@@ -20,9 +20,10 @@ from ezdxf.entities.dxfgfx import DXFGraphic
 
 from exporters.bands import BANDS
 from exporters.camera import principal_point
-from exporters.model import FlatFace, LineGroup, Model, build_model, group_name
+from exporters.faces import FlatFace
+from exporters.model import LineGroup, Model, group_name
 from exporters.triangulation import triangulate
-from linecad.scene import AXES, DETAIL, OUTLINE, ROLES, Scene
+from linecad.scene import AXES, DETAIL, OUTLINE, ROLES
 
 _APPLICATION = "LINECAD"
 _FACES, _OUTLINES = "FACES", "FACE_OUTLINES"  # layer names; ASCII, because FreeCAD replaces other characters
@@ -39,13 +40,10 @@ _HIDDEN_EDGE = (1, 2, 8)  # flags of a triangle's edges 0-1, 1-2, 2-0; 4 is the 
 _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 
-def write(scene: Scene, path: Path, version: str = "R2010", probability: bool = False, roles: bool = False) -> None:
-    """Write the scene as DXF of that AutoCAD release to `path`; OSError where that fails.
-
-    Its layers are by band where `probability` asks for that, and by role.
-    """
+def write(model: Model, path: Path, version: str = "R2010") -> None:
+    """Write the model as DXF of that AutoCAD release to `path`; OSError where that fails."""
     with _fixed_metadata():
-        document = _build_document(build_model(scene, probability, roles), scene, version)
+        document = _build_document(model, version)
         text = io.StringIO()
         document.write(text)
     path.write_bytes(document.encode(text.getvalue()))
@@ -62,7 +60,7 @@ def _fixed_metadata() -> Iterator[None]:
         options.write_fixed_meta_data_for_testing = before
 
 
-def _build_document(model: Model, scene: Scene, version: str) -> Drawing:
+def _build_document(model: Model, version: str) -> Drawing:
     document = new(version, units=units.M)
     document.header["$MEASUREMENT"] = 1  # metric
     document.appids.add(_APPLICATION)
@@ -71,7 +69,7 @@ def _build_document(model: Model, scene: Scene, version: str) -> Drawing:
         _add_lines(document, group)
     for face in model.faces:
         _add_face(document, face)
-    _add_properties(document, scene, model)
+    _add_properties(document, model)
     _set_view(document, model)
     # ezdxf takes these from a set, whose order differs from run to run; what is there already stays where it is.
     for name in sorted(document.entitydb.dxf_types_in_use()):
@@ -134,7 +132,8 @@ def _describe(entity: DXFGraphic, kind: str, number: int, *more: tuple[int, str 
     entity.set_xdata(_APPLICATION, [(_STRING, kind), identity, *more])
 
 
-def _add_properties(document: Drawing, scene: Scene, model: Model) -> None:
+def _add_properties(document: Drawing, model: Model) -> None:
+    scene = model.scene
     cx, cy = principal_point(scene.camera)
     properties = {
         "linecad unit": model.unit_note,
@@ -142,6 +141,7 @@ def _add_properties(document: Drawing, scene: Scene, model: Model) -> None:
         "linecad camera": f"{scene.camera.width} x {scene.camera.height} px, focal length {scene.camera.focal!r} px, "
         f"principal point {cx!r} {cy!r} px from the top left corner",
         "linecad camera from world": " ".join(repr(value) for value in scene.rotation.ravel().tolist()),
+        "linecad camera position": " ".join(repr(value) for value in model.eye.tolist()),
     }
     for name, value in properties.items():
         document.header.custom_vars.append(name, value)

@@ -1,8 +1,9 @@
 """The formats that a scene can be written in, and the one function that writes them all.
 
-To add a format, write one module with `write(scene, path)` and give it a row in FORMATS; nothing else names it. What a
-user can choose about a format stands in its row; `write` takes it by keyword. A format with textures has TEXTURES among
-its options, and its `write` takes what is made of them as `textures`. Where other files may lie beside the export, the
+To add a format, write one module with `write(model, path)` and give it a row in FORMATS; nothing else names it. What a
+user can choose about a format stands in its row; `write` takes it by keyword, but for MODEL_OPTIONS, by which the model
+is made. A format with textures has TEXTURES among its options, and its `write` takes what is made of them as
+`textures`. Where other files may lie beside the export, the
 row says which; `write` takes their names as `names` and returns the files as `SideFiles`, which are written for it.
 """
 
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exporters.beside import NOTHING, Beside, write_with_side_files
+from exporters.model import ORIGINS, build_model
 from exporters.options import Option, Value, read_options
 from exporters.textures.pages import PAGE_NAME, Textures
 from linecad.errors import OutputError
@@ -37,7 +39,7 @@ class Format(NamedTuple):
     unit: str  # of the lengths in the file
     shows_photo: bool = False  # its `write` also takes the photo
     needs_photo: bool = False  # and raises OutputError where it is None
-    options: tuple[Option, ...] = ()  # its `write` takes each by keyword, but for TEXTURES
+    options: tuple[Option, ...] = ()  # its `write` takes each by keyword, but for MODEL_OPTIONS and TEXTURES
     beside: Beside = NOTHING  # the files that may lie beside an export; where there are any, `write` also takes `names`
 
 
@@ -47,6 +49,15 @@ _BANDS = Option(
 _ROLES = Option(
     "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of openings, "
     "..._detail for bars, panes, joints and courses",
+)  # fmt: skip
+_ORIGIN = Option(
+    "origin", ORIGINS[0], "z = 0 is the ground, where the scale and the ground are known, or the camera is the origin",
+    words=ORIGINS,
+)  # fmt: skip
+MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN)
+_INSTANCES = Option(
+    "instances", False, "equal windows and doors as one shape placed many times, in GLB and USD with the texture of "
+    "the one that the photo shows best, in STEP and USD without names by id",
 )  # fmt: skip
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
@@ -61,55 +72,56 @@ _PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl"
 
 FORMATS: dict[str, Format] = {
     ".dxf": Format(
-        "exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION, _BANDS, _ROLES)
+        "exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION, *MODEL_OPTIONS)
     ),
     ".step": Format(
         "exporters.step.write",
         "lines and faces as named and coloured parts",
         "millimetres",
-        options=(_SEWN, _BANDS, _ROLES),
+        options=(_SEWN, _INSTANCES, *MODEL_OPTIONS),
     ),
     ".glb": Format(
         "exporters.gltf.write",
         "lines, faces, camera for viewers and Blender",
         "metres",
-        options=(_TUBES, _BANDS, _ROLES, *TEXTURES),
+        options=(_TUBES, _INSTANCES, *MODEL_OPTIONS, *TEXTURES),
     ),
     ".usda": Format(
         "exporters.usd.write",
         "a USD stage as text: lines, faces, camera",
         "metres",
-        options=(_BANDS, _ROLES, *TEXTURES),
+        options=(_INSTANCES, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES,
     ),
     ".usdc": Format(
         "exporters.usd.write",
         "a USD stage, compact: lines, faces, camera",
         "metres",
-        options=(_BANDS, _ROLES, *TEXTURES),
+        options=(_INSTANCES, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES,
     ),
     ".usdz": Format(
         "exporters.usd.write",
         "a USD stage as a package: lines, faces, camera",
         "metres",
-        options=(_BANDS, _ROLES, *TEXTURES),
+        options=(_INSTANCES, *MODEL_OPTIONS, *TEXTURES),
     ),
     ".obj": Format(
         "exporters.obj",
         "faces as triangles, and lines",
         "metres",
-        options=(_BANDS, _ROLES, *TEXTURES),
+        options=(*MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES_AND_MATERIALS,
     ),
-    ".ply": Format("exporters.mesh", "faces as triangles", "metres"),
-    ".stl": Format("exporters.mesh", "faces as triangles", "metres"),
+    ".ply": Format("exporters.mesh", "faces as triangles", "metres", options=(_ORIGIN,)),
+    ".stl": Format("exporters.mesh", "faces as triangles", "metres", options=(_ORIGIN,)),
     ".fspy": Format(
         "exporters.fspy.write",
         "the photo with its camera, to correct in fSpy",
         "metres",
         shows_photo=True,
         needs_photo=True,
+        options=(_ORIGIN,),
     ),
     ".png": Format(
         "exporters.picture.scene",
@@ -168,6 +180,8 @@ def export(
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
     check_output(path)
     module = importlib.import_module(chosen.module)
+    by_band, by_role, origin = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
+    model = build_model(scene, by_band, by_role, origin)
     if TEXTURES[0] in chosen.options:
         on, size = (arguments.pop(option.name) for option in TEXTURES)
         arguments["textures"] = _textures(scene, photo, size) if on else None
@@ -176,7 +190,7 @@ def export(
 
     def write(temporary: Path) -> Any:
         with _ONE_AT_A_TIME:
-            return module.write(scene, temporary, **arguments)
+            return module.write(model, temporary, **arguments)
 
     if chosen.beside != NOTHING:
         write_with_side_files(path, chosen.beside, write)

@@ -13,18 +13,16 @@ import trimesh
 from trimesh.exchange.ply import export_ply
 from trimesh.exchange.stl import export_stl
 
-from exporters.model import Model, build_model
+from exporters.model import Model
 from exporters.triangulation import triangulate
 from linecad.errors import OutputError
-from linecad.scene import Scene
 
 _PLY_FORMAT_LINE = b"format binary_little_endian 1.0\n"  # comments may follow it
 _STL_HEADER = 80  # bytes of free text; it must not begin with "solid", by which readers know STL in text form
 
 
-def write(scene: Scene, path: Path) -> None:
+def write(model: Model, path: Path) -> None:
     """Write .ply or .stl, by the suffix of `path`; OSError where that fails, OutputError for a scene without faces."""
-    model = build_model(scene)
     if not model.faces:
         raise OutputError(f"{path.suffix} holds faces only and the scene has none; use .obj, .glb or another format")
     comment = f"linecad, z up; {model.unit_note}"

@@ -1,10 +1,9 @@
 """What every format writes of a scene: lines in groups by axis and kind, flat faces with holes, all in metres.
 
-The frame is the scene's: right-handed, z up, origin at the camera. So every coordinate is small enough for the
-float32 of glTF and USD.
+The axes are the scene's: right-handed, z up. The origin is at the camera, so that every coordinate is small enough for
+the float32 of glTF and USD; or straight below it on the ground, where a length and the ground are known.
 """
 
-from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -13,13 +12,18 @@ from pathlib import Path
 import numpy as np
 
 from exporters.bands import BANDS, bands_of
+from exporters.faces import FlatFace, Frame, build_faces
+from exporters.openings import Fitting, build_fittings
 from linecad.arrays import Float, Int, Text
-from linecad.scene import AXES, ROLES, Face, FaceKind, Plane, Scene
+from linecad.scene import AXES, ROLES, Scene
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
 
 KNOWN_UNIT = "lengths are in metres"
 FREE_UNIT = "the scale of the photo is not known: 1 unit of the scene is written as 1 metre"
+ON_GROUND = "z = 0 is the ground"  # said behind the unit
+
+ON_THE_GROUND, AT_THE_CAMERA = ORIGINS = ("ground", "camera")  # where the origin of a model is asked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,40 +45,41 @@ class LineGroup:
         return group_name(self.axis, self.is_boundary, self.role, self.band)
 
 
-@dataclass(frozen=True, eq=False)
-class FlatFace:
-    """A face with its rings turned towards the camera: the outline counter-clockwise from there, holes clockwise."""
+@dataclass(frozen=True)
+class FlatPlane:
+    """A plane of the scene in metres."""
 
     id: int
-    kind: FaceKind
-    label: str  # for people: its kind, with a number where there are several, such as `wall 3`
-    plane: int  # id of its plane
-    axis: int  # 0, 1, 2: the plane's normal
+    axis: str  # one of AXES: the normal
     offset: float  # m
-    normal: Float  # (3,) unit, from the plane towards the camera
-    in_plane: tuple[int, int]  # the two axes (u, v) in the plane for which u x v is the normal
-    rings: tuple[Float, ...]  # outline first, then holes; each (V, 3) m, not closed
-    hidden: tuple[Float, ...]  # each (H, 3) m, not closed: parts of it that a thing without a face hides in the photo
-
-    @property
-    def name(self) -> str:
-        """The face's name in every format, such as `face_0007`."""
-        return f"face_{self.id:04d}"
-
-    @cached_property
-    def vertices(self) -> Float:
-        """(V, 3) m, the points of all rings in their order."""
-        return np.concatenate(self.rings)
+    lines: tuple[int, ...]  # ids of the lines in it
 
 
 @dataclass(frozen=True, eq=False)
 class Model:
     """The geometry of a scene as the formats write it."""
 
+    scene: Scene
     groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ..., each by ROLES, then BANDS; none is empty
     faces: tuple[FlatFace, ...]  # in ascending id
+    fittings: tuple[Fitting, ...]  # the same faces again, as far as they are of openings; in ascending id
+    planes: tuple[FlatPlane, ...]  # all of the scene, also those without a face, in its order
+    eye: Float  # (3,) m, where the camera stands
     photo: str  # name of the photo without its folder: one line of valid Unicode
     unit_note: str  # one ASCII phrase that says what a unit is
+
+    @property
+    def loose_faces(self) -> tuple[FlatFace, ...]:
+        """The faces that are of no opening."""
+        return tuple(face for face in self.faces if face.opening is None)
+
+    @property
+    def equal_fittings(self) -> tuple[tuple[Fitting, ...], ...]:
+        """The fittings, all equal ones together."""
+        equal: dict[int, list[Fitting]] = {}
+        for fitting in self.fittings:
+            equal.setdefault(fitting.model, []).append(fitting)
+        return tuple(map(tuple, equal.values()))
 
     @cached_property
     def points(self) -> Float:
@@ -89,20 +94,38 @@ def group_name(axis: int, is_boundary: bool, role: str, band: str) -> str:
     return "_".join(["lines", AXES[axis], kind, *(word for word in (role, band) if word not in ("", ROLES[0]))])
 
 
-def build_model(scene: Scene, by_band: bool = False, by_role: bool = False) -> Model:
+def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, origin: str = AT_THE_CAMERA) -> Model:
     """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out.
 
     `by_role` gives the lines of each role a group of their own, `by_band` those of each band, where the scene tells
-    probabilities.
+    probabilities. `origin` is one of ORIGINS: the ground is z = 0 where the scene has it and its scale is known.
     """
-    scale = metres_per_unit(scene)
-    labels = _labels([face for _, face in scene.faces])
+    ground = _ground_height(scene) if origin == ON_THE_GROUND else None
+    frame = Frame(metres_per_unit(scene), np.array([0.0, 0.0, 0.0 if ground is None else -ground]))
+    faces = build_faces(scene, frame)
+    unit = FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT
     return Model(
-        groups=_line_groups(scene, scale, bands_of(scene.lines) if by_band else None, by_role),
-        faces=tuple(_flat_face(plane, face, labels[face.id], scale) for plane, face in scene.faces),
+        scene=scene,
+        groups=_line_groups(scene, frame, bands_of(scene.lines) if by_band else None, by_role),
+        faces=faces,
+        fittings=build_fittings(scene.openings, faces),
+        planes=tuple(FlatPlane(each.id, AXES[each.axis], frame.offset(each), each.lines) for each in scene.planes),
+        eye=frame.eye,
         photo=photo_name(scene),
-        unit_note=FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT,
+        unit_note=unit if ground is None else f"{unit}; {ON_GROUND}",
     )
+
+
+def _ground_height(scene: Scene) -> float | None:
+    """m from the camera up to the ground, so negative; None where the scene tells no scale or no ground below it.
+
+    Of several planes with faces of the ground the lowest counts, as where a camera's height is measured from.
+    """
+    if scene.metres_per_unit is None:
+        return None
+    heights = [plane.offset for plane, face in scene.faces if face.kind == "ground" and plane.axis == 2]
+    below = [height * scene.metres_per_unit for height in heights if height < 0]
+    return min(below, default=None)
 
 
 def metres_per_unit(scene: Scene) -> float:
@@ -115,10 +138,10 @@ def photo_name(scene: Scene) -> str:
     return " ".join(Path(scene.photo).name.encode(errors="replace").decode().split())
 
 
-def _line_groups(scene: Scene, scale: float, bands: Text | None, by_role: bool) -> tuple[LineGroup, ...]:
+def _line_groups(scene: Scene, frame: Frame, bands: Text | None, by_role: bool) -> tuple[LineGroup, ...]:
     lines = scene.lines
     order = np.argsort(lines.id)
-    ends = lines.ends * scale
+    ends = frame(lines.ends)
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST_LINE
     probability = np.asarray(lines.probability)
     groups = []
@@ -135,37 +158,3 @@ def _line_groups(scene: Scene, scale: float, bands: Text | None, by_role: bool) 
             drawn_for = np.asarray(lines.role)[chosen]
             groups.append(LineGroup(axis, is_boundary, role, lines.id[chosen], ends[chosen], band, told, drawn_for))
     return tuple(groups)
-
-
-def _labels(faces: list[Face]) -> dict[int, str]:
-    """The label of each face by its id: faces of a kind count from 1, but the only one of its kind has no number."""
-    total = Counter(face.kind for face in faces)
-    counted: Counter[str] = Counter()
-    labels = {}
-    for face in faces:
-        counted[face.kind] += 1
-        labels[face.id] = face.kind if total[face.kind] == 1 else f"{face.kind} {counted[face.kind]}"
-    return labels
-
-
-def _flat_face(plane: Plane, face: Face, label: str, scale: float) -> FlatFace:
-    # The camera is the world's origin: it lies on the side of the plane that the offset points away from.
-    side = -1.0 if plane.offset > 0 else 1.0
-    normal = np.zeros(3)
-    normal[plane.axis] = side
-    u, v = (plane.axis + 1) % 3, (plane.axis + 2) % 3
-    in_plane = (u, v) if side > 0 else (v, u)
-    outline = _turned(face.outline * scale, in_plane, counter_clockwise=True)
-    holes = [_turned(hole * scale, in_plane, counter_clockwise=False) for hole in face.holes]
-    offset, rings, hidden = plane.offset * scale, (outline, *holes), tuple(part * scale for part in face.hidden)
-    return FlatFace(face.id, face.kind, label, plane.id, plane.axis, offset, normal, in_plane, rings, hidden)
-
-
-def _turned(ring: Float, in_plane: tuple[int, int], counter_clockwise: bool) -> Float:
-    return ring if (signed_area(ring[:, in_plane]) > 0) == counter_clockwise else ring[::-1]
-
-
-def signed_area(ring: Float) -> float:
-    """The area of a ring (V, 2), positive where it runs counter-clockwise."""
-    x, y = (ring - ring[0]).T  # about its first point, so that distance from the origin costs no digits
-    return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))

@@ -10,32 +10,21 @@ from pathlib import Path
 import numpy as np
 
 from exporters.beside import NO_FILES, Names, SideFiles
-from exporters.model import FlatFace, LineGroup, build_model
+from exporters.faces import FlatFace
+from exporters.model import LineGroup, Model
 from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
 from linecad.arrays import Float
-from linecad.scene import Scene
 
 
-def write(
-    scene: Scene,
-    path: Path,
-    names: Names,
-    probability: bool = False,
-    roles: bool = False,
-    textures: Textures | None = None,
-) -> SideFiles:
-    """Write the scene as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it.
-
-    `probability` parts the lines by band, `roles` by role.
-    """
-    model = build_model(scene, probability, roles)
+def write(model: Model, path: Path, names: Names, textures: Textures | None = None) -> SideFiles:
+    """Write the model as OBJ to `path`; OSError where that fails. Its textures and their materials lie beside it."""
     rows = [f"# linecad: reconstruction of {model.photo}, z up; {model.unit_note}"]
     if textures is not None and model.faces:
         rows.append(f"mtllib {names.library}")
     first = 1  # OBJ counts vertices from 1, through all objects
     for face in model.faces:
-        rows += _face(face, first, textures)
+        rows += _face(face, first, textures, model.eye)
         first += len(face.vertices)
     for group in model.groups:
         rows += _lines(group, first)
@@ -57,14 +46,14 @@ def _material(page_name: str) -> str:
     return Path(page_name).stem
 
 
-def _face(face: FlatFace, first: int, textures: Textures | None) -> list[str]:
+def _face(face: FlatFace, first: int, textures: Textures | None, eye: Float) -> list[str]:
     """A face as an object of triangles; the comment below its name says what it is, such as `wall 3`."""
     rows = [f"o {face.name}", f"# {face.label}", *_points(face.vertices)]
     if textures is None:
         corner = "{0}"
     else:
         corner = "{0}/{0}"
-        rows += [f"vt {s:.8f} {t:.8f}" for s, t in textures.coordinates(face).tolist()]
+        rows += [f"vt {s:.8f} {t:.8f}" for s, t in textures.coordinates(face, eye).tolist()]
         rows.append(f"usemtl {_material(textures.pages[textures.page(face)].name)}")
     rows += [
         "f " + " ".join(corner.format(number) for number in three) for three in (triangulate(face) + first).tolist()

@@ -7,7 +7,7 @@ corner there would then be torn off by a crack.
 import numpy as np
 import shapely
 
-from exporters.model import FlatFace
+from exporters.faces import FlatFace
 from linecad.arrays import Int
 from linecad.errors import OutputError
 

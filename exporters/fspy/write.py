@@ -8,8 +8,8 @@ Glossary: *relative* coordinates count 0 to 1 from the photo's top left corner; 
 origin in the middle of the photo, y up, and half of its longer side as unit. `horizontalFieldOfView` is the angle of
 the longer side, also where that stands upright, for so does Blender take it.
 
-An fSpy world has its origin at a point in the photo. In `cameraParameters` it is the scene's origin, the camera, so
-that what is imported stands where the other formats stand; once fSpy has saved the project, it is the control point.
+An fSpy world has its origin at a point in the photo. In `cameraParameters` it is the model's origin, so that what is
+imported stands where the other formats stand; once fSpy has saved the project, it is the control point.
 """
 
 import io
@@ -25,11 +25,11 @@ from PIL import Image
 
 from exporters.camera import camera_to_world, principal_point, vanishing_points
 from exporters.fspy.control_lines import find_control_lines
-from exporters.model import LineGroup, build_model
+from exporters.model import LineGroup, Model
 from linecad.arrays import Float
 from linecad.errors import OutputError
 from linecad.line_graph import Segments
-from linecad.scene import AXES, Camera, Scene
+from linecad.scene import AXES, Camera
 
 _MAGIC, _VERSION = b"fspy", 1
 _QUALITY = 95  # of the JPEG, out of 100
@@ -50,12 +50,14 @@ class _Reference(NamedTuple):
     has_unit: bool  # the length is known in metres
 
 
-def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
+def write(model: Model, path: Path, photo: NDArray[np.uint8] | None) -> None:
     """Write the camera and the photo as a project; OSError where that fails, OutputError where there is no photo."""
     if photo is None:
         raise OutputError("an fSpy project holds the photo, which was not found; name it with --photo")
+    scene = model.scene
     segments = Segments(scene.lines.segment, scene.lines.axis)
-    _write(scene.camera, scene.rotation, segments, _reference(scene), path, photo)
+    state = _state(scene.camera, scene.rotation, model.eye, segments, _reference(model))
+    _write(state, path, photo)
 
 
 def write_camera(camera: Camera, rotation: Float, segments: Segments, path: Path, photo: NDArray[np.uint8]) -> None:
@@ -63,21 +65,19 @@ def write_camera(camera: Camera, rotation: Float, segments: Segments, path: Path
 
     `rotation` (3, 3) takes world to camera. OSError where that fails.
     """
-    _write(camera, rotation, segments, _no_reference(camera), path, photo)
+    _write(_state(camera, rotation, np.zeros(3), segments, _no_reference(camera)), path, photo)
 
 
-def _write(
-    camera: Camera, rotation: Float, segments: Segments, reference: _Reference, path: Path, photo: NDArray[np.uint8]
-) -> None:
-    state = json.dumps(_state(camera, rotation, segments, reference), separators=(",", ":")).encode()
+def _write(project: dict[str, object], path: Path, photo: NDArray[np.uint8]) -> None:
+    state = json.dumps(project, separators=(",", ":")).encode()
     picture = io.BytesIO()
     Image.fromarray(photo).save(picture, format="JPEG", quality=_QUALITY, subsampling=0)
     image = picture.getvalue()
     path.write_bytes(_MAGIC + struct.pack("<III", _VERSION, len(state), len(image)) + state + image)
 
 
-def _state(camera: Camera, rotation: Float, segments: Segments, reference: _Reference) -> dict[str, object]:
-    """All that fSpy keeps of a project."""
+def _state(camera: Camera, rotation: Float, eye: Float, segments: Segments, reference: _Reference) -> dict[str, object]:
+    """All that fSpy keeps of a project; `eye` (3,) is where the camera stands in the world."""
     first, second, third = np.argsort(-np.abs(rotation[2]), kind="stable").tolist()
     two = abs(rotation[2, second]) >= _LEAST_SLOPE
     longer = max(camera.width, camera.height)
@@ -115,7 +115,7 @@ def _state(camera: Camera, rotation: Float, segments: Segments, reference: _Refe
         },
         "controlPointsState1VP": {"horizon": _horizon(camera, rotation, first, second)},
         "controlPointsState2VP": {"secondVanishingPoint": controls[1], "thirdVanishingPoint": controls[2]},
-        "cameraParameters": _camera_parameters(camera, rotation, (first, second, third)),
+        "cameraParameters": _camera_parameters(camera, rotation, eye, (first, second, third)),
         "resultDisplaySettings": {
             "orientationFormat": "AxisAngleDegrees",
             "principalPointFormat": "Absolute",
@@ -125,10 +125,10 @@ def _state(camera: Camera, rotation: Float, segments: Segments, reference: _Refe
     }
 
 
-def _camera_parameters(camera: Camera, rotation: Float, order: tuple[int, int, int]) -> dict[str, object]:
+def _camera_parameters(camera: Camera, rotation: Float, eye: Float, order: tuple[int, int, int]) -> dict[str, object]:
     width, height = camera.width, camera.height
     half = max(width, height) / 2
-    pose = camera_to_world(rotation)
+    pose = camera_to_world(rotation, eye)
     points = vanishing_points(camera, rotation)[list(order)]
     return {
         "principalPoint": _on_image_plane(camera, principal_point(camera)),
@@ -163,16 +163,17 @@ def _horizon(camera: Camera, rotation: Float, first: int, second: int) -> list[_
     return [_relative(camera, (x, y)) for x, y in (size / 2 - reach, size / 2 + reach)]
 
 
-def _reference(scene: Scene) -> _Reference:
+def _reference(model: Model) -> _Reference:
     """The longest line of the largest group."""
+    scene = model.scene
     largest = set(scene.lines.id[scene.lines.component == 0].tolist())
-    groups = [group for group in build_model(scene).groups if largest & set(group.ids.tolist())]
+    groups = [group for group in model.groups if largest & set(group.ids.tolist())]
     found = _longest(groups, largest)
     known = scene.metres_per_unit is not None
     if found is None:
         return _no_reference(scene.camera)._replace(has_unit=known)
     axis, ends = found
-    rays = ends @ scene.rotation.T @ scene.camera.matrix.T
+    rays = (ends - model.eye) @ scene.rotation.T @ scene.camera.matrix.T
     size = np.array([scene.camera.width, scene.camera.height])
     start, end = (rays[:, :2] / rays[:, 2:] + 0.5) / size
     goal = vanishing_points(scene.camera, scene.rotation)[axis] / size

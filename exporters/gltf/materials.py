@@ -6,9 +6,11 @@ light of the day is in it already. Faces without it are lit.
 
 from typing import Any
 
-from exporters.colours import FACE, RGB, line_colour, linear
+from exporters.colours import RGB, face_colour, face_colour_name, line_colour, linear
+from exporters.gltf.faces import FaceMesh
 from exporters.model import Model
 from exporters.textures.pages import MEDIA_TYPE, Textures
+from linecad.scene import FaceKind
 
 _UNLIT = "KHR_materials_unlit"
 _LINEAR, _LINEAR_MIPMAP_LINEAR, _CLAMP_TO_EDGE = 9729, 9987, 33071  # as OpenGL numbers them
@@ -23,14 +25,17 @@ def add_pictures(buffer: Any, textures: Textures) -> None:
         buffer[page.name] = page.data + bytes(-len(page.data) % _ALIGNMENT)
 
 
-def set_materials(tree: _Tree, model: Model, textures: Textures | None) -> None:
-    """Give every mesh its material, and the document its pictures, which are the last views of the buffer."""
+def set_materials(tree: _Tree, model: Model, meshes: dict[str, FaceMesh], textures: Textures | None) -> None:
+    """Give every mesh its material, and the document its pictures, which are the last views of the buffer.
+
+    `meshes` are those of the faces, by any name.
+    """
     materials = {group.name: _unlit(group.name, line_colour(group.axis, group.is_boundary)) for group in model.groups}
     if textures is None:
-        materials |= {face.name: _face_material() for face in model.faces}
+        materials |= {mesh.name: _face_material(mesh.face.kind) for mesh in meshes.values()}
     else:
         pages = [_photo_material(number) for number in range(len(textures.pages))]
-        materials |= {face.name: pages[textures.page(face)] for face in model.faces}
+        materials |= {mesh.name: pages[textures.page(mesh.shown)] for mesh in meshes.values()}
         _set_pictures(tree, textures)
     tree["materials"] = []
     for mesh in tree["meshes"]:
@@ -77,12 +82,12 @@ def _photo_material(page: int) -> _Tree:
     }
 
 
-def _face_material() -> _Tree:
+def _face_material(kind: FaceKind) -> _Tree:
     return {
-        "name": "face",
+        "name": face_colour_name(kind),
         "doubleSided": True,
         "pbrMetallicRoughness": {
-            "baseColorFactor": [*linear(FACE), 1.0],
+            "baseColorFactor": [*linear(face_colour(kind)), 1.0],
             "metallicFactor": 0.0,
             "roughnessFactor": 1.0,
         },

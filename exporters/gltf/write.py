@@ -11,7 +11,8 @@ Line ids stand in the extras of each group of lines, and as vertex attribute _LI
 small enough for a float32, the only kind of number that holds them there. The roles of the lines stand in the extras
 too, and the probabilities that their depths are right, where the scene tells them.
 
-The node of a face has its name by id, its mesh one for people, such as `wall 3`, which stands in the extras too.
+The node of a face has its name by id and says what it is in its extras; its mesh has a name for people, such as
+`wall 3`. The faces of an opening stand below a node such as `window 12`, whose translation is the place of the opening.
 
 Renderers leave out what has no surface. So the lines can be written as thin tubes instead.
 """
@@ -25,40 +26,30 @@ import trimesh
 from trimesh.exchange.gltf import export_glb
 from trimesh.path import Path3D
 from trimesh.path.entities import Line
-from trimesh.visual import TextureVisuals
-from trimesh.visual.material import PBRMaterial
 
 from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
+from exporters.gltf.faces import Y_UP, add_faces, describe_faces, meshes_of
 from exporters.gltf.materials import add_pictures, set_materials
 from exporters.gltf.tubes import build_tubes
-from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from exporters.model import LineGroup, Model
 from exporters.textures.pages import Textures
-from exporters.triangulation import triangulate
-from linecad.arrays import Float
-from linecad.scene import AXES, Scene
+from linecad.scene import AXES
 
 _ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
-_Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)
 _LARGEST_EXACT_FLOAT32 = 2**24  # all integers up to here have their own float32
 _VERTEX_TARGET, _INDEX_TARGET = 34962, 34963  # bufferView.target: ARRAY_BUFFER, ELEMENT_ARRAY_BUFFER
-_PLACEHOLDER = PBRMaterial()  # trimesh wants one; `set_materials` puts ours in its place
 
 _Tree = dict[str, Any]  # the JSON document of a glTF file
 
 
 def write(
-    scene: Scene,
-    path: Path,
-    tubes: bool = False,
-    probability: bool = False,
-    roles: bool = False,
-    textures: Textures | None = None,
+    model: Model, path: Path, tubes: bool = False, instances: bool = False, textures: Textures | None = None
 ) -> None:
-    """Write the scene as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails.
+    """Write the model as GLB to `path`, its lines as tubes where that is asked for; OSError where that fails.
 
-    `probability` parts the lines by band, `roles` by role.
+    With `instances` equal openings share their meshes with one texture.
     """
-    model = build_model(scene, probability, roles)
+    meshes = meshes_of(model, textures, instances)
 
     def add_to_buffer(buffer: Any, _: _Tree) -> None:
         if textures is not None:
@@ -67,39 +58,38 @@ def write(
     def complete(tree: _Tree) -> None:
         tree["asset"]["generator"] = "linecad"
         tree["asset"]["extras"] = {"linecad_unit": model.unit_note, "linecad_photo": model.photo}
-        set_materials(tree, model, textures)
-        _set_labels(tree, model)
+        set_materials(tree, model, meshes, textures)
+        describe_faces(tree, model, meshes)
         _set_targets(tree)
-        _add_camera(tree, scene, model)
-        _add_planes(tree, scene)
+        _add_camera(tree, model)
+        _add_planes(tree, model)
 
-    graph = _build_scene(scene, model, tubes, textures)
+    graph = _build_scene(model, tubes)
+    if model.faces:
+        graph.graph.update(frame_from=_ROOT, frame_to=_FACES)
+        add_faces(graph, _FACES, model, meshes, textures)
     path.write_bytes(
         export_glb(graph, include_normals=True, tree_postprocessor=complete, buffer_postprocessor=add_to_buffer)
     )
 
 
-def _build_scene(scene: Scene, model: Model, tubes: bool, textures: Textures | None) -> trimesh.Scene:
+def _build_scene(model: Model, tubes: bool) -> trimesh.Scene:
+    """The nodes and the lines."""
     graph = trimesh.Scene(base_frame="world")
     graph.graph.update(frame_from="world", frame_to=_ROOT)
     if model.groups:
         graph.graph.update(frame_from=_ROOT, frame_to=_LINES)
-    if model.faces:
-        graph.graph.update(frame_from=_ROOT, frame_to=_FACES)
     for group in model.groups:
-        width = line_width(model, scene.rotation, group.is_boundary)
+        width = line_width(model, group.is_boundary)
         lines = _tubes(group, width) if tubes else _path(group)
         graph.add_geometry(lines, node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
-    for face in model.faces:
-        mesh = _mesh(face, None if textures is None else textures.coordinates(face))
-        graph.add_geometry(mesh, node_name=face.name, geom_name=face.name, parent_node_name=_FACES)
     return graph
 
 
 def _path(group: LineGroup) -> Path3D:
     path = Path3D(
         entities=[Line([2 * number, 2 * number + 1]) for number in range(len(group.ids))],
-        vertices=group.ends.reshape(-1, 3) @ _Y_UP.T,
+        vertices=group.ends.reshape(-1, 3) @ Y_UP.T,
         process=False,  # merged points would be shared by lines, which have their own ids
         metadata=_told(group),
     )
@@ -111,7 +101,7 @@ def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
     """The lines of a group as one mesh of closed tubes."""
     vertices, triangles, normals = build_tubes(group.ends, width / 2)
     mesh = trimesh.Trimesh(
-        vertices @ _Y_UP.T, triangles, process=False, vertex_normals=normals @ _Y_UP.T, metadata=_told(group)
+        vertices @ Y_UP.T, triangles, process=False, vertex_normals=normals @ Y_UP.T, metadata=_told(group)
     )
     _set_ids(mesh, group, len(vertices) // len(group.ids))
     return mesh
@@ -133,31 +123,6 @@ def _set_ids(shape: Path3D | trimesh.Trimesh, group: LineGroup, vertices_per_lin
         shape.vertex_attributes["_LINEID"] = np.repeat(group.ids, vertices_per_line).astype(np.float32)
 
 
-def _mesh(face: FlatFace, coordinates: Float | None) -> trimesh.Trimesh:
-    return trimesh.Trimesh(
-        face.vertices @ _Y_UP.T,
-        triangulate(face),
-        process=False,
-        visual=TextureVisuals(uv=coordinates, material=_PLACEHOLDER),
-        vertex_normals=np.tile(_Y_UP @ face.normal, (len(face.vertices), 1)),
-        metadata={
-            "face_id": face.id,
-            "kind": face.kind,
-            "label": face.label,
-            "plane_id": face.plane,
-            "axis": AXES[face.axis],
-            "offset": face.offset,
-        },
-    )
-
-
-def _set_labels(tree: _Tree, model: Model) -> None:
-    """Name the meshes of faces for people; trimesh names a mesh and its node alike."""
-    labels = {face.name: face.label for face in model.faces}
-    for mesh in tree["meshes"]:
-        mesh["name"] = labels.get(mesh["name"], mesh["name"])
-
-
 def _set_targets(tree: _Tree) -> None:
     views, accessors = tree["bufferViews"], tree["accessors"]
     for mesh in tree["meshes"]:
@@ -168,10 +133,11 @@ def _set_targets(tree: _Tree) -> None:
                 views[accessors[primitive["indices"]]["bufferView"]]["target"] = _INDEX_TARGET
 
 
-def _add_camera(tree: _Tree, scene: Scene, model: Model) -> None:
-    camera, frame = scene.camera, padded_frame(scene.camera)
+def _add_camera(tree: _Tree, model: Model) -> None:
+    scene, camera = model.scene, model.scene.camera
+    frame = padded_frame(camera)
     cx, cy = principal_point(camera)
-    near, far = clipping_range(model, scene.rotation)
+    near, far = clipping_range(model)
     extras = {
         "linecad_width": camera.width,
         "linecad_height": camera.height,
@@ -191,18 +157,17 @@ def _add_camera(tree: _Tree, scene: Scene, model: Model) -> None:
         "zfar": far,
     }
     tree["cameras"] = [{"type": "perspective", "name": _CAMERA, "perspective": perspective, "extras": extras}]
-    pose = camera_to_world(scene.rotation)
-    pose[:3, :3] = _Y_UP @ pose[:3, :3]
+    pose = camera_to_world(scene.rotation, model.eye)
+    pose[:3] = Y_UP @ pose[:3]
     matrix = pose.T.ravel().tolist()  # glTF stores columns
     tree["nodes"].append({"name": _CAMERA, "camera": 0, "matrix": matrix, "extras": extras})
     _node(tree, _ROOT)["children"].append(len(tree["nodes"]) - 1)
 
 
-def _add_planes(tree: _Tree, scene: Scene) -> None:
-    scale = metres_per_unit(scene)
+def _add_planes(tree: _Tree, model: Model) -> None:
     planes = [
-        {"id": plane.id, "axis": AXES[plane.axis], "offset": plane.offset * scale, "lines": list(plane.lines)}
-        for plane in scene.planes
+        {"id": plane.id, "axis": plane.axis, "offset": plane.offset, "lines": list(plane.lines)}
+        for plane in model.planes
     ]
     tree["scenes"][tree["scene"]]["extras"] = {"linecad_planes": planes}
 

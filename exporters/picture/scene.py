@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from exporters.bands import BANDS, LEAST, LIKELY, SURE, bands_of
 from exporters.colours import line_colour
-from exporters.model import photo_name
+from exporters.model import Model, photo_name
 from exporters.picture.canvas import Canvas, drawable, text_width
 from exporters.picture.faces import OPACITY, draw_faces, draw_line, words_of
 from exporters.picture.views import VIEWS, draw_view
@@ -47,8 +47,9 @@ class _Box(NamedTuple):
     height: int
 
 
-def write(scene: Scene, path: Path, photo: NDArray[np.uint8] | None) -> None:
+def write(model: Model, path: Path, photo: NDArray[np.uint8] | None) -> None:
     """Write the picture to `path`; OSError where that fails. `photo` is RGB, of the size of the camera, or None."""
+    scene = model.scene
     top = _TOP if scene.depth_map is None else _TOP + _ROW
     shape, views, height = _layout(scene.camera.width / scene.camera.height, top)
     canvas = Canvas(_WIDTH, height, _PAPER)

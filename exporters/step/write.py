@@ -23,7 +23,7 @@ from OCP.BRepBuilderAPI import (
     BRepBuilderAPI_MakeVertex,
     BRepBuilderAPI_Sewing,
 )
-from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Interface import Interface_Static
 from OCP.Message import Message, Message_Gravity
@@ -42,12 +42,13 @@ from OCP.XCAFApp import XCAFApp_Application
 from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 from OCP.XSControl import XSControl_WorkSession
 
-from exporters.colours import FACE, RGB, line_colour
-from exporters.model import FlatFace, LineGroup, Model, build_model
+from exporters.colours import FACE, RGB, face_colour, line_colour
+from exporters.faces import FlatFace
+from exporters.model import LineGroup, Model
+from exporters.openings import Fitting
 from exporters.step.canonical import canonical
 from exporters.triangulation import checked_polygon
 from linecad.arrays import Float
-from linecad.scene import Scene
 
 _MILLIMETRES = 1000.0  # per metre
 _METRES_PER_DOCUMENT_UNIT = 0.001
@@ -57,15 +58,14 @@ _CURVE, _SURFACE = XCAFDoc_ColorType.XCAFDoc_ColorCurv, XCAFDoc_ColorType.XCAFDo
 _OPTIONS = {"write.step.schema": "AP214IS", "write.step.unit": "MM", "write.step.product.name": "linecad"}
 
 
-def write(scene: Scene, path: Path, sewn: bool = False, probability: bool = False, roles: bool = False) -> None:
-    """Write the scene as STEP to `path`, its faces sewn where that is asked for; OSError where that fails.
+def write(model: Model, path: Path, sewn: bool = False, instances: bool = False) -> None:
+    """Write the model as STEP to `path`, its faces sewn where that is asked for; OSError where that fails.
 
-    `probability` parts the lines by band, `roles` by role.
+    With `instances` equal openings are one part in several places, if the faces are not sewn.
     """
-    model = build_model(scene, probability, roles)
     with _silence():
         try:
-            data = _written(_build_document(model, sewn), model)
+            data = _written(_build_document(model, sewn, instances), model)
         except (Standard_Failure, StdFail_NotDone) as error:
             # The binding does not derive the second from the first; it ends edges of no length in its own tolerance.
             raise OSError(
@@ -89,14 +89,15 @@ class _Assembly:
         label = self._shapes.NewShape()
         _set_name(label, name)
         if parent is not None:
-            self._place(parent, label, name)
+            self.place(parent, label, name)
         return label
 
-    def add_part(self, parent: TDF_Label, name: str, shape: TopoDS_Shape, place_name: str = "") -> TDF_Label:
-        """Add a part; its place in the parent has a name of its own where one is given."""
+    def add_part(self, parent: TDF_Label | None, name: str, shape: TopoDS_Shape, place_name: str = "") -> TDF_Label:
+        """Add a part; its place in the parent, if it has one, has a name of its own where one is given."""
         label = self._shapes.AddShape(shape, False)
         _set_name(label, name)
-        self._place(parent, label, place_name or name)
+        if parent is not None:
+            self.place(parent, label, place_name or name)
         return label
 
     def paint(self, part: TDF_Label, colour: RGB, kind: XCAFDoc_ColorType) -> None:
@@ -107,11 +108,17 @@ class _Assembly:
         self._shapes.UpdateAssemblies()
         return self.document
 
-    def _place(self, parent: TDF_Label, label: TDF_Label, name: str) -> None:
-        _set_name(self._shapes.AddComponent(parent, label, TopLoc_Location()), name)
+    def place(self, parent: TDF_Label, label: TDF_Label, name: str, at: Float | None = None) -> None:
+        """Place a part or an assembly in another one, where its numbers say or `at` (3,) m."""
+        location = TopLoc_Location()
+        if at is not None:
+            move = gp_Trsf()
+            move.SetTranslation(gp_Vec(*(at * _MILLIMETRES).tolist()))
+            location = TopLoc_Location(move)
+        _set_name(self._shapes.AddComponent(parent, label, location), name)
 
 
-def _build_document(model: Model, sewn: bool) -> TDocStd_Document:
+def _build_document(model: Model, sewn: bool, instances: bool) -> TDocStd_Document:
     assembly = _Assembly()
     root = assembly.add_assembly(None, "linecad")
     if model.groups:
@@ -122,12 +129,48 @@ def _build_document(model: Model, sewn: bool) -> TDocStd_Document:
         assembly.paint(assembly.add_part(root, "faces", _sewn(map(_face_shape, model.faces))), FACE, _SURFACE)
     elif model.faces:
         faces = assembly.add_assembly(root, "faces")
-        for face in model.faces:
-            part = assembly.add_part(faces, face.name, _face_shape(face), face.label)
-            assembly.paint(part, FACE, _SURFACE)
+        for face in model.loose_faces:
+            _add_face(assembly, faces, face, face.name)
+        for equal in model.equal_fittings:
+            if instances and len(equal) > 1:
+                _add_equal(assembly, faces, equal)
+            else:
+                for fitting in equal:
+                    _add_fitting(assembly, faces, fitting)
     # In a compound, because OCCT loses the name of a bare vertex.
-    assembly.add_part(root, "camera", _compound([BRepBuilderAPI_MakeVertex(gp_Pnt(0.0, 0.0, 0.0)).Vertex()]))
+    eye = gp_Pnt(*(model.eye * _MILLIMETRES).tolist())
+    assembly.add_part(root, "camera", _compound([BRepBuilderAPI_MakeVertex(eye).Vertex()]))
     return assembly.finish()
+
+
+def _add_face(assembly: _Assembly, parent: TDF_Label | None, face: FlatFace, name: str) -> TDF_Label:
+    part = assembly.add_part(parent, name, _face_shape(face), face.label)
+    assembly.paint(part, face_colour(face.kind), _SURFACE)
+    return part
+
+
+def _add_fitting(assembly: _Assembly, parent: TDF_Label, fitting: Fitting) -> None:
+    """An opening as an assembly of its faces, which tell their places themselves: FreeCAD's parts have none else.
+
+    A pane alone is no assembly, because FreeCAD would give it the name of that.
+    """
+    opening = parent if len(fitting.faces) == 1 else assembly.add_assembly(parent, fitting.label)
+    for face in fitting.faces:
+        _add_face(assembly, opening, face, face.name)
+
+
+def _add_equal(assembly: _Assembly, parent: TDF_Label, equal: tuple[Fitting, ...]) -> None:
+    """Equal openings as one assembly in several places, or as one part where they are panes alone."""
+    first, name = equal[0], f"{equal[0].kind} shape {equal[0].shape}"
+    faces = first.local_faces
+    if len(faces) == 1:
+        shape = _add_face(assembly, None, faces[0], name)
+    else:
+        shape = assembly.add_assembly(None, name)
+        for number, face in enumerate(faces):
+            _add_face(assembly, shape, face, f"{face.kind} {number}")
+    for fitting in equal:
+        assembly.place(parent, shape, fitting.label, fitting.place)
 
 
 def _add_lines(assembly: _Assembly, parent: TDF_Label, group: LineGroup) -> None:

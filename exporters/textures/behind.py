@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exporters.colours import FACE
-from exporters.model import FlatFace
+from exporters.faces import FlatFace
 from exporters.textures.layout import View, seen_part
 from exporters.textures.nearest import SHIFT, Shape
 from linecad.arrays import Bool, Float, Int

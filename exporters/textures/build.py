@@ -27,8 +27,13 @@ def build_textures(scene: Scene, photo: NDArray[np.uint8], largest: int) -> Text
     for face in model.faces:
         checked_polygon(face)
     layout = build_layout(model, view, largest)
-    pages = [_page(pixels) for pixels in paint_pages(model, layout, view, photo)]
-    return Textures(tuple(pages), {face.id: patch for face, patch in zip(model.faces, layout.patches, strict=True)})
+    painted, shown = paint_pages(model, layout, view, photo)
+    ids = [face.id for face in model.faces]
+    return Textures(
+        pages=tuple(map(_page, painted)),
+        patches=dict(zip(ids, layout.patches, strict=True)),
+        shown=dict(zip(ids, shown, strict=True)),
+    )
 
 
 def _page(pixels: NDArray[np.uint8]) -> Page:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from exporters.model import FlatFace, Model, signed_area
+from exporters.faces import FlatFace, signed_area
+from exporters.model import Model
 from linecad.arrays import Float
 from linecad.scene import Scene
 

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from exporters.model import FlatFace, signed_area
+from exporters.faces import FlatFace, signed_area
 from exporters.textures.layout import View, seen_part
 from linecad.arrays import Bool, Float
 

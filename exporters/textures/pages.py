@@ -6,12 +6,12 @@ each would be 500 files, and as many changes of material for whoever draws it.
 
 import hashlib
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from exporters.model import FlatFace
+from exporters.faces import FlatFace
 from exporters.textures.layout import Patch
 from linecad.arrays import Float
 
@@ -41,6 +41,7 @@ class Textures:
 
     pages: tuple[Page, ...]
     patches: dict[int, Patch]  # by the id of the face
+    shown: dict[int, float]  # by the id of the face, how many pixels of the photo show it
 
     @property
     def files(self) -> Mapping[str, bytes]:
@@ -51,9 +52,16 @@ class Textures:
         """The number of the face's page."""
         return self.patches[face.id].page
 
-    def coordinates(self, face: FlatFace) -> Float:
-        """(V, 2) texture coordinates of `face.vertices`: from the lower left corner of the page, its sides are 1."""
+    def best_shown(self, faces: Sequence[FlatFace]) -> FlatFace:
+        """The face that most pixels of the photo show, the first of several."""
+        return max(faces, key=lambda face: self.shown[face.id])
+
+    def coordinates(self, face: FlatFace, eye: Float) -> Float:
+        """(V, 2) texture coordinates of `face.vertices`: from the lower left corner of the page, its sides are 1.
+
+        `eye` (3,) is where the camera stands in the face's frame.
+        """
         patch = self.patches[face.id]
         page = self.pages[patch.page]
-        s, t = (patch.texels(face.vertices) / [page.width, page.height]).T
+        s, t = (patch.texels(face.vertices - eye) / [page.width, page.height]).T
         return np.stack([s, 1.0 - t], axis=1)

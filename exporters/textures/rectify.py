@@ -12,9 +12,10 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from exporters.model import FlatFace, Model, signed_area
+from exporters.faces import FlatFace, signed_area
+from exporters.model import Model
 from exporters.textures.behind import PLAIN, cover_of, fill_behind
-from exporters.textures.layout import MARGIN, Layout, Patch, View
+from exporters.textures.layout import MARGIN, Layout, Patch, View, seen_part
 from exporters.textures.nearest import Nearest, Shape, filled, nearest_of, shape_of
 from linecad.arrays import Bool, Float
 
@@ -27,8 +28,8 @@ _WHOLLY_SEEN = 250  # of 255: less of a texel is mixed with what hides it
 Pixels = NDArray[np.uint8]
 
 
-def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list[Pixels]:
-    """The pages of a layout, RGB, from the photo (H, W, 3)."""
+def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> tuple[list[Pixels], list[float]]:
+    """The pages of a layout, RGB, from the photo (H, W, 3), and for each face how many pixels of the photo show it."""
     pages = [np.full((height, width, 3), PLAIN, np.uint8) for width, height in layout.pages]
     shapes = [shape_of(face, view) for face in model.faces]
     nearest = nearest_of(shapes, view)
@@ -37,7 +38,15 @@ def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> list
             colours = _paint(face, shape, patch, view, nearest, photo)
             left, top = patch.left - MARGIN, patch.top - MARGIN
             pages[patch.page][top : top + colours.shape[0], left : left + colours.shape[1]] = colours
-    return pages
+    counts = np.bincount(nearest.owner[nearest.inverse_depth > 0], minlength=len(shapes)).tolist()
+    hidden = (sum(_pixels(ring, view) for ring in face.hidden) for face in model.faces)
+    return pages, [count - behind for count, behind in zip(counts, hidden, strict=True)]
+
+
+def _pixels(ring: Float, view: View) -> float:
+    """px^2 of the photo inside a ring (V, 3) m."""
+    seen = seen_part(ring, view)
+    return abs(signed_area(seen[:, :2] / seen[:, 2:])) if len(seen) else 0.0
 
 
 def _hidden(shape: Shape, nearest: Nearest) -> Bool:

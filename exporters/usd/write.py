@@ -1,7 +1,8 @@
 """OpenUSD stages, in metres, z up, as text, crate or package: https://openusd.org/release/spec.html
 
-Lines are BasisCurves, one prim a group; faces are triangle meshes. USD's camera has aperture offsets, so it is the
-photo's camera exactly. The variant set `content` shows all, the lines alone or the faces alone.
+Lines are BasisCurves, one prim a group; faces are triangle meshes, those of a window below a prim of its own. USD's
+camera has aperture offsets, so it is the photo's camera exactly. The variant set `content` shows all, the lines alone
+or the faces alone.
 """
 
 import io
@@ -14,17 +15,17 @@ from pxr import Gf, Kind, Sdf, Tf, Usd, UsdGeom, Vt
 
 from exporters.beside import NO_FILES, Names, SideFiles
 from exporters.camera import camera_to_world, clipping_range, line_width, principal_point
-from exporters.colours import FACE, RGB, line_colour, linear
-from exporters.model import FlatFace, LineGroup, Model, build_model, metres_per_unit
+from exporters.colours import line_colour, linear
+from exporters.model import LineGroup, Model
 from exporters.textures.pages import Textures
-from exporters.triangulation import triangulate
-from exporters.usd.materials import add_material, add_photo_material, bind, set_coordinates
+from exporters.usd.attributes import set_display_colour, set_extent, set_own
+from exporters.usd.faces import Places, add_face_materials, add_faces
+from exporters.usd.materials import add_material, bind
 from linecad.io.files import UNFINISHED
-from linecad.scene import AXES, Scene
+from linecad.scene import AXES
 
 _ROOT = Sdf.Path("/Reconstruction")
-_LINES, _FACES, _MATERIALS = (_ROOT.AppendChild(name) for name in ("Lines", "Faces", "Materials"))
-_FACE_MATERIAL = _MATERIALS.AppendChild("face")
+_LINES, _FACES, _SHAPES, _MATERIALS = map(_ROOT.AppendChild, ("Lines", "Faces", "Shapes", "Materials"))
 _PACKAGED = "textures"  # the folder of the pictures in a package
 _CONTENT = {"full": (True, True), "wireframe": (True, False), "faces": (False, True)}  # variant: lines, faces shown
 
@@ -37,26 +38,24 @@ _EPOCH = (1980, 1, 1, 0, 0, 0)  # the earliest time of a zip entry; the real one
 
 
 def write(
-    scene: Scene,
+    model: Model,
     path: Path,
-    probability: bool = False,
-    roles: bool = False,
+    instances: bool = False,
     names: Names | None = None,
     textures: Textures | None = None,
 ) -> SideFiles:
-    """Write the scene as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails.
+    """Write the model as .usda, .usdc or .usdz, by the suffix of `path`; OSError where that fails.
 
-    `probability` parts the lines by band, `roles` by role.
+    With `instances` equal openings are instances of one shape with one texture.
     The pages of the textures lie beside a stage, in the folder of `names`; without names, as a package, it holds them.
     """
     pages = {} if textures is None else textures.files
-    model = build_model(scene, probability, roles)
     if names is not None:
-        _save(_build_stage(model, scene, textures, names.folder), path)
+        _save(_build_stage(model, textures, names.folder, instances), path)
         return SideFiles(pages)
     with tempfile.TemporaryDirectory(prefix=UNFINISHED, dir=path.parent) as temporary:
         layer = Path(temporary) / "scene.usdc"
-        _save(_build_stage(model, scene, textures, _PACKAGED), layer)
+        _save(_build_stage(model, textures, _PACKAGED, instances), layer)
         files = {layer.name: layer.read_bytes()}
     files |= {f"{_PACKAGED}/{name}": data for name, data in pages.items()}
     path.write_bytes(_package(files))
@@ -85,7 +84,7 @@ def _package(files: dict[str, bytes]) -> bytes:
     return packed.getvalue()
 
 
-def _build_stage(model: Model, scene: Scene, textures: Textures | None, folder: str) -> Usd.Stage:
+def _build_stage(model: Model, textures: Textures | None, folder: str, instances: bool) -> Usd.Stage:
     # In memory first: a stage that is made as a file leaves half of it where the disk is full.
     stage = Usd.Stage.CreateInMemory()
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
@@ -97,24 +96,12 @@ def _build_stage(model: Model, scene: Scene, textures: Textures | None, folder: 
     for path in (_LINES, _FACES, _MATERIALS):
         UsdGeom.Scope.Define(stage, path)
     for group in model.groups:
-        _add_lines(stage, group, line_width(model, scene.rotation, group.is_boundary))
-    if textures is None:
-        materials = [_FACE_MATERIAL]
-        if model.faces:
-            add_material(stage, _FACE_MATERIAL, FACE, emits=False)
-    else:
-        materials = [_MATERIALS.AppendChild(f"photo_{number}") for number in range(len(textures.pages))]
-        for material, page in zip(materials, textures.pages, strict=True):
-            add_photo_material(stage, material, f"{folder}/{page.name}")
-    for face in model.faces:
-        mesh = _add_face(stage, face)
-        if textures is None:
-            bind(stage, mesh.GetPrim(), materials[0])
-        else:
-            set_coordinates(mesh, textures.coordinates(face))
-            bind(stage, mesh.GetPrim(), materials[textures.page(face)])
-    _add_planes(root.GetPrim(), scene)
-    _add_camera(stage, scene, model)
+        _add_lines(stage, group, line_width(model, group.is_boundary))
+    places = Places(_FACES, _SHAPES, _MATERIALS)
+    add_face_materials(stage, places, model, textures, folder)
+    add_faces(stage, places, model, textures, instances)
+    _add_planes(root.GetPrim(), model)
+    _add_camera(stage, model)
     _add_variants(stage, root.GetPrim())
     boxes = UsdGeom.BBoxCache(Usd.TimeCode.Default(), [UsdGeom.Tokens.default_])
     hint = UsdGeom.ModelAPI.Apply(root.GetPrim())
@@ -130,9 +117,9 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
     curves.CreateCurveVertexCountsAttr(Vt.IntArray(len(group.ids), 2))
     curves.CreateWidthsAttr(Vt.FloatArray([width]))
     curves.SetWidthsInterpolation(UsdGeom.Tokens.constant)
-    _set_extent(curves)
+    set_extent(curves)
     colour = line_colour(group.axis, group.is_boundary)
-    _set_display_colour(curves, colour)
+    set_display_colour(curves, linear(colour))
 
     whole, wide = (Sdf.ValueTypeNames.IntArray, np.int32), (Sdf.ValueTypeNames.Int64Array, np.int64)
     kind, number = whole if group.ids.max() <= _LARGEST_INT32 else wide
@@ -147,50 +134,25 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
         told.Set(Vt.DoubleArray.FromNumpy(group.probability))
     roles = variables.CreatePrimvar("linecad:role", Sdf.ValueTypeNames.TokenArray, UsdGeom.Tokens.uniform)
     roles.Set(Vt.TokenArray(group.roles.tolist()))
-    _set(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
+    set_own(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
 
     material = _MATERIALS.AppendChild(group.name)
     add_material(stage, material, colour, emits=True)
     bind(stage, curves.GetPrim(), material)
 
 
-def _add_face(stage: Usd.Stage, face: FlatFace) -> UsdGeom.Mesh:
-    triangles = triangulate(face)
-    mesh = UsdGeom.Mesh.Define(stage, _FACES.AppendChild(face.name))
-    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(face.vertices.astype(np.float32)))
-    mesh.CreateFaceVertexCountsAttr(Vt.IntArray(len(triangles), 3))
-    mesh.CreateFaceVertexIndicesAttr(Vt.IntArray.FromNumpy(triangles.astype(np.int32).ravel()))
-    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)  # the default would round all corners off
-    mesh.CreateDoubleSidedAttr(True)
-    mesh.CreateOrientationAttr(UsdGeom.Tokens.rightHanded)
-    mesh.CreateNormalsAttr(Vt.Vec3fArray(len(face.vertices), Gf.Vec3f(*face.normal.tolist())))
-    mesh.SetNormalsInterpolation(UsdGeom.Tokens.vertex)
-    _set_extent(mesh)
-    _set_display_colour(mesh, FACE)
-    prim = mesh.GetPrim()
-    prim.SetDisplayName(face.name)
-    id_type = Sdf.ValueTypeNames.Int if face.id <= _LARGEST_INT32 else Sdf.ValueTypeNames.Int64
-    _set(prim, "linecad:faceId", id_type, face.id)
-    _set(prim, "linecad:kind", Sdf.ValueTypeNames.Token, face.kind)
-    _set(prim, "linecad:label", Sdf.ValueTypeNames.String, face.label)
-    _set(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, AXES[face.axis])
-    _set(prim, "linecad:planeOffset", Sdf.ValueTypeNames.Double, face.offset)
-    _set(prim, "linecad:ringCounts", Sdf.ValueTypeNames.IntArray, Vt.IntArray([len(ring) for ring in face.rings]))
-    return mesh
-
-
-def _add_planes(root: Usd.Prim, scene: Scene) -> None:
+def _add_planes(root: Usd.Prim, model: Model) -> None:
     """All planes, also those without a face, as three arrays on the root prim."""
-    scale = metres_per_unit(scene)
-    planes = scene.planes
-    _set(root, "linecad:planeIds", Sdf.ValueTypeNames.Int64Array, Vt.Int64Array([plane.id for plane in planes]))
-    axes = Vt.TokenArray([AXES[plane.axis] for plane in planes])
-    _set(root, "linecad:planeAxes", Sdf.ValueTypeNames.TokenArray, axes)
-    offsets = Vt.DoubleArray([plane.offset * scale for plane in planes])
-    _set(root, "linecad:planeOffsets", Sdf.ValueTypeNames.DoubleArray, offsets)
+    planes = model.planes
+    set_own(root, "linecad:planeIds", Sdf.ValueTypeNames.Int64Array, Vt.Int64Array([plane.id for plane in planes]))
+    axes = Vt.TokenArray([plane.axis for plane in planes])
+    set_own(root, "linecad:planeAxes", Sdf.ValueTypeNames.TokenArray, axes)
+    offsets = Vt.DoubleArray([plane.offset for plane in planes])
+    set_own(root, "linecad:planeOffsets", Sdf.ValueTypeNames.DoubleArray, offsets)
 
 
-def _add_camera(stage: Usd.Stage, scene: Scene, model: Model) -> None:
+def _add_camera(stage: Usd.Stage, model: Model) -> None:
+    scene = model.scene
     width, height, focal = scene.camera.width, scene.camera.height, scene.camera.focal
     cx, cy = principal_point(scene.camera)
     camera = UsdGeom.Camera.Define(stage, _ROOT.AppendChild("PhotoCamera"))
@@ -200,14 +162,14 @@ def _add_camera(stage: Usd.Stage, scene: Scene, model: Model) -> None:
     camera.CreateVerticalApertureAttr(_APERTURE * height / width)
     camera.CreateHorizontalApertureOffsetAttr(_APERTURE * (0.5 - cx / width))
     camera.CreateVerticalApertureOffsetAttr(_APERTURE * height / width * (cy / height - 0.5))
-    camera.CreateClippingRangeAttr(Gf.Vec2f(*clipping_range(model, scene.rotation)))
-    pose = Gf.Matrix4d(camera_to_world(scene.rotation).T.tolist())  # USD multiplies rows from the left
+    camera.CreateClippingRangeAttr(Gf.Vec2f(*clipping_range(model)))
+    pose = Gf.Matrix4d(camera_to_world(scene.rotation, model.eye).T.tolist())  # USD multiplies rows from the left
     camera.AddTransformOp(UsdGeom.XformOp.PrecisionDouble).Set(pose)
     prim = camera.GetPrim()
-    _set(prim, "linecad:imageWidth", Sdf.ValueTypeNames.Int, width)
-    _set(prim, "linecad:imageHeight", Sdf.ValueTypeNames.Int, height)
+    set_own(prim, "linecad:imageWidth", Sdf.ValueTypeNames.Int, width)
+    set_own(prim, "linecad:imageHeight", Sdf.ValueTypeNames.Int, height)
     matrix = [focal, 0.0, cx, 0.0, focal, cy, 0.0, 0.0, 1.0]
-    _set(prim, "linecad:K", Sdf.ValueTypeNames.DoubleArray, Vt.DoubleArray(matrix))
+    set_own(prim, "linecad:K", Sdf.ValueTypeNames.DoubleArray, Vt.DoubleArray(matrix))
 
 
 def _add_variants(stage: Usd.Stage, root: Usd.Prim) -> None:
@@ -220,16 +182,3 @@ def _add_variants(stage: Usd.Stage, root: Usd.Prim) -> None:
                 visibility = UsdGeom.Tokens.inherited if visible else UsdGeom.Tokens.invisible
                 UsdGeom.Imageable(stage.GetPrimAtPath(path)).CreateVisibilityAttr(visibility)
     variants.SetVariantSelection("full")
-
-
-def _set_extent(shape: UsdGeom.Boundable) -> None:
-    extent = UsdGeom.Boundable.ComputeExtentFromPlugins(shape, Usd.TimeCode.Default())
-    shape.CreateExtentAttr(extent)
-
-
-def _set_display_colour(shape: UsdGeom.Gprim, colour: RGB) -> None:
-    shape.CreateDisplayColorPrimvar(UsdGeom.Tokens.constant).Set(Vt.Vec3fArray([Gf.Vec3f(*linear(colour))]))
-
-
-def _set(prim: Usd.Prim, name: str, kind: Sdf.ValueTypeName, value: object) -> None:
-    prim.CreateAttribute(name, kind, True).Set(value)

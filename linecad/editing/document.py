@@ -6,8 +6,9 @@ from functools import lru_cache
 import numpy as np
 
 from exporters.bands import GUESS, bands_of
+from exporters.faces import FlatFace
 from exporters.formats import FORMATS, SCENE_FILE
-from exporters.model import FlatFace, build_model
+from exporters.model import build_model
 from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary

@@ -22,7 +22,7 @@ from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
 from rendering import check_render
-from shapes import check_clipping, check_colour, check_face, check_lines, check_names, check_pixels
+from shapes import apart, check_clipping, check_colour, check_face, check_lines, check_names, check_pixels
 from verdict import run
 
 TOLERANCE = 1e-4  # m; the formats and Blender store points as float32
@@ -48,7 +48,7 @@ def check(findings, chosen):
             points, triangles = triangles_of(item)
             check_face(findings, faces[item.name], points, triangles, TOLERANCE)
             if is_gltf:
-                findings.need(item.data.name == faces[item.name]["label"], f"{item.name} shows a {item.data.name}")
+                check_label(findings, item, faces[item.name], expected)
             if chosen.textures:
                 check_texture(findings, item)
     if is_gltf:
@@ -61,6 +61,20 @@ def check(findings, chosen):
             check_render(findings, meshes, chosen.render, chosen.photo, chosen.scale)
     version = bpy.app.version_string
     return f"Blender {version}: {len(placed)} lines, {len(meshes)} faces, lines at most {largest:.4f} px off"
+
+
+def check_label(findings, item, face, expected):
+    """The mesh is named for people, after the face or, where equal faces share it, after their shape.
+
+    Blender adds a number to names that are there already. The face of an opening hangs on what that is called.
+    """
+    own = [each for each in expected["openings"] if each["id"] == face["opening"]]
+    names = [face["label"], *(f"{face['kind']} of shape {each['shape']}" for each in own)]
+    shown = item.data.name
+    right = any(shown == name or shown.startswith(f"{name}.") for name in names)
+    findings.need(right, f"{item.name} shows a {shown}")
+    if face["opening"] is not None:
+        findings.need(item.parent.name == face["thing"], f"{item.name} hangs on {item.parent.name}")
 
 
 def open_file(path, is_gltf):
@@ -150,7 +164,8 @@ def look_through(findings, camera, expected, placed, is_gltf):
     scales = camera.matrix_world.to_scale()
     findings.need(max(abs(scale - 1) for scale in scales) < 1e-4, f"the camera is scaled by {tuple(scales)}")
     at = camera.matrix_world.translation
-    findings.need(at.length < TOLERANCE, f"the camera stands at {tuple(at)}, expected the origin")
+    eye = expected["camera"]["eye"]
+    findings.need(apart(at, eye) < TOLERANCE, f"the camera stands at {tuple(at)}, expected {eye}")
     check_clipping(findings, expected, camera.data.clip_start, camera.data.clip_end)
     size = expected["camera"]["width"], expected["camera"]["height"]
     if not is_gltf:

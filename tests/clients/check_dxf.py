@@ -156,6 +156,9 @@ def check_header(findings, document, expected):
     rotation = [float(word) for word in properties.get("linecad camera from world", "").split()]
     rows = [value for row in expected["camera"]["rotation"] for value in row]
     findings.need(rotation == rows, f"the properties tell the rotation {rotation}, expected {rows}")
+    place = [float(word) for word in properties.get("linecad camera position", "").split()]
+    eye = expected["camera"]["eye"]
+    findings.need(place == eye, f"the properties tell the camera's place {place}, expected {eye}")
     camera = properties.get("linecad camera", "")
     for number in (expected["camera"]["focal"], *expected["camera"]["principal_point"]):
         findings.need(repr(number) in camera, f"the properties tell the camera {camera!r}, without {number}")

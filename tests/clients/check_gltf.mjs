@@ -43,12 +43,16 @@ async function check(path, expected) {
     const face = faces.get(node.name);
     if (group) checkLines(file, node.name, primitives[0], extras, matrix, expected, placed);
     if (face) {
-      const told = [file.tree.meshes[node.mesh].name, extras?.label, extras?.kind];
-      const wanted = [face.label, face.label, face.kind];
+      const told = [node.extras?.label, node.extras?.kind, node.extras?.opening ?? null];
+      const wanted = [face.label, face.kind, face.opening];
       need(String(told) === String(wanted), `${face.name} says ${told}, expected ${wanted}`);
-      checkFace(file, face, primitives[0], matrix, expected);
+      const opening = expected.openings.find(({ id }) => id === face.opening);
+      const shown = file.tree.meshes[node.mesh].name; // equal faces may share a mesh
+      need([face.label, `${face.kind} of shape ${opening?.shape}`].includes(shown), `${face.name} shows a ${shown}`);
+      checkFace(file, face, primitives[0], matrix);
     }
   }
+  for (const opening of expected.openings) checkOpening(file.tree, opening);
   const largest = checkCamera(file.tree, nodes, expected, placed);
   const counts = `${issues.numErrors} errors, ${issues.numWarnings} warnings`;
   const pixels = `lines at most ${largest.toFixed(5)} px off`;
@@ -77,6 +81,16 @@ function checkNames(kind, found, wanted) {
   need(!missing.length, `${kind}: ${missing.length} are missing, such as ${missing.slice(0, 3)}`);
   const more = names.filter((name, index) => !wanted.includes(name) || names.indexOf(name) < index);
   need(!more.length, `${kind}: ${more.length} are not expected or twice, such as ${more.slice(0, 3)}`);
+}
+
+/** An opening is a node above its faces. */
+function checkOpening(tree, { id, shape, kind, label, faces }) {
+  const node = tree.nodes.find(({ name }) => name === label);
+  if (!need(node, `there is no node for ${label}`)) return;
+  const told = ["opening", "shape", "kind", "label"].map((key) => node.extras?.[key]);
+  need(String(told) === String([id, shape, kind, label]), `${label} says ${told}`);
+  const children = (node.children ?? []).map((child) => tree.nodes[child].name).sort();
+  need(String(children) === String([...faces].sort()), `${label} has ${children}, expected ${faces}`);
 }
 
 /** The lines of a group, which stand in ascending id; those in their place are added to `placed`, by id. */
@@ -116,8 +130,8 @@ function checkColour(name, material, wanted) {
   need(near(colour, [...wanted, 1], COLOUR_TOLERANCE), `${name}: colour ${colour}, expected ${wanted}`);
 }
 
-/** The triangles must use every corner, have the rings as their border and their area, and face the camera. */
-function checkFace(file, face, primitive, matrix, expected) {
+/** The triangles must use every corner, have the rings as their border and their area, and look where the face does. */
+function checkFace(file, face, primitive, matrix) {
   const { name, corners, rings } = face;
   need((primitive.mode ?? TRIANGLES) === TRIANGLES, `${name} is of mode ${primitive.mode}, expected triangles`);
   const points = pointsOf(file, primitive, matrix);
@@ -133,7 +147,7 @@ function checkFace(file, face, primitive, matrix, expected) {
     const [a, b, c] = [0, 1, 2].map((step) => points[indices[at + step]]);
     const normal = cross(minus(b, a), minus(c, a));
     area += Math.hypot(...normal) / 2;
-    away += dot(normal, a) > 0;
+    away += normal["xyz".indexOf(face.axis)] * face.looks <= 0;
     for (const step of [0, 1, 2]) edges.add(`${corner[at + step]} ${corner[at + ((step + 1) % 3)]}`);
   }
   need(edges.size === indices.length, `${name}: neighbouring triangles are turned differently`);
@@ -145,8 +159,8 @@ function checkFace(file, face, primitive, matrix, expected) {
   need(border.length === wanted.length, `${name}: ${border.length} edges bound it, expected ${wanted.length}`);
   const right = Math.abs(area - face.area) <= AREA_TOLERANCE * Math.max(1, face.area);
   need(right, `${name}: area ${area} m2, expected ${face.area}`);
-  need(!away, `${name}: ${away} triangles are turned away from the camera`);
-  checkSurface(file, face, primitive, expected);
+  need(!away, `${name}: ${away} triangles are turned away from where it is seen`);
+  checkSurface(file, face, primitive);
 }
 
 const nearest = (point, corners) => {
@@ -154,14 +168,14 @@ const nearest = (point, corners) => {
   return distances.indexOf(Math.min(...distances));
 };
 
-function checkSurface({ tree }, { name }, primitive, expected) {
+function checkSurface({ tree }, { name, linear }, primitive) {
   const material = tree.materials?.[primitive.material];
   if (!need(material, `${name} has no material`)) return;
   need(material.doubleSided, `${name} is seen from one side only`);
   need(primitive.attributes.NORMAL !== undefined, `${name} has no normals`);
   const texture = material.pbrMetallicRoughness?.baseColorTexture;
   if (texture === undefined) {
-    checkColour(name, material, expected.face_colour.linear);
+    checkColour(name, material, linear);
     return;
   }
   need(primitive.attributes.TEXCOORD_0 !== undefined, `${name} has a picture and no texture coordinates`);

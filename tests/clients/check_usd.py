@@ -40,6 +40,8 @@ def check(findings, path, expected):
     for mesh in meshes:
         if mesh.GetPrim().GetName() in faces:
             check_mesh(findings, mesh, cache, faces[mesh.GetPrim().GetName()])
+    for opening in expected["openings"]:
+        check_opening(findings, stage, opening)
     for prim in prims:
         if prim.IsA(UsdGeom.Gprim):
             check_extent(findings, UsdGeom.Gprim(prim))
@@ -128,9 +130,20 @@ def check_mesh(findings, mesh, cache, face):
     wanted = [face[what] for what in ("id", "kind", "label", "axis", "offset")]
     findings.need(told == wanted, f"{name} says {told}, expected {wanted}")
     normals = set(map(tuple, mesh.GetNormalsAttr().Get()))
-    wanted = tuple(float(-math.copysign(axis == face["axis"], face["offset"])) for axis in "xyz")
+    wanted = tuple(face["looks"] * (axis == face["axis"]) for axis in "xyz")
     same = len(normals) == 1 and np.allclose(list(normals), wanted)
-    findings.need(same, f"{name}: normals {normals}, expected {wanted}, to the camera")
+    findings.need(same, f"{name}: normals {normals}, expected {wanted}")
+
+
+def check_opening(findings, stage, opening):
+    """An opening is a prim above its faces."""
+    label = opening["label"]
+    prim = stage.GetDefaultPrim().GetPrimAtPath(f"Faces/{label.replace(' ', '_')}")
+    if not findings.need(prim.IsValid(), f"there is no prim for {label}"):
+        return
+    told = {what: prim.GetAttribute(f"linecad:{what}").Get() for what in ("shape", "kind", "label")}
+    told |= {"id": prim.GetAttribute("linecad:opening").Get(), "faces": [each.GetName() for each in prim.GetChildren()]}
+    findings.need(told == opening, f"{label} says {told}, expected {opening}")
 
 
 def check_extent(findings, shape):
@@ -145,7 +158,10 @@ def check_material(findings, prim, expected):
     """Lines and plain faces have their colour, in linear light; a textured face finds its picture."""
     name = prim.GetName()
     group = expected["groups"].get(name)
-    wanted = (group or expected["face_colour"])["linear"]
+    wanted = group or next((face for face in expected["faces"] if face["name"] == name), group)
+    if not findings.need(wanted, f"{name} is neither a group of lines nor a face"):
+        return
+    wanted = wanted["linear"]
     shown = UsdGeom.Gprim(prim).GetDisplayColorAttr().Get()
     if findings.need(shown, f"{name} has no displayColor"):
         check_colour(findings, f"{name}, displayColor", shown[0], wanted)

@@ -1,4 +1,4 @@
-"""A made scene file: a wall with a window and the ground before it, and its exports."""
+"""A made scene file: a wall with a window and two equal ones set back, the ground before it, and its exports."""
 
 import json
 
@@ -12,6 +12,9 @@ WALL, GROUND = 10.0, -1.6  # where the planes cut y and z
 LEFT, RIGHT, TOP, NEAR = -4.0, 5.0, 6.0, 6.0
 WINDOW = [[0.0, WALL, 1.0], [2.0, WALL, 1.0], [2.0, WALL, 3.0], [0.0, WALL, 3.0]]
 CORNERS = [[LEFT, WALL, GROUND], [RIGHT, WALL, GROUND], [RIGHT, WALL, TOP], [LEFT, WALL, TOP]]
+RECESS = 0.4
+SILL, HEAD = 3.5, 4.5  # of the two equal windows
+NICHES = [(-3.0, -2.0), (3.0, 4.0)]  # from x to x
 FLOOR = [[LEFT, NEAR, GROUND], [RIGHT, NEAR, GROUND], [RIGHT, WALL, GROUND], [LEFT, WALL, GROUND]]
 FOCAL, CENTRE = 800.0, (390.3, 310.8)  # px
 
@@ -21,6 +24,34 @@ def line(number, start, end, boundary):
     segment = [[FOCAL * x / y + CENTRE[0], -FOCAL * z / y + CENTRE[1]] for x, y, z in (start, end)]
     return {"id": number, "axis": axis, "segment": segment, "ends": [start, end], "boundary": boundary,
             "component": 0, "confidence": "proven"}  # fmt: skip
+
+
+def niche(x):
+    return [[x[0], WALL, SILL], [x[1], WALL, SILL], [x[1], WALL, HEAD], [x[0], WALL, HEAD]]
+
+
+def niche_planes():
+    """The panes in a plane, and each reveal in one of its own but for the sills and the heads."""
+    back = WALL + RECESS
+    planes = [{"id": 3, "axis": "y", "offset": back, "lines": [], "faces": []}]
+    planes += [{"id": 4 + n, "axis": "z", "offset": z, "lines": [], "faces": []} for n, z in enumerate((SILL, HEAD))]
+    for number, x in enumerate(NICHES):
+        pane = [[a, back, c] for a, _, c in niche(x)]
+        planes[0]["faces"].append({"id": 10 + 5 * number, "outline": pane, "kind": "window", "opening": number})
+        for place, z in enumerate((SILL, HEAD)):
+            ring = [[x[0], WALL, z], [x[1], WALL, z], [x[1], back, z], [x[0], back, z]]
+            face = {"id": 11 + place + 5 * number, "outline": ring, "kind": "reveal", "opening": number}
+            planes[1 + place]["faces"].append(face)
+        for place, at in enumerate(x):
+            ring = [[at, WALL, SILL], [at, back, SILL], [at, back, HEAD], [at, WALL, HEAD]]
+            face = {"id": 13 + place + 5 * number, "outline": ring, "kind": "reveal", "opening": number}
+            planes.append({"id": 6 + place + 2 * number, "axis": "x", "offset": at, "lines": [], "faces": [face]})
+    return planes
+
+
+def build_openings():
+    told = {"plane": 1, "kind": "window", "v": [SILL, HEAD], "recess": RECESS, "panel": WALL + RECESS, "shape": 2}
+    return [{"id": number, "u": list(x), **told} for number, x in enumerate(NICHES)]
 
 
 def build_scene():
@@ -48,10 +79,12 @@ def build_scene():
         "intersections": [],
         "planes": [
             {"id": 1, "axis": "y", "offset": WALL, "lines": [],
-             "faces": [{"id": 4, "outline": CORNERS, "holes": [WINDOW], "kind": "wall"}]},
+             "faces": [{"id": 4, "outline": CORNERS, "holes": [WINDOW, *map(niche, NICHES)], "kind": "wall"}]},
             {"id": 2, "axis": "z", "offset": GROUND, "lines": [],
              "faces": [{"id": 7, "outline": FLOOR, "holes": [], "kind": "ground"}]},
+            *niche_planes(),
         ],
+        "openings": build_openings(),
         "solve": {"solver": "none", "formulation": "gain", "status": "optimal", "objective": 0.0, "bound": 0.0,
                   "gap": 0.0},
         "notes": [],

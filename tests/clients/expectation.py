@@ -2,6 +2,7 @@
 
 Reads the file as docs/reference/scene-file.md promises it, without code of linecad, so that no mistake is made twice.
 Lengths are metres, 1 unit being 1 m where the scale is not known; pixels count from the top left corner of the photo.
+Where the scale and the ground are known, z = 0 is the ground.
 """
 
 import json
@@ -17,6 +18,7 @@ UNITARY = 1e-6  # how far the rotation times its transpose may be from the ident
 AXIS_COLOUR = {"x": (0.87, 0.16, 0.16), "y": (0.10, 0.62, 0.22), "z": (0.15, 0.36, 0.92)}
 WHITE_WHERE_NO_BOUNDARY = 0.5  # share
 FACE_COLOUR = (0.80, 0.79, 0.74)
+KIND_COLOUR = {"window": (0.49, 0.62, 0.72), "door": (0.56, 0.41, 0.29), "reveal": (0.69, 0.66, 0.60)}
 
 BANDS = {"sure": 0.9, "likely": 0.5, "guess": 0.0}  # the smallest probability of each
 
@@ -30,31 +32,48 @@ def build_expectation(scene, by_band=False, by_role=False):
     if (scene.get("format"), scene.get("version")) != ("linecad-scene", 1):
         raise ValueError(f"format {scene.get('format')}, version {scene.get('version')}: not a scene file of version 1")
     metres = scene.get("metres_per_unit") or 1.0
-    camera = _camera(scene["camera"])
+    camera = {**_camera(scene["camera"]), "eye": [0.0, 0.0, _height(scene)]}
+    eye = camera["eye"]
     lines = []
     for line in sorted(scene["lines"], key=lambda line: line["id"]):
-        ends = [_scaled(end, metres) for end in line["ends"]]
+        ends = [_placed(end, metres, eye) for end in line["ends"]]
         if math.dist(*ends) > SHORTEST_LINE:
             group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
             role = line.get("role", "outline")
             group += f"_{role}" if by_role and role != "outline" else ""  # of outlines the name says nothing
             group += _band(line) if by_band else ""
-            pixels = [_project(end, camera) for end in ends]
+            pixels = [_project(end, camera) for end in line["ends"]]
             lines.append({"id": line["id"], "group": group, "role": role, "ends": ends, "pixels": pixels})
-    faces = [_face(plane, face, metres) for plane in scene["planes"] for face in plane.get("faces", [])]
+    openings = {opening["id"]: opening for opening in scene.get("openings", [])}
+    faces = [
+        _face(plane, face, metres, eye, openings.get(face.get("opening")))
+        for plane in scene["planes"]
+        for face in plane.get("faces", [])
+    ]
     faces.sort(key=lambda face: face["id"])
-    _label(faces)
+    _label(faces, openings)
     points = [end for line in lines for end in line["ends"]] + [c for face in faces for c in face["corners"]]
     return {
         "camera": camera,
         "frame": _centred_frame(camera),
         "lines": lines,
         "groups": _groups(scene["lines"], lines),
-        "planes": [{"id": p["id"], "axis": p["axis"], "offset": p["offset"] * metres} for p in scene["planes"]],
+        "planes": [{"id": p["id"], "axis": p["axis"], "offset": _offset(p, metres, eye)} for p in scene["planes"]],
         "faces": faces,
-        "face_colour": {"srgb": FACE_COLOUR, "linear": [_linear(value) for value in FACE_COLOUR]},
+        "openings": _openings(faces, openings),
         "box": [[choose(values) for values in zip(*points, strict=True)] for choose in (min, max)],
     }
+
+
+def _height(scene):
+    """m of the camera above the lowest ground; 0 where the scene tells no scale or no ground below the camera."""
+    heights = [
+        -plane["offset"] * (scene.get("metres_per_unit") or 0.0)
+        for plane in scene["planes"]
+        for face in plane.get("faces", [])
+        if plane["axis"] == "z" and face.get("kind") == "ground"
+    ]
+    return max([0.0, *heights])
 
 
 def _band(line):
@@ -109,30 +128,65 @@ def _groups(told, lines):
     return groups
 
 
-def _face(plane, face, metres):
-    """A face by its corners, each place once, and its rings as indices of them."""
-    rings = [[_scaled(point, metres) for point in ring] for ring in (face["outline"], *face.get("holes", []))]
+def _face(plane, face, metres, eye, opening):
+    """A face by its corners, each place once, and its rings as indices of them.
+
+    `looks` is 1 where it looks along its axis, -1 where against it: to the camera, a reveal into its opening.
+    """
+    rings = [[_placed(point, metres, eye) for point in ring] for ring in (face["outline"], *face.get("holes", []))]
+    kind = face.get("kind", "other")
+    looks = -1.0 if plane["offset"] > 0 else 1.0
+    if opening and kind == "reveal":
+        middle = sum(opening["v" if plane["axis"] == "z" else "u"]) / 2
+        looks = 1.0 if plane["offset"] < middle else -1.0
+    colour = KIND_COLOUR.get(kind, FACE_COLOUR)
     corners = list(dict.fromkeys(tuple(point) for ring in rings for point in ring))
     number = {corner: index for index, corner in enumerate(corners)}
     outline, *holes = map(_area, rings)
     return {
         "id": face["id"],
         "name": f"face_{face['id']:04d}",
-        "kind": face.get("kind", "other"),
+        "kind": kind,
         "axis": plane["axis"],
-        "offset": plane["offset"] * metres,
+        "offset": _offset(plane, metres, eye),
+        "looks": looks,
+        "srgb": colour,
+        "linear": [_linear(value) for value in colour],
+        "opening": opening and opening["id"],
         "area": outline - sum(holes),
         "corners": corners,
         "rings": [[number[tuple(point)] for point in ring] for ring in rings],
     }
 
 
-def _label(faces):
-    """Give each face what people call it: its kind, with its number among those of its kind where there are more."""
-    for kind in {face["kind"] for face in faces}:
-        alike = [face for face in faces if face["kind"] == kind]
-        for number, face in enumerate(alike, start=1):
-            face["label"] = kind if len(alike) == 1 else f"{kind} {number}"
+def _label(faces, openings):
+    """Give each face what people call it: its kind, with its number among those of its kind where there are more.
+
+    The faces of an opening are one, called by the opening's kind, and its reveals say whose they are.
+    """
+    things = {}
+    for face in faces:
+        key = ("face", face["id"]) if face["opening"] is None else ("opening", face["opening"])
+        things.setdefault(key, []).append(face)
+    kinds = {key: own[0]["kind"] if key[0] == "face" else openings[key[1]]["kind"] for key, own in things.items()}
+    for kind in set(kinds.values()):
+        alike = [own for key, own in things.items() if kinds[key] == kind]
+        for number, own in enumerate(alike, start=1):
+            for face in own:
+                face["thing"] = kind if len(alike) == 1 else f"{kind} {number}"
+                of_opening = face["opening"] is not None and face["kind"] == "reveal"
+                face["label"] = f"reveal of {face['thing']}" if of_opening else face["thing"]
+
+
+def _openings(faces, openings):
+    """The openings that have faces, in ascending id, with the names of these."""
+    found = []
+    for number, opening in sorted(openings.items()):
+        own = [face for face in faces if face["opening"] == number]
+        if own:
+            told = {"id": number, "shape": opening["shape"], "kind": opening["kind"], "label": own[0]["thing"]}
+            found.append({**told, "faces": [face["name"] for face in own]})
+    return found
 
 
 def _area(ring):
@@ -150,8 +204,12 @@ def _linear(value):
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
-def _scaled(point, factor):
-    return [value * factor for value in point]
+def _placed(point, factor, eye):
+    return [value * factor + own for value, own in zip(point, eye, strict=True)]
+
+
+def _offset(plane, factor, eye):
+    return plane["offset"] * factor + eye["xyz".index(plane["axis"])]
 
 
 def _dot(a, b):

@@ -62,10 +62,10 @@ export function transform(matrix, point) {
 
 function localMatrix(node) {
   if (node.matrix) return node.matrix;
-  if (node.rotation || node.scale || node.translation) {
-    throw new Error(`node ${node.name} has a rotation, scale or translation, where linecad writes matrices`);
+  if (node.rotation || node.scale) {
+    throw new Error(`node ${node.name} has a rotation or scale, where linecad writes matrices`);
   }
-  return IDENTITY;
+  return [...IDENTITY.slice(0, 12), ...(node.translation ?? [0, 0, 0]), 1];
 }
 
 function multiply(a, b) {

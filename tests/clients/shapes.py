@@ -40,7 +40,7 @@ def check_face(findings, face, points, triangles, tolerance):
     """Compare a triangulated face with the expected one.
 
     The triangles must use every corner of the rings and nothing else, have the rings as their border and the rings'
-    area, and be turned to the camera, which is the origin.
+    area, and be turned to the side that the face looks to.
     """
     name = face["name"]
     used = {index for triangle in triangles for index in triangle}
@@ -65,8 +65,9 @@ def check_face(findings, face, points, triangles, tolerance):
     area = sum(math.hypot(*normal_of(*triangle)) / 2 for triangle in corners)
     right = math.isclose(area, face["area"], rel_tol=1e-4, abs_tol=1e-4)
     findings.need(right, f"{name}: area {area} m2, expected {face['area']}")
-    away = sum(dot(normal_of(*triangle), triangle[0]) > 0 for triangle in corners)
-    findings.need(not away, f"{name}: {away} of {len(triangles)} triangles are turned away from the camera")
+    axis = AXES.index(face["axis"])
+    away = sum(normal_of(*triangle)[axis] * face["looks"] <= 0 for triangle in corners)
+    findings.need(not away, f"{name}: {away} of {len(triangles)} triangles are turned away from where it is seen")
 
 
 def check_names(findings, kind, names, wanted):
@@ -106,8 +107,8 @@ def check_pixels(findings, expected, placed, project, tolerance):
 
 def check_clipping(findings, expected, near, far):
     """Need every line between the clipping planes of a camera, whose distances are in m along its axis."""
-    forward = expected["camera"]["rotation"][2]
-    depths = [dot(forward, end) for line in expected["lines"] for end in line["ends"]]
+    forward, eye = expected["camera"]["rotation"][2], expected["camera"]["eye"]
+    depths = [dot(forward, end) - dot(forward, eye) for line in expected["lines"] for end in line["ends"]]
     findings.need(
         near < min(depths) and max(depths) < far,
         f"clipping at {near} and {far} m cuts the lines, which are {min(depths)} to {max(depths)} m away",

@@ -4,9 +4,11 @@ from expectation import build_expectation
 from faults import IN_EXPECTATION
 
 
-def test_lengths_are_metres_and_pixels_count_from_the_corner(expected):
+def test_lengths_are_metres_from_the_ground_up_and_pixels_count_from_the_corner(expected):
     floor = next(line for line in expected["lines"] if line["group"] == "lines_x_nonboundary" and line["id"] > 30)
-    assert floor["ends"] == [[-10.0, 20.0, -4.0], [12.5, 20.0, -4.0]]
+    assert floor["ends"] == [[-10.0, 20.0, 0.0], [12.5, 20.0, 0.0]]
+    assert expected["camera"]["eye"] == [0.0, 0.0, 4.0]
+    assert {"id": 2, "axis": "z", "offset": 0.0} in expected["planes"]
     assert floor["pixels"][0] == pytest.approx([800 * -10 / 20 + 390.8, 800 * 4 / 20 + 311.3])
     assert expected["frame"] == {"width": 820, "height": 624, "left": pytest.approx(19.2), "top": pytest.approx(0.7)}
 
@@ -14,8 +16,32 @@ def test_lengths_are_metres_and_pixels_count_from_the_corner(expected):
 def test_a_face_is_its_corners_and_its_area_without_the_holes(expected):
     wall = expected["faces"][0]
     assert (wall["name"], wall["axis"], wall["offset"]) == ("face_0004", "y", 25.0)
-    assert wall["area"] == pytest.approx((9 * 7.6 - 4) * 2.5**2)
-    assert wall["rings"] == [[0, 1, 2, 3], [4, 5, 6, 7]]
+    assert wall["area"] == pytest.approx((9 * 7.6 - 4 - 2) * 2.5**2)
+    assert wall["rings"] == [list(range(first, first + 4)) for first in (0, 4, 8, 12)]
+
+
+def test_without_a_ground_the_camera_is_the_origin(document):
+    for plane in document["planes"]:
+        for face in plane["faces"]:
+            face["kind"] = face["kind"].replace("ground", "other")
+    assert build_expectation(document)["camera"]["eye"] == [0.0, 0.0, 0.0]
+
+
+def test_without_a_scale_a_unit_is_a_metre_and_the_camera_the_origin(document):
+    document["metres_per_unit"] = None
+    expected = build_expectation(document)
+    assert expected["camera"]["eye"] == [0.0, 0.0, 0.0]
+    assert {"id": 2, "axis": "z", "offset": -1.6} in expected["planes"]
+
+
+def test_an_opening_has_its_faces_and_reveals_look_into_it(expected):
+    first, second = expected["openings"]
+    assert first["faces"] == [f"face_{number:04d}" for number in range(10, 15)]
+    assert (first["label"], second["label"], first["shape"]) == ("window 1", "window 2", second["shape"])
+    faces = {face["name"]: face for face in expected["faces"]}
+    assert [faces[name]["label"] for name in first["faces"][:2]] == ["window 1", "reveal of window 1"]
+    assert [faces[name]["looks"] for name in first["faces"]] == [-1.0, 1.0, -1.0, 1.0, -1.0]
+    assert [faces[name]["looks"] for name in second["faces"]] == [-1.0, 1.0, -1.0, 1.0, -1.0]
 
 
 def test_lines_of_a_group_are_red_green_and_blue_or_paler(expected):
@@ -39,6 +65,7 @@ def test_groups_by_role_end_in_it_but_for_outlines(drawn):
 
 
 def test_faces_are_called_by_their_kind(document):
+    del document["planes"][2:]
     faces = [face for plane in document["planes"] for face in plane["faces"]]
     assert [face["label"] for face in build_expectation(document)["faces"]] == ["wall", "ground"]
     del faces[0]["kind"]

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from exporters.model import build_model
-from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.scene import Camera, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport
 
 WIDTH, HEIGHT, FOCAL = 1600, 1200, 1350.0
 CENTRE = (879.3, 541.8)  # px, the principal point, far from the middle of the picture
@@ -34,7 +34,7 @@ FLAT = [
     (2, 4.2, rectangle((8, -1.2), (11, 0)), []),
     (1, -1.2, rectangle((8, 4.2), (11, 4.9)), []),
 ]
-KINDS = ["wall", "wall", "ground", "window", "window", "window", "door", "other", "other"]
+KINDS = ["wall", "wall", "other", "window", "window", "window", "door", "other", "other"]
 FLAT_LINES = [
     *[((0, 0, z), (12, 0, z)) for z in (3.4, 7.4)],
     *[((-4, y, 0), (13, y, 0)) for y in (-3.5, -2.0)],
@@ -218,6 +218,16 @@ def no_lines(scene):
 
 
 @pytest.fixture(scope="session")
+def grounded(scene):
+    """The scene with a ground, EYE's height below the camera: its exports have that at z = 0."""
+    planes = [
+        replace(plane, faces=tuple(replace(face, kind="ground") if face.id == 2 else face for face in plane.faces))
+        for plane in scene.planes
+    ]
+    return replace(scene, planes=tuple(planes))
+
+
+@pytest.fixture(scope="session")
 def free_unit(scene):
     return replace(scene, metres_per_unit=None)
 
@@ -231,3 +241,39 @@ def large_ids(scene):
         for plane in scene.planes
     )
     return replace(scene, lines=replace(scene.lines, id=scene.lines.id + 2**40), intersections=empty, planes=planes)
+
+
+ROW = [(1.5, 4.8), (4.8, 4.8), (8.4, 4.8)]  # lower left corners of three equal windows in the wall at y = 0
+SIZE, DEPTH = (1.2, 1.6), 0.25  # m: width and height, and how far the panes stand behind the wall
+
+
+def build_row():
+    """The faces of the windows of ROW by plane (axis, offset), and the openings; faces count from 0, five a window."""
+    flat, openings = {}, []
+    for number, (u, z) in enumerate(ROW):
+        right, top = u + SIZE[0], z + SIZE[1]
+        told = [(1, DEPTH, rectangle((u, z), (right, top)), "window")]
+        told += [(0, at, rectangle((0, z), (DEPTH, top)), "reveal") for at in (u, right)]
+        told += [(2, at, rectangle((u, 0), (right, DEPTH)), "reveal") for at in (z, top)]
+        for place, (axis, offset, ring, kind) in enumerate(told):
+            face = Face(5 * number + place, in_space(axis, offset, ring), (), kind, opening=number)
+            flat.setdefault((axis, offset), []).append(face)
+        low, high = np.array([u, z]) - EYE[[0, 2]], np.array([right, top]) - EYE[[0, 2]]
+        sides = (low[0], high[0], low[1], high[1])
+        openings.append(Opening(number, 11, *sides, "window", DEPTH, DEPTH - EYE[1], shape=4))
+    return flat, openings
+
+
+@pytest.fixture(scope="session")
+def row(scene):
+    """A scene of a wall with three equal windows that are set back, faces 0 to 14, and a ground, face 16."""
+    flat, openings = build_row()
+    holes = tuple(in_space(1, 0.0, rectangle(at, (at[0] + SIZE[0], at[1] + SIZE[1]))) for at in ROW)
+    flat[1, 0.0] = [Face(15, in_space(1, 0.0, rectangle((0, 0), (12, 8))), holes, "wall")]
+    flat[2, 0.0] = [Face(16, in_space(2, 0.0, rectangle((-4, -5), (13, 0))), (), "ground")]
+    planes = []
+    for number, ((axis, offset), faces) in enumerate(flat.items()):
+        identity = 11 if (axis, offset) == (1, 0.0) else 20 + number
+        planes.append(Plane(identity, axis, float(offset - EYE[axis]), lines=(), faces=tuple(faces)))
+    empty = Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[])
+    return replace(scene, planes=tuple(planes), intersections=empty, openings=tuple(openings), metres_per_unit=None)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from exporters.camera import camera_to_world, clipping_range, padded_frame, principal_point, vanishing_points
-from exporters.model import build_model
+from exporters.model import ORIGINS, build_model
 from linecad.scene import Camera
 
 
@@ -41,22 +41,27 @@ def test_the_padded_frame_is_even_and_holds_the_photo_about_the_principal_point(
 
 
 def test_the_pose_turns_what_is_seen_before_a_camera_that_looks_along_minus_z(scene, line_ends):
-    pose = camera_to_world(scene.rotation)
+    eye = np.array([1.0, 2.0, 3.0])
+    pose = camera_to_world(scene.rotation, eye)
     assert np.linalg.det(pose[:3, :3]) == pytest.approx(1)
-    seen = np.concatenate(list(line_ends.values())) @ np.linalg.inv(pose)[:3, :3].T
+    points = np.concatenate(list(line_ends.values()))
+    seen = np.c_[points + eye, np.ones(len(points))] @ np.linalg.inv(pose)[:3].T
+    np.testing.assert_allclose(seen, points @ scene.rotation.T * (1, -1, -1), atol=1e-9)
     assert (seen[:, 2] < 0).all()
 
 
 @pytest.mark.parametrize("factor", [1e-3, 1.0, 1e4])
-def test_the_clipping_planes_enclose_the_model(scene, factor):
-    small = build_model(replace(scene, metres_per_unit=factor))
-    near, far = clipping_range(small, scene.rotation)
-    depth = small.points @ scene.rotation[2]
-    distance = np.linalg.norm(small.points, axis=1)
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_the_clipping_planes_enclose_the_model(grounded, factor, origin):
+    small = build_model(replace(grounded, metres_per_unit=factor), origin=origin)
+    near, far = clipping_range(small)
+    points = grounded.lines.ends.reshape(-1, 3) * factor
+    depth = points @ grounded.rotation[2]
+    distance = np.linalg.norm(points, axis=1)
     assert 0 < near < depth.min()
     assert far > distance.max()
 
 
 def test_a_model_behind_the_camera_still_has_clipping_planes(scene, model):
-    near, far = clipping_range(model, -scene.rotation)
+    near, far = clipping_range(replace(model, scene=replace(scene, rotation=-scene.rotation)))
     assert 0 < near < far

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from exporters.formats import export
-from exporters.model import FREE_UNIT, KNOWN_UNIT
+from exporters.model import FREE_UNIT, KNOWN_UNIT, ORIGINS, build_model
 from exporters.triangulation import triangulate
 
 
@@ -114,6 +114,16 @@ def test_the_unit_the_photo_and_the_camera_are_told(scene, free_unit, document, 
     export(free_unit, tmp_path / "free.dxf")
     free = ezdxf.readfile(tmp_path / "free.dxf")
     assert dict(free.header.custom_vars.properties)["linecad unit"] == FREE_UNIT
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_z_0_is_the_ground_and_the_place_of_the_camera_is_told(grounded, tmp_path, origin):
+    export(grounded, tmp_path / "a.dxf", options={"origin": origin})
+    document, model = ezdxf.readfile(tmp_path / "a.dxf"), build_model(grounded, origin=origin)
+    place = dict(document.header.custom_vars.properties)["linecad camera position"]
+    assert [float(word) for word in place.split()] == model.eye.tolist()
+    lowest = min(min(line.dxf.start.z, line.dxf.end.z) for line in document.modelspace().query("LINE"))
+    assert lowest == pytest.approx(0.0 if origin == "ground" else -build_model(grounded, origin="ground").eye[2])
 
 
 def test_ids_that_32_bits_do_not_hold_are_text(large_ids, tmp_path):

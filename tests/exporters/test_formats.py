@@ -275,7 +275,8 @@ def test_what_lies_beside_an_export_is_what_the_row_says(scene, photo, tmp_path,
 
 
 def test_a_new_format_with_side_files_needs_its_module_and_its_row_alone(scene, tmp_path, monkeypatch):
-    def write(scene, path, names, loud):
+    def write(model, path, names, loud):
+        scene = model.scene
         path.write_text(f"{names.folder}/part-{len(scene.lines)}.bin {names.library}{'!' if loud else ''}")
         return SideFiles({f"part-{len(scene.lines)}.bin": b"lines"}, "material")
 

@@ -3,7 +3,7 @@ import pytest
 import trimesh
 
 from exporters.formats import export
-from exporters.model import FREE_UNIT, KNOWN_UNIT
+from exporters.model import FREE_UNIT, KNOWN_UNIT, ORIGINS, build_model
 from exporters.triangulation import triangulate
 
 
@@ -47,6 +47,18 @@ def test_the_obj_says_what_each_face_is(paths, model):
     assert [rows[rows.index(f"o {face.name}") + 1] for face in model.faces] == [
         f"# {face.label}" for face in model.faces
     ]
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".ply", ".stl"])
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_z_0_is_the_ground_unless_the_camera_is_to_be_the_origin(grounded, tmp_path, suffix, origin):
+    path = tmp_path / f"a{suffix}"
+    export(grounded, path, options={"origin": origin})
+    height = build_model(grounded, origin=origin).eye[2]
+    faces = np.concatenate([face.outline for _, face in grounded.faces])
+    low, high = trimesh.load_mesh(path, process=False).bounds[:, 2]
+    assert (low, high) == pytest.approx((faces[:, 2].min() + height, faces[:, 2].max() + height), abs=1e-5)
+    assert (height > 0) == (origin == "ground")
 
 
 def obj_lines(path):

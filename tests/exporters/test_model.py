@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from exporters.model import FREE_UNIT, KNOWN_UNIT, SHORTEST_LINE, build_model, signed_area
+from exporters.model import FREE_UNIT, KNOWN_UNIT, ON_GROUND, SHORTEST_LINE, build_model
 from linecad.scene import ROLES
 
 BANDS = {"sure": 0.99, "likely": 0.7, "guess": 0.2}  # the probabilities that the scene has
@@ -51,39 +51,6 @@ def test_an_unknown_scale_gives_one_metre_a_unit_and_says_so(free_unit, model):
     free = build_model(free_unit)
     assert free.unit_note == FREE_UNIT
     np.testing.assert_array_equal(free.points, model.points)
-
-
-def test_hidden_parts_of_faces_are_in_metres_too(scene):
-    plane = next(plane for plane in scene.planes if plane.faces)
-    part = plane.faces[0].outline[:3]
-    hiding = replace(plane, faces=(replace(plane.faces[0], hidden=(part,)),))
-    (face,) = build_model(replace(scene, planes=(hiding,), metres_per_unit=0.25)).faces
-    assert len(face.hidden) == 1
-    assert face.hidden[0] == pytest.approx(0.25 * part)
-
-
-def test_faces_look_at_the_camera(model):
-    for face in model.faces:
-        assert face.normal @ (0 - face.vertices[0]) > 0
-
-
-def test_outlines_turn_counter_clockwise_as_the_camera_sees_them_and_holes_the_other_way(model):
-    for face in model.faces:
-        across = [np.cross(ring, np.roll(ring, -1, axis=0)).sum(axis=0) @ face.normal for ring in face.rings]
-        assert across[0] > 0
-        assert all(value < 0 for value in across[1:])
-
-
-def test_the_two_axes_of_a_plane_give_its_normal(model):
-    for face in model.faces:
-        u, v = (np.eye(3)[axis] for axis in face.in_plane)
-        np.testing.assert_array_equal(np.cross(u, v), face.normal)
-
-
-def test_the_area_of_a_ring_far_from_the_origin_is_exact():
-    ring = np.array([(0, 0), (1, 0), (1, 1), (0, 1)]) + 1e9
-    assert signed_area(ring) == 1.0
-    assert signed_area(ring[::-1]) == -1.0
 
 
 @pytest.mark.parametrize(
@@ -146,18 +113,33 @@ def test_groups_have_their_plain_names_where_nobody_asks_for_roles_and_tell_them
     assert [group.ids.tolist() for group in plain.groups] == [group.ids.tolist() for group in model.groups]
 
 
-def test_faces_are_labelled_by_kind_and_counted_where_there_are_several(model):
-    assert [face.label for face in model.faces] == [
-        "wall 1", "wall 2", "ground", "window 1", "window 2", "window 3", "door", "other 1", "other 2",
-    ]  # fmt: skip
-    assert [face.kind for face in model.faces] == [face.label.split()[0] for face in model.faces]
+@pytest.mark.parametrize("metres", [1.0, 0.25])
+def test_on_the_ground_everything_is_as_much_higher_as_the_camera_is_above_it(grounded, metres):
+    scaled = replace(grounded, metres_per_unit=metres)
+    low, high = build_model(scaled), build_model(scaled, origin="ground")
+    height = -min(plane.offset for plane in scaled.planes if plane.axis == 2) * metres
+    assert low.eye.tolist() == [0, 0, 0]
+    assert high.eye.tolist() == [0, 0, height]
+    np.testing.assert_allclose(high.points, low.points + high.eye)
+    (ground,) = (face for face in high.faces if face.kind == "ground")
+    assert (ground.vertices[:, 2] == 0).all()
+    offsets = [after.offset - before.offset for before, after in zip(low.planes, high.planes, strict=True)]
+    assert offsets == pytest.approx([height * (plane.axis == "z") for plane in low.planes])
+    assert (low.unit_note, high.unit_note) == (KNOWN_UNIT, f"{KNOWN_UNIT}; {ON_GROUND}")
 
 
-def test_the_count_goes_by_id_through_all_planes(scene):
-    faces = iter([7, 3, 5, 0, 8, 1, 2, 6, 4])
-    planes = [
-        replace(plane, faces=tuple(replace(face, id=next(faces), kind="wall") for face in plane.faces))
-        for plane in scene.planes
-    ]
-    labels = {face.id: face.label for face in build_model(replace(scene, planes=tuple(planes))).faces}
-    assert labels == {number: f"wall {number + 1}" for number in range(9)}
+def test_the_lowest_of_several_grounds_counts(grounded):
+    plane = next(plane for plane in grounded.planes if plane.faces[0].kind == "ground")
+    lower = replace(plane.faces[0], id=99, outline=plane.faces[0].outline - [0, 0, 0.5], holes=())
+    other = replace(plane, id=99, offset=plane.offset - 0.5, faces=(lower,))
+    model = build_model(replace(grounded, planes=(*grounded.planes, other)), origin="ground")
+    assert model.eye[2] == pytest.approx(0.5 - plane.offset)
+
+
+@pytest.mark.parametrize("change", [{"metres_per_unit": None}, {"planes": ()}])
+def test_without_a_scale_or_a_ground_the_origin_stays_at_the_camera(grounded, change):
+    changed = replace(grounded, **change)
+    model, plain = build_model(changed, origin="ground"), build_model(changed)
+    assert model.eye.tolist() == [0, 0, 0]
+    assert model.points.tobytes() == plain.points.tobytes()
+    assert model.unit_note == plain.unit_note

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from exporters.formats import FORMATS, TEXTURES, export, options_for
+from exporters.formats import FORMATS, MODEL_OPTIONS, TEXTURES, export, options_for
 from exporters.options import Option, read_options
 from linecad.errors import OutputError
 
@@ -79,8 +79,8 @@ def test_an_option_of_a_format_that_is_not_written_is_refused():
     assert options_for([Path("a.glb"), Path("b.DXF")], ["tubes=on"]) == {"tubes": True}
     with pytest.raises(OutputError, match=r"no option 'tubes' for \.dxf, which has version"):
         options_for([Path("b.dxf")], ["tubes=on"])
-    with pytest.raises(OutputError, match=r"for \.stl, which has no options"):
-        options_for([Path("b.stl")], ["tubes=on"])
+    with pytest.raises(OutputError, match=r"for \.png, which has no options"):
+        options_for([Path("b.png")], ["tubes=on"])
 
 
 def test_an_option_is_passed_only_to_the_format_that_has_it(scene, tmp_path):
@@ -93,7 +93,9 @@ def test_an_option_is_passed_only_to_the_format_that_has_it(scene, tmp_path):
 @every_option
 def test_the_writer_takes_it_with_the_default_of_the_table(suffix, option):
     parameters = inspect.signature(importlib.import_module(FORMATS[suffix].module).write).parameters
-    if option in TEXTURES:  # what is made of these goes to the writer
+    if option in MODEL_OPTIONS:  # the model is made by these
+        assert option.name not in parameters
+    elif option in TEXTURES:  # what is made of these goes to the writer
         assert parameters["textures"].default is None
     else:
         assert parameters[option.name].default == option.default

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from exporters.model import build_model, signed_area
+from exporters.faces import signed_area
+from exporters.model import build_model
 from exporters.triangulation import triangulate
 from linecad.errors import OutputError
 from linecad.scene import Face, Plane

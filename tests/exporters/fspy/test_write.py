@@ -12,6 +12,7 @@ from PIL import Image
 from exporters.camera import vanishing_points
 from exporters.formats import export
 from exporters.fspy.write import write_camera
+from exporters.model import ORIGINS, build_model
 from linecad.errors import OutputError
 from linecad.line_graph import Segments
 from linecad.scene import Camera
@@ -94,6 +95,17 @@ def test_every_line_falls_on_the_photo_through_the_imported_camera(scene, photo,
     project = Project(tmp_path / "a.fspy")
     found = through_the_importer(project, scene.lines.ends.reshape(-1, 3))
     np.testing.assert_allclose(found, scene.lines.segment.reshape(-1, 2) + 0.5, atol=1e-6)
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_the_imported_camera_stands_above_the_ground_where_the_other_formats_have_it(grounded, photo, tmp_path, origin):
+    export(grounded, tmp_path / "a.fspy", photo, {"origin": origin})
+    project, eye = Project(tmp_path / "a.fspy"), build_model(grounded, origin=origin).eye
+    found = through_the_importer(project, grounded.lines.ends.reshape(-1, 3) + eye)
+    np.testing.assert_allclose(found, grounded.lines.segment.reshape(-1, 2) + 0.5, atol=1e-6)
+    export(replace(grounded, metres_per_unit=None), tmp_path / "free.fspy", photo)
+    places = [each.state["controlPointsStateBase"] for each in (project, Project(tmp_path / "free.fspy"))]
+    assert places[0] == places[1]
 
 
 def test_view_and_camera_transform_undo_each_other(project):

@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 import trimesh
 
-from exporters.colours import FACE, line_colour, linear
+from exporters.colours import face_colour, line_colour, linear
 from exporters.formats import export
-from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
+from exporters.model import FREE_UNIT, KNOWN_UNIT, ORIGINS, build_model
 from exporters.triangulation import triangulate
 
 COUNTS = {"SCALAR": 1, "VEC3": 3}
@@ -96,11 +96,11 @@ def test_every_face_is_there_as_its_triangles_with_normals_towards_the_camera(gl
         np.testing.assert_array_equal(np.stack([x, -z, y], axis=1), np.tile(face.normal, (len(face.vertices), 1)))
 
 
-def test_the_mesh_of_a_face_is_named_by_its_kind(glb, model):
+def test_the_mesh_of_a_face_is_named_by_its_kind_and_its_node_says_what_it_is(glb, model):
     for face in model.faces:
         mesh = glb.tree["meshes"][glb.node(face.name)["mesh"]]
         assert mesh["name"] == face.label
-        assert mesh["extras"] == {
+        assert glb.node(face.name)["extras"] == {
             "face_id": face.id, "kind": face.kind, "label": face.label, "plane_id": face.plane,
             "axis": "xyz"[face.axis], "offset": face.offset,
         }  # fmt: skip
@@ -119,7 +119,9 @@ def test_faces_are_two_sided(glb, model):
     for face in model.faces:
         material = glb.material(face.name)
         assert material["doubleSided"]
-        assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx([*linear(FACE), 1.0])
+        assert material["pbrMetallicRoughness"]["baseColorFactor"] == pytest.approx(
+            [*linear(face_colour(face.kind)), 1.0]
+        )
 
 
 def test_no_material_is_left_over(glb):
@@ -151,6 +153,18 @@ def test_every_line_falls_on_the_photo_through_the_camera_of_the_file(glb, model
         expected = np.concatenate([line_pixels[number] for number in group.ids.tolist()])
         worst = max(worst, np.abs(np.stack([across, down], axis=1) - expected).max())
     assert worst <= 0.05
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_on_the_ground_the_camera_stands_as_high_as_it_did(grounded, tmp_path, origin):
+    export(grounded, tmp_path / "a.glb", options={"origin": origin})
+    glb, model = Glb(tmp_path / "a.glb"), build_model(grounded, origin=origin)
+    x, y, z = glb.node("photo_camera")["matrix"][12:15]
+    assert (x, -z, y) == pytest.approx(tuple(model.eye))
+    for face in model.faces:
+        np.testing.assert_allclose(glb.positions(face.name), face.vertices, atol=1e-5)
+    offsets = [plane["offset"] for plane in glb.tree["scenes"][0]["extras"]["linecad_planes"]]
+    assert offsets == [plane.offset for plane in model.planes]
 
 
 def test_the_extras_tell_the_camera_matrix_from_the_corner(glb, scene):
@@ -200,7 +214,7 @@ def test_faces_alone_use_no_extension(no_lines, tmp_path):
     export(no_lines, tmp_path / "a.glb")
     glb = Glb(tmp_path / "a.glb")
     assert "extensionsUsed" not in glb.tree
-    assert [material["name"] for material in glb.tree["materials"]] == ["face"]
+    assert [material["name"] for material in glb.tree["materials"]] == ["face", "window", "door"]
 
 
 def test_lines_can_be_tubes_with_the_same_names_colours_and_ids(scene, model, glb, tmp_path):

@@ -3,7 +3,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from build123d import GeomType, Shape
+from build123d import GeomType, Shape, import_step
 from OCP.collections import Sequence_TDF_Label
 from OCP.IFSelect import IFSelect_ReturnStatus
 from OCP.Quantity import Quantity_Color, Quantity_TypeOfColor
@@ -14,9 +14,10 @@ from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_ColorType, XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from exporters.colours import FACE, line_colour
+from exporters.colours import face_colour, line_colour
+from exporters.faces import signed_area
 from exporters.formats import export
-from exporters.model import FREE_UNIT, build_model, signed_area
+from exporters.model import FREE_UNIT, build_model
 from linecad.errors import OutputError
 
 MILLIMETRES = 1000.0  # per metre
@@ -139,12 +140,79 @@ def test_lines_and_faces_have_their_colours(read, model):
             assert colour == linear_light(line_colour(group.axis, group.is_boundary))
     for face in model.faces:
         (shape,) = read.parts[face.name].faces()
-        assert read.colour(shape, XCAFDoc_ColorType.XCAFDoc_ColorSurf) == linear_light(FACE)
+        assert read.colour(shape, XCAFDoc_ColorType.XCAFDoc_ColorSurf) == linear_light(face_colour(face.kind))
 
 
 def test_the_camera_is_a_point_where_it_stood(read):
     assert points(read.parts["camera"]).tolist() == [[0.0, 0.0, 0.0]]
     assert not read.parts["camera"].edges()
+
+
+def test_on_the_ground_the_camera_stands_above_it(grounded, tmp_path):
+    export(grounded, tmp_path / "a.step")
+    read = Reader(tmp_path / "a.step")
+    model = build_model(grounded, origin="ground")
+    np.testing.assert_allclose(points(read.parts["camera"]), [model.eye])
+    for face in model.faces:
+        np.testing.assert_allclose(points(read.parts[face.name])[:, face.axis], face.offset, atol=1e-9)
+
+
+def test_an_opening_is_an_assembly_of_its_faces_in_their_places(row, tmp_path):
+    export(row, tmp_path / "a.step")
+    read, model = Reader(tmp_path / "a.step"), build_model(row)
+    for fitting in model.fittings:
+        assert read.parents[fitting.label] == "faces"
+        for face in fitting.faces:
+            assert read.parents[face.name] == fitting.label
+            assert read.places[face.name] == face.label
+            found = sorted(points(read.parts[face.name]).round(6).tolist())
+            np.testing.assert_allclose(found, sorted(face.vertices.round(6).tolist()), atol=2e-6)
+
+
+def test_as_instances_equal_openings_are_one_assembly_in_many_places(row, tmp_path):
+    path = tmp_path / "a.step"
+    export(row, path, options={"instances": True})
+    text = path.read_text()
+    model = build_model(row)
+    assert text.count("PRODUCT('window shape 4'") == 1
+    assert text.count("ADVANCED_FACE") == len(model.loose_faces) + 5
+    for fitting in model.fittings:
+        assert f"'{fitting.label}'" in text
+    whole = import_step(path)
+    assert len(whole.faces()) == len(model.faces)
+    boxes = sorted(tuple(np.round(points(face).mean(axis=0), 6)) for face in whole.faces())
+    wanted = sorted(tuple(np.round(np.unique(face.vertices, axis=0).mean(axis=0), 6)) for face in model.faces)
+    np.testing.assert_allclose(boxes, wanted, atol=2e-6)
+
+
+@pytest.fixture(scope="module")
+def panes(row):
+    """The row with its panes alone."""
+    planes = [
+        replace(plane, faces=tuple(face for face in plane.faces if face.kind != "reveal")) for plane in row.planes
+    ]
+    return replace(row, planes=tuple(planes))
+
+
+def test_a_pane_alone_is_a_part_and_no_assembly_that_would_take_its_name(panes, tmp_path):
+    export(panes, tmp_path / "a.step")
+    read = Reader(tmp_path / "a.step")
+    for fitting in build_model(panes).fittings:
+        (face,) = fitting.faces
+        assert read.parents[face.name] == "faces"
+        assert read.places[face.name] == fitting.label
+        assert fitting.label not in read.parents
+
+
+def test_as_instances_panes_alone_are_one_part_in_many_places(panes, tmp_path):
+    path = tmp_path / "a.step"
+    export(panes, path, options={"instances": True})
+    assert path.read_text().count("ADVANCED_FACE") == 3
+    middles = sorted(tuple(points(face).mean(axis=0)) for face in import_step(path).faces())
+    wanted = sorted(tuple(face.vertices.mean(axis=0)) for face in build_model(panes).faces)
+    panes_only = [each for each in wanted if any(np.allclose(each, other, atol=2e-6) for other in middles)]
+    assert len(middles) == len(wanted)
+    assert len(panes_only) >= 3
 
 
 def test_sewn_faces_that_share_edges_are_one_shell(scene, model, tmp_path):

@@ -66,7 +66,7 @@ def painted(scene, photo):
     """The pixels of the only patch with its margin, and the patch."""
     model, view = build_model(scene), view_of(scene)
     layout = build_layout(model, view, 4096)
-    (page,) = paint_pages(model, layout, view, photo)
+    (page,), _ = paint_pages(model, layout, view, photo)
     (patch,) = layout.patches
     assert (patch.left, patch.top) == (MARGIN, MARGIN)
     return page[: patch.rows + 2 * MARGIN, : patch.columns + 2 * MARGIN], patch

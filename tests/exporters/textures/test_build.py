@@ -20,6 +20,7 @@ from pxr import Usd, UsdGeom, UsdShade, UsdUtils, UsdValidation
 
 from exporters import formats
 from exporters.beside import NOTHING
+from exporters.faces import signed_area
 from exporters.formats import FORMATS, TEXTURES, export
 from exporters.model import build_model
 from exporters.textures.build import build_textures
@@ -380,7 +381,7 @@ def painted(scene, photo, number, size=4096):
     """The pixels of the one patch of a face with its margin, and the patch."""
     model = build_model(scene)
     layout = build_layout(model, view_of(scene), size)
-    pages = paint_pages(model, layout, view_of(scene), photo)
+    pages, _ = paint_pages(model, layout, view_of(scene), photo)
     patch = layout.patches[[face.id for face in model.faces].index(number)]
     rows = slice(patch.top - MARGIN, patch.top + patch.rows + MARGIN)
     return pages[patch.page][rows, patch.left - MARGIN : patch.left + patch.columns + MARGIN], patch
@@ -538,3 +539,31 @@ def test_textures_are_made_once_for_several_formats(scene, coloured, tmp_path, m
     for suffix in TEXTURED:
         export(scene, tmp_path / f"a{suffix}", photo)
     assert len(made) == 1
+
+
+@pytest.mark.parametrize("suffix", [".obj", ".glb"])
+def test_on_the_ground_the_texture_lies_where_it_lay(grounded, spotted, tmp_path, suffix):
+    made = []
+    for name, origin in (("a", "ground"), ("b", "camera")):
+        path = tmp_path / f"{name}{suffix}"
+        export(grounded, path, spotted, {"origin": origin})
+        made.append(read_obj(path) if suffix == ".obj" else read_glb(path))
+    for name, low in made[1].items():
+        np.testing.assert_allclose(made[0][name].coordinates, low.coordinates, atol=1e-6)
+
+
+def test_of_equal_faces_the_one_that_the_photo_shows_best_is_known(row, photo):
+    textures, model, view = build_textures(row, photo, 4096), build_model(row), view_of(row)
+    panes = [fitting.faces[0] for fitting in model.fittings]
+    areas = []
+    for pane in panes:
+        seen = seen_part(pane.rings[0], view)
+        areas.append(abs(signed_area(seen[:, :2] / seen[:, 2:])))
+        assert 0 < textures.shown[pane.id] <= 1.05 * areas[-1]
+    assert textures.best_shown(panes) is panes[int(np.argmax([textures.shown[pane.id] for pane in panes]))]
+    hedged = [
+        replace(plane, faces=tuple(replace(f, hidden=(f.outline,)) if f.id == panes[0].id else f for f in plane.faces))
+        for plane in row.planes
+    ]
+    behind = build_textures(replace(row, planes=tuple(hedged)), photo, 4096)
+    assert behind.shown[panes[0].id] == pytest.approx(textures.shown[panes[0].id] - areas[0])

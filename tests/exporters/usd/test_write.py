@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 from pxr import Sdf, Usd, UsdGeom, UsdShade, UsdValidation
 
-from exporters.colours import FACE, line_colour, linear
+from exporters.colours import face_colour, line_colour, linear
 from exporters.formats import export
-from exporters.model import FREE_UNIT, KNOWN_UNIT, build_model
+from exporters.model import FREE_UNIT, KNOWN_UNIT, ORIGINS, build_model
 from exporters.triangulation import triangulate
 from linecad.scene import Camera
 
@@ -129,7 +129,7 @@ def test_every_face_is_a_mesh(stage, model):
 
 def test_everything_has_a_material_of_its_colour(stage, model):
     colours = {f"Lines/{g.name}": ("emissiveColor", line_colour(g.axis, g.is_boundary)) for g in model.groups}
-    colours |= {f"Faces/{face.name}": ("diffuseColor", FACE) for face in model.faces}
+    colours |= {f"Faces/{face.name}": ("diffuseColor", face_colour(face.kind)) for face in model.faces}
     for name, (channel, colour) in colours.items():
         material, _ = UsdShade.MaterialBindingAPI(stage.GetPrimAtPath(f"{ROOT}/{name}")).ComputeBoundMaterial()
         shader, _, _ = material.ComputeSurfaceSource()
@@ -148,6 +148,18 @@ def test_all_planes_are_listed(stage, scene):
     assert list(root.GetAttribute("linecad:planeIds").Get()) == [plane.id for plane in scene.planes]
     assert list(root.GetAttribute("linecad:planeAxes").Get()) == ["xyz"[plane.axis] for plane in scene.planes]
     assert list(root.GetAttribute("linecad:planeOffsets").Get()) == [plane.offset for plane in scene.planes]
+
+
+@pytest.mark.parametrize("origin", ORIGINS)
+def test_z_0_is_the_ground_and_the_camera_still_sees_the_lines_on_the_photo(grounded, line_pixels, tmp_path, origin):
+    export(grounded, tmp_path / "a.usdc", options={"origin": origin})
+    model = build_model(grounded, origin=origin)
+    assert reprojection(tmp_path / "a.usdc", model, line_pixels) <= 0.05
+    stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
+    offsets = list(stage.GetDefaultPrim().GetAttribute("linecad:planeOffsets").Get())
+    assert offsets == [plane.offset for plane in model.planes]
+    ground = UsdGeom.Mesh(stage.GetPrimAtPath(f"{ROOT}/Faces/face_0002")).GetPointsAttr().Get()
+    assert {point[2] == 0 for point in ground} == {origin == "ground"}
 
 
 @pytest.mark.parametrize(

@@ -80,7 +80,7 @@ def test_commands_that_say_too_little(fails, arguments):
         ("a.dxf", "version=R12", "option version is 'R12', expected R2010 or R2018"),
         ("a.glb", "tube=on", "no option 'tube' for .glb, which has tubes"),
         ("a.step", "tubes=on", "no option 'tubes' for .step"),
-        ("a.stl", "tubes=on", "for .stl, which has no options"),
+        ("a.png", "tubes=on", "for .png, which has no options"),
         ("a.json", "tubes=on", "no option 'tubes' for the scene file, which has no options"),
     ],
 )
