@@ -4,7 +4,7 @@
 VENV := .venv
 BIN := $(VENV)/bin
 READY := $(VENV)/.ready
-DEMO := demo/street
+DEMO := demo/courtyard
 FORMATS := step dxf glb usdz usda json png
 ARGS :=
 # A file of tests goes to one process, in the order of names, by which no long one comes last.
@@ -17,7 +17,7 @@ SECONDS := 10
 .PHONY: help demo test test-all lint check results clean
 
 help:
-	@echo 'make demo    reconstruct the sample photo of a street: CAD files and a picture in demo/'
+	@echo 'make demo    reconstruct the sample photo of a courtyard: CAD files and a picture in demo/'
 	@echo 'make test    the everyday tests, minutes (some: make test ARGS="tests/solver -k gap"; in one process: PROCESSES=)'
 	@echo 'make test-all  all tests, with more examples each: what the CI runs'
 	@echo 'make lint    ruff and mypy'
@@ -29,7 +29,7 @@ help:
 
 demo: $(READY)
 	@mkdir -p $(dir $(DEMO))
-	$(BIN)/linecad convert samples/street.jpg --camera samples/street.json $(FORMATS:%=-o $(DEMO).%)
+	$(BIN)/linecad convert samples/courtyard.jpg --camera samples/courtyard.json $(FORMATS:%=-o $(DEMO).%)
 	@echo 'Made:' && ls -lh $(FORMATS:%=$(DEMO).%)
 
 test: $(READY)

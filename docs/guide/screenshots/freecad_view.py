@@ -21,7 +21,7 @@ def main():
     preferences = FreeCAD.ParamGet("User parameter:BaseApp/Preferences/Mod/Import/hSTEP")
     preferences.SetBool("ReadShapeCompoundMode", False)  # Enable STEP Compound merge
     FreeCADGui.activateWorkbench("PartWorkbench")
-    document = FreeCAD.newDocument("street")
+    document = FreeCAD.newDocument("courtyard")
     ImportGui.insert(os.environ["SCENE_STEP"], document.Name)
     for item in document.Objects:
         if hasattr(item.ViewObject, "LineWidth"):

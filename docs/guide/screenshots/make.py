@@ -19,7 +19,7 @@ from PIL import Image
 GUIDE = Path(__file__).resolve().parents[1]
 ROOT = GUIDE.parents[1]
 HERE = Path(__file__).parent
-SAMPLE = ROOT / "samples" / "street.jpg"
+SAMPLE = ROOT / "samples" / "courtyard.jpg"
 SCREEN = "1500x900x24"
 WIDEST = 1500  # px
 QUALITY = 82  # of the JPEG
@@ -36,7 +36,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         shutil.copy(SAMPLE, folder)
-        files = {suffix: folder / f"street.{suffix}" for suffix in ("step", "glb", "usdz")}
+        files = {suffix: folder / f"{SAMPLE.stem}.{suffix}" for suffix in ("step", "glb", "usdz")}
         outputs = [word for file in files.values() for word in ("-o", str(file))]
         camera = str(SAMPLE.with_suffix(".json"))
         command = [sys.executable, "-m", "linecad", "convert", str(SAMPLE), "--camera", camera, *outputs]
