@@ -63,7 +63,8 @@ def find_openings(
     if not found:
         return ()
     taken = choose(
-        [shape for likely in found for shape in likely.shapes()], np.concatenate([likely.odds for likely in found])
+        [shape for likely in found for shape in likely.shapes()],
+        np.concatenate([likely.odds for likely in found]) - LEAST_ODDS,
     )
     openings: list[Opening] = []
     start = 0
