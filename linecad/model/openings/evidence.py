@@ -28,7 +28,12 @@ class Sums:
         colours = raster.colours * inside[..., None]
         edges = (raster.upright | raster.level).view(np.uint8)
         squares = cv2.multiply(colours[..., 0], colours[..., 0], dtype=cv2.CV_32F)
-        channels = [*cv2.split(colours.astype(np.float32)), squares, edges.astype(np.float32), inside.astype(np.float32)]
+        channels = [
+            *cv2.split(colours.astype(np.float32)),
+            squares,
+            edges.astype(np.float32),
+            inside.astype(np.float32),
+        ]
         # Side by side, so that a corner is one look into memory.
         self._total: Float = np.asarray(cv2.integral(cv2.merge(channels), sdepth=cv2.CV_64F))
 
