@@ -21,11 +21,12 @@ def choose(shapes: list[shapely.Polygon], odds: Float) -> Int:
     """
     every = np.array(shapes, object)
     value = odds * np.sqrt(shapely.area(every))
+    taken = value > 0
     pairs = overlapping(every)
+    pairs = pairs[taken[pairs].all(axis=1)]
     graph = coo_array((np.ones(len(pairs), np.int8), pairs.T), (len(every), len(every)))
     count, group = connected_components(graph, directed=False)
     group_of_pair = group[pairs[:, 0]]
-    taken = value > 0
     for number in np.flatnonzero(np.bincount(group, minlength=count) > 1).tolist():
         members = np.flatnonzero(group == number)
         inside = np.searchsorted(members, pairs[group_of_pair == number])
@@ -44,7 +45,10 @@ def overlapping(shapes: np.ndarray[tuple[int], np.dtype[np.object_]]) -> Int:
 
 
 def heaviest_set(value: Float, pairs: Int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """The mask (N,) of the ones of most value (N,) in sum of which no two are a pair (P, 2), by HiGHS."""
+    """The mask (N,) of the ones of most value (N,) in sum of which no two are a pair (P, 2); all above 0."""
+    if 2 * len(pairs) == len(value) * (len(value) - 1):
+        # All overlap all others, as most groups do: one is taken.
+        return np.asarray(np.arange(len(value)) == value.argmax())
     cliques = _cliques(len(value), pairs)
     row = np.repeat(np.arange(len(cliques)), [len(clique) for clique in cliques])
     rows = coo_array((np.ones(len(row)), (row, np.concatenate(cliques))), (len(cliques), len(value))).tocsr()
