@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from linecad.model.openings import recess
 from linecad.model.openings.raster import Raster
 from linecad.model.openings.recess import depth_ratios
 
@@ -84,3 +85,14 @@ def test_windows_of_another_size_tell_for_themselves():
 
 def test_no_windows_tell_nothing():
     assert depth_ratios(raster_of(STARTS, 0.012), np.zeros((0, 4))).shape == (0,)
+
+
+def test_hole_that_was_found_too_small_tells_the_same():
+    found = depth_ratios(raster_of(STARTS, 0.012), boxes(STARTS, (0.05, -0.05)))
+    assert found == pytest.approx(0.012, rel=0.2)
+
+
+def test_what_fits_before_the_wall_as_well_tells_nothing(monkeypatch):
+    raster, box = raster_of(STARTS, 0.012), boxes(STARTS)
+    monkeypatch.setattr(recess, "BETTER", 9.0)
+    assert np.isnan(depth_ratios(raster, box)).all()
