@@ -26,11 +26,16 @@ class Sums:
     def __init__(self, raster: Raster) -> None:
         inside = raster.inside.astype(np.uint8)
         colours = raster.colours * inside[..., None]
-        lightness = colours[..., 0].astype(np.float32)
-        others = cv2.merge(
-            [lightness**2, (raster.upright | raster.level).astype(np.float32), inside.astype(np.float32)]
-        )
-        self._total: Float = np.dstack([cv2.integral(colours), cv2.integral(others)]).astype(np.float64)
+        edges = (raster.upright | raster.level).view(np.uint8)
+        squares = cv2.multiply(colours[..., 0], colours[..., 0], dtype=cv2.CV_32F)
+        channels = [
+            *cv2.split(colours.astype(np.float32)),
+            squares,
+            edges.astype(np.float32),
+            inside.astype(np.float32),
+        ]
+        # Side by side, so that a corner is one look into memory.
+        self._total: Float = np.asarray(cv2.integral(cv2.merge(channels), sdepth=cv2.CV_64F))
 
     def of(self, left: Int, right: Int, low: Int, high: Int) -> Float:
         """Sums (N, 6) over columns left to right and rows low to high, the ends not among them."""

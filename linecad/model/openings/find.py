@@ -2,10 +2,11 @@
 
 Each wall is looked at straight on (`raster`). Rectangles that edges close (`rectangles`) are judged by what the photo
 shows in and around them (`evidence`) and by the rows and columns they stand in (`lattice`, which proposes what edges
-missed). The likely ones that do not overlap are taken (`choice`) and made regular (`regular`).
+missed). The best set of which no two overlap is taken (`choice`) and made regular (`regular`); then windows of one size
+tell together how deep their panes are (`recess`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -13,16 +14,18 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
 from linecad.model.openings.choice import choose
-from linecad.model.openings.evidence import Sums, measure
+from linecad.model.openings.evidence import NAMES, Sums, measure
 from linecad.model.openings.lattice import distinct, propose, support
 from linecad.model.openings.odds import LEAST_ODDS, first_odds, odds
 from linecad.model.openings.raster import Raster, build_raster, look
+from linecad.model.openings.recess import depth_ratios
 from linecad.model.openings.rectangles import count_edges, find_rectangles
 from linecad.model.openings.regular import Seen, make_regular
 from linecad.model.openings.walls import Wall, find_walls
 from linecad.scene import Camera, Lines, Opening, Plane
 
 ALMOST_SAME = 0.8  # overlap of rectangles of which one is judged
+BRIGHTER = 1.0  # than the wall around it, by LEVELS of the evidence, a window is from inside; shelves are not
 SEEN_COVER = 1.2  # of the four sides in sum: with less, an opening was not seen
 
 
@@ -53,18 +56,21 @@ def find_openings(
     if pixels is None:
         return ()
     sight = look(pixels)
+    is_inside = any(face.kind == "ceiling" for plane in planes for face in plane.faces)
     found = []
     for wall in find_walls(planes, lines, camera, rotation):
         raster = build_raster(wall, sight)
         if raster is not None:
-            likely = _likely(wall, raster)
+            likely = _likely(wall, raster, is_inside)
             if len(likely.box):
                 found.append(likely)
     if not found:
         return ()
     taken = choose(
-        [shape for likely in found for shape in likely.shapes()], np.concatenate([likely.odds for likely in found])
+        [shape for likely in found for shape in likely.shapes()],
+        np.concatenate([likely.odds for likely in found]) - LEAST_ODDS,
     )
+    ground = _ground_height(planes)
     openings: list[Opening] = []
     start = 0
     for likely in found:
@@ -82,12 +88,32 @@ def find_openings(
                 ),
                 likely.cover[own] < SEEN_COVER,
             )
-            openings += make_regular(likely.wall, lines, seen, len(openings))
+            openings += _with_recess(make_regular(likely.wall, lines, seen, len(openings), ground), likely)
     return tuple(openings)
 
 
-def _likely(wall: Wall, raster: Raster) -> _Likely:
-    """The rectangles of one wall that may be openings."""
+def _ground_height(planes: tuple[Plane, ...]) -> float | None:
+    """The height of the ground; None where no face is part of it."""
+    heights = [plane.offset for plane in planes if any(face.kind == "ground" for face in plane.faces)]
+    return max(heights, default=None)
+
+
+def _with_recess(openings: list[Opening], likely: _Likely) -> list[Opening]:
+    """The openings of a wall, with how deep they are where the photo tells it."""
+    offset = {plane.id: plane.offset for plane in likely.wall.planes}
+    box = np.array([[each.u0, each.u1, each.v0, each.v1] for each in openings])
+    own = np.array([offset[each.plane] for each in openings])
+    # On the plane that the wall is looked at in, which the rays of the photo meet elsewhere.
+    ratios = depth_ratios(likely.raster, box * (likely.wall.plane.offset / own)[:, None])
+    pairs = zip(openings, own.tolist(), ratios.tolist(), strict=True)
+    return [
+        each if np.isnan(ratio) else replace(each, recess=ratio * abs(place), panel=(1 + ratio) * place)
+        for each, place, ratio in pairs
+    ]
+
+
+def _likely(wall: Wall, raster: Raster, is_inside: bool) -> _Likely:
+    """The rectangles of one wall that may be openings; seen from inside, only those that light comes through."""
     edges = count_edges(raster)
     box = find_rectangles(raster, edges)
     sums = Sums(raster)
@@ -103,5 +129,7 @@ def _likely(wall: Wall, raster: Raster) -> _Likely:
     # Once: asked again with what was proposed, rows and columns would support themselves.
     whole = odds(evidence, support(box, raster, others, other_odds))
     likely = whole >= LEAST_ODDS
+    if is_inside:
+        likely &= evidence[:, NAMES.index("darker")] <= -BRIGHTER
     cover = edges.cover(box[likely]).sum(axis=1)
     return _Likely(wall, raster, box[likely], whole[likely], cover)

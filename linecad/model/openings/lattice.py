@@ -19,16 +19,17 @@ SEEDS = 60  # rectangles from which others are proposed
 def distinct(box: Int, value: Float, double: float = DOUBLE, most: int = MOST) -> Int:
     """The best of each group of rectangles (N, 4) that mean the same, best first."""
     order = np.argsort(-value, kind="stable")[: 10 * most]
-    left = box[order].astype(np.float64)
+    left = np.ascontiguousarray(box[order].T)
+    left = np.vstack([left, (left[1] - left[0]) * (left[3] - left[2])])
     kept: list[int] = []
-    while len(left) and len(kept) < most:
+    while len(order) and len(kept) < most:
         kept.append(int(order[0]))
-        wide = np.minimum(left[0, 1], left[:, 1]) - np.maximum(left[0, 0], left[:, 0])
-        tall = np.minimum(left[0, 3], left[:, 3]) - np.maximum(left[0, 2], left[:, 2])
-        shared = wide.clip(min=0) * tall.clip(min=0)
-        area = (left[:, 1] - left[:, 0]) * (left[:, 3] - left[:, 2])
-        apart = shared < double * (area[0] + area - shared)
-        order, left = order[apart], left[apart]
+        u0, u1, v0, v1, area = left
+        wide = np.minimum(u1[0], u1) - np.maximum(u0[0], u0)
+        tall = np.minimum(v1[0], v1) - np.maximum(v0[0], v0)
+        shared = np.maximum(wide, 0) * np.maximum(tall, 0)
+        apart = np.flatnonzero(shared < double * (area[0] + area - shared))
+        order, left = order[apart], left[:, apart]
     return np.array(kept, np.int64)
 
 

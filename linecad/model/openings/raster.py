@@ -72,14 +72,15 @@ def build_raster(wall: Wall, sight: Sight) -> Raster | None:
     height, width = sight.gradient.shape[:2]
     inside = (at_x >= 1) & (at_y >= 1) & (at_x <= width - 2) & (at_y <= height - 2)
     gradient = cv2.remap(sight.gradient, at_x, at_y, cv2.INTER_LINEAR, borderMode=cv2.BORDER_CONSTANT)
-    strength = np.hypot(gradient[..., 0], gradient[..., 1])
+    along_x, along_y = cv2.split(gradient)
+    strength = np.asarray(cv2.magnitude(along_x, along_y), np.float32)
     edges = []
     for column in range(2):
         # The image direction of u or v; the edge runs along it and the gradient across.
         towards_x = np.float32(matrix[0, column]) * depth - x * np.float32(matrix[2, column])
         towards_y = np.float32(matrix[1, column]) * depth - y * np.float32(matrix[2, column])
-        across = np.abs(gradient[..., 0] * towards_y - gradient[..., 1] * towards_x) / np.hypot(towards_x, towards_y)
-        edges.append(np.where(inside & (across >= ALONG * strength), across, np.float32(0)))
+        across = np.abs(along_x * towards_y - along_y * towards_x) / cv2.magnitude(towards_x, towards_y)
+        edges.append(np.where(inside & (across >= np.float32(ALONG) * strength), across, np.float32(0)))
     colours = np.asarray(cv2.remap(sight.colours, at_x, at_y, cv2.INTER_LINEAR), np.uint8)
     return Raster(u, v, colours, inside, _thin(edges[1], 1), _thin(edges[0], 0))
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
 from linecad.model.openings.raster import Raster
@@ -20,6 +21,8 @@ COMMON = 0.4  # of the stretch that two uprights show together, which both show
 ABOUT = 0.2  # of an upright's length: how far beyond or before its end the level side may lie
 LARGEST_SHARE = 0.4  # of the raster's columns
 BEYOND = 0.2  # of a side: how far beyond its ends it is looked whether the edge goes on
+MOST = 2000  # rectangles of a wall
+PAST = 1.3  # what edges that go on cost, by edges that are seen, as in the weights of the evidence
 SLENDER = 6.0  # ratio of sides, from which a rectangle is none
 
 
@@ -27,8 +30,8 @@ SLENDER = 6.0  # ratio of sides, from which a rectangle is none
 class Edges:
     """How many edge points lie before each column or row, edges being three points wide."""
 
-    upright: Int  # (R + 1, C)
-    level: Int  # (R, C + 1)
+    upright: NDArray[np.int32]  # (R + 1, C)
+    level: NDArray[np.int32]  # (R, C + 1)
 
     def along_column(self, column: Int, start: Int, end: Int) -> Float:
         """Share (N,) of the rows from start to end that show an upright edge in a column."""
@@ -78,13 +81,16 @@ def count_edges(raster: Raster) -> Edges:
     upright = cv2.dilate(raster.upright.astype(np.uint8), np.ones((1, 3), np.uint8))
     level = cv2.dilate(raster.level.astype(np.uint8), np.ones((3, 1), np.uint8))
     return Edges(
-        np.pad(np.cumsum(upright, axis=0, dtype=np.int64), ((1, 0), (0, 0))),
-        np.pad(np.cumsum(level, axis=1, dtype=np.int64), ((0, 0), (1, 0))),
+        np.pad(np.cumsum(upright, axis=0, dtype=np.int32), ((1, 0), (0, 0))),
+        np.pad(np.cumsum(level, axis=1, dtype=np.int32), ((0, 0), (1, 0))),
     )
 
 
 def find_rectangles(raster: Raster, edges: Edges) -> Int:
-    """Left and right column, low and high row (N, 4) of all rectangles that edges close, nested ones too."""
+    """Left and right column, low and high row (N, 4) of rectangles that edges close, nested ones too, at most MOST.
+
+    Those stay whose sides show the most edges that end at their corners.
+    """
     column, run = _sticks(raster)
     first, second = _pairs(column, run, len(raster.u))
     if len(first) == 0:
@@ -93,10 +99,18 @@ def find_rectangles(raster: Raster, edges: Edges) -> Int:
     low = _levels(edges, left, right, run[first, 0], run[second, 0], run[first], run[second])
     high = _levels(edges, left, right, run[first, 1], run[second, 1], run[first], run[second])
     pair, low_row, high_row = _joined(low, high, len(first))
-    box = np.unique(np.column_stack([left[pair], right[pair], low_row, high_row]), axis=0)
+    # One number a box, since rows of four are slow to sort.
+    sizes = (len(raster.u), len(raster.u), len(raster.v) + 1, len(raster.v) + 1)
+    number = np.unique(np.ravel_multi_index((left[pair], right[pair], low_row, high_row), sizes))
+    box = np.column_stack(np.unravel_index(number, sizes))
     wide, tall = raster.u[box[:, 1]] - raster.u[box[:, 0]], raster.v[box[:, 3]] - raster.v[box[:, 2]]
     box = box[(box[:, 3] - box[:, 2] >= LEAST_SIDE) & (wide < SLENDER * tall) & (tall < SLENDER * wide)]
-    return np.asarray(box[edges.cover(box).sum(axis=1) >= LEAST_COVERS], np.int64)
+    covers = edges.cover(box).sum(axis=1)
+    box, covers = box[covers >= LEAST_COVERS], covers[covers >= LEAST_COVERS]
+    if len(box) > MOST:
+        closed = covers - PAST * edges.beyond(box).sum(axis=1)
+        box = box[np.sort(np.argsort(-closed, kind="stable")[:MOST])]
+    return np.asarray(box, np.int64)
 
 
 def _sticks(raster: Raster) -> tuple[Int, Int]:

@@ -1,4 +1,4 @@
-"""Openings made regular: sides at lines, rows and columns in line, equal ones equal, depth where lines tell it."""
+"""Openings made regular: sides at lines, rows and columns in line, equal ones equal."""
 
 from dataclasses import dataclass
 
@@ -10,13 +10,10 @@ from linecad.scene import Lines, Opening, OpeningKind, Plane
 
 POINTS = 2.5  # columns or rows of the raster within which a line is a side
 ALONGSIDE = 0.3  # of a side that a line must show to be it
-FLUSH = 0.003  # of the wall's distance: what is deeper is behind the wall
-DEEPEST = 0.04  # of the wall's distance: what is deeper is not its pane
-AGREE = 0.01  # of the wall's distance, within which lines behind tell one depth
-FEWEST_BEHIND = 2  # lines that tell a depth
+FLUSH = 0.003  # of the wall's distance: what is further off stands elsewhere than the photo shows it on the wall
 SAME = 0.06  # of a side, by which sizes and places differ that are taken to be the same
-FOOT = 0.12  # of its height: a door's foot is no higher above the wall's lowest line
-TALL = 1.3  # height over width of a door, at least
+FOOT = 0.2  # of its height: a door's foot is no higher above the ground, nor below it
+TALL = 1.5  # height over width of a door, at least
 LOWEST = 1.0  # per cent of the level lines that are below a wall's foot
 
 
@@ -29,12 +26,13 @@ class Seen:
     is_completed: Bool  # (N,)
 
 
-def make_regular(wall: Wall, lines: Lines, seen: Seen, first: int) -> list[Opening]:
-    """The openings of a wall; ids count from `first`, shapes too.
+def make_regular(wall: Wall, lines: Lines, seen: Seen, first: int, ground: float | None) -> list[Opening]:
+    """The openings of a wall; ids count from `first`, shapes too. Doors stand on the `ground`, at that height.
+
+    Where no ground is known, the lowest line of the wall stands for it.
 
     Each is put in the plane that the wall around it is in. A side is at its line's own coordinate where a line shows
-    it, before openings of a row or column are put in line and those of about one size get the same size. Where lines
-    behind the wall show the sides, the hole has their coordinates and its depth is theirs.
+    it, before openings of a row or column are put in line and those of about one size get the same size.
     """
     home = np.array([_home(wall, box) for box in seen.box], np.int64)
     openings: list[Opening] = []
@@ -44,9 +42,9 @@ def make_regular(wall: Wall, lines: Lines, seen: Seen, first: int) -> list[Openi
         # The camera is at the origin, so that planes differ by a factor for whoever looks along the rays.
         ratio = plane.offset / wall.plane.offset
         pairs = zip(seen.box[own], seen.step[own], strict=True)
-        found = [_at_lines(wall, plane, lines, box, step) for box, step in pairs]
-        placed = Seen(np.array([box for box, _ in found]), seen.step[own] * ratio, seen.is_completed[own])
-        openings += _in_line(wall, plane, placed, [depth for _, depth in found], first + len(openings))
+        found = np.array([_at_lines(wall, plane, lines, box, step) for box, step in pairs])
+        placed = Seen(found, seen.step[own] * ratio, seen.is_completed[own])
+        openings += _in_line(wall, plane, placed, first + len(openings), ground)
     return openings
 
 
@@ -70,20 +68,21 @@ def _shared(ends: Float, start: float, end: float) -> Float:
     return shared
 
 
-def _in_line(wall: Wall, plane: Plane, seen: Seen, depth: list[float | None], first: int) -> list[Opening]:
+def _in_line(wall: Wall, plane: Plane, seen: Seen, first: int, ground: float | None) -> list[Opening]:
     """Openings of one plane of a wall, in rows, columns and sizes."""
     box = seen.box
     wide, tall = box[:, 1] - box[:, 0], box[:, 3] - box[:, 2]
     left, low = _alike(box[:, 0], seen.step[:, 0], wide), _alike(box[:, 2], seen.step[:, 1], tall)
     wide, tall = _alike(wide, seen.step[:, 0], wide), _alike(tall, seen.step[:, 1], tall)
-    foot = float(np.percentile(wall.level.at, LOWEST)) * plane.offset / wall.plane.offset
+    foot = ground
+    if foot is None:
+        foot = float(np.percentile(wall.level.at, LOWEST)) * plane.offset / wall.plane.offset
     sizes: dict[tuple[float, float], int] = {}
     openings = []
     for row in range(len(box)):
         size = (float(wide[row]), float(tall[row]))
-        is_door = low[row] < 0 and low[row] - foot <= FOOT * size[1] and size[1] >= TALL * size[0]
+        is_door = low[row] < 0 and abs(low[row] - foot) <= FOOT * size[1] and size[1] >= TALL * size[0]
         kind: OpeningKind = "door" if is_door else "window"
-        recess = depth[row]
         openings.append(
             Opening(
                 id=first + row,
@@ -93,8 +92,6 @@ def _in_line(wall: Wall, plane: Plane, seen: Seen, depth: list[float | None], fi
                 v0=float(low[row]),
                 v1=float(low[row]) + size[1],
                 kind=kind,
-                recess=recess,
-                panel=None if recess is None else plane.offset + float(np.sign(plane.offset)) * recess,
                 is_completed=bool(seen.is_completed[row]),
                 shape=first + sizes.setdefault(size, len(sizes)),
             )
@@ -102,29 +99,20 @@ def _in_line(wall: Wall, plane: Plane, seen: Seen, depth: list[float | None], fi
     return openings
 
 
-def _at_lines(wall: Wall, plane: Plane, lines: Lines, box: Float, step: Float) -> tuple[Float, float | None]:
-    """A box (4,) of the wall in a plane of it, with sides at lines where there are some, and how far behind it is."""
-    sides = []
+def _at_lines(wall: Wall, plane: Plane, lines: Lines, box: Float, step: Float) -> Float:
+    """A box (4,) of the wall in a plane of it, with sides at lines of the plane where there are some."""
+    found: Float = box * (plane.offset / wall.plane.offset)
+    limit = np.repeat([found[1] - found[0], found[3] - found[2]], 2) / 4
     for side in range(4):
         rods, span = (wall.upright, box[2:]) if side < 2 else (wall.level, box[:2])
-        sides.append(_line_at(rods, float(box[side]), span, POINTS * float(step[side // 2])))
-    inside = [line for line in sides if line is not None] + _lines_inside(wall, box)
-    off = np.sign(plane.offset) * (lines.ends[inside, 0, plane.axis] - plane.offset) / abs(plane.offset)
-    behind = off[(off > FLUSH) & (off <= DEEPEST)]
-    depth = None
-    if len(behind) >= max(FEWEST_BEHIND, len(off) / 2) and np.ptp(behind) <= AGREE:
-        depth = float(np.median(behind)) * abs(plane.offset)
-    found = box * (plane.offset / wall.plane.offset)
-    limit = np.repeat([found[1] - found[0], found[3] - found[2]], 2) / 4
-    for side, line in enumerate(sides):
+        line = _line_at(rods, float(box[side]), span, POINTS * float(step[side // 2]))
         if line is None:
             continue
         away = abs(lines.ends[line, 0, plane.axis] / plane.offset - 1)
         place = lines.ends[line, 0, 1 - plane.axis if side < 2 else UP]
-        # Lines of other depths stand elsewhere than where the photo shows them on the wall.
-        if (away <= FLUSH or depth is not None) and abs(place - found[side]) <= limit[side]:
+        if away <= FLUSH and abs(place - found[side]) <= limit[side]:
             found[side] = place
-    return found, depth
+    return found
 
 
 def _line_at(rods: Rods, place: float, span: Float, reach: float) -> int | None:
@@ -133,16 +121,6 @@ def _line_at(rods: Rods, place: float, span: Float, reach: float) -> int | None:
     shared = np.where(np.abs(rods.at - place) <= np.maximum(rods.reach, reach), shared, 0.0)
     best = int(shared.argmax())
     return int(rods.row[best]) if shared[best] >= ALONGSIDE * (span[1] - span[0]) else None
-
-
-def _lines_inside(wall: Wall, box: Float) -> list[int]:
-    """Rows of the lines whose middles are inside a rectangle."""
-    inside: list[int] = []
-    for rods, at, span in ((wall.upright, box[:2], box[2:]), (wall.level, box[2:], box[:2])):
-        middle = rods.ends.mean(axis=1)
-        within = (rods.at > at[0]) & (rods.at < at[1]) & (middle > span[0]) & (middle < span[1])
-        inside += rods.row[within].tolist()
-    return inside
 
 
 def _alike(value: Float, step: Float, size: Float) -> Float:

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
+from linecad.model.openings import find, regular
 from linecad.model.openings.find import find_openings
+from linecad.scene import Face, Plane
 
 NEAR = 0.12  # units: a frame is that wide, and a raster's column about a quarter of it
 
@@ -73,3 +75,33 @@ def test_window_behind_a_tree_does_not_move_the_others(facade_of, number):
         if np.abs(np.array(facade.boxes)[:, :2] - [each.u0, each.u1]).max(axis=1).min() < NEAR
     }
     assert found >= set(range(len(facade.boxes))) - {number}
+
+
+def with_level(facade, kind, height):
+    """The facade's planes and a level one with a face of a kind."""
+    face = Face(0, np.array([[-6.0, 9, height], [6, 9, height], [6, 8, height]]), kind=kind)
+    return (*facade.planes, Plane(8, 2, height, (), (face,)))
+
+
+def test_from_inside_what_is_darker_than_the_wall_is_no_window(facade):
+    planes = with_level(facade, "ceiling", 4.0)
+    dark = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels)
+    bright = find_openings(planes, facade.lines, facade.camera, facade.rotation, 255 - facade.pixels)
+    assert dark == ()
+    assert len(bright) == len(facade.boxes)
+
+
+def test_what_stands_on_the_ground_is_a_door(facade, monkeypatch):
+    monkeypatch.setattr(regular, "TALL", 1.3)  # these are 1.5 times as tall as wide
+    planes = with_level(facade, "ground", min(box[2] for box in facade.boxes))
+    found = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels)
+    assert {(each.kind, each.v0 < 0) for each in found} == {("door", True), ("window", False)}
+
+
+def test_what_the_panes_tell_is_put_behind_the_plane_of_the_wall(facade, monkeypatch):
+    monkeypatch.setattr(find, "depth_ratios", lambda _, box: np.where(box[:, 2] < 0, 0.02, np.nan))
+    low = [each for each in facade.openings() if each.v0 < 0]
+    high = [each for each in facade.openings() if each.v0 > 0]
+    assert {(each.recess, each.panel) for each in high} == {(None, None)}
+    assert [each.recess for each in low] == pytest.approx([0.2] * 4)
+    assert [each.panel for each in low] == pytest.approx([10.2] * 4)

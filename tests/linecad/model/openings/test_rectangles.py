@@ -1,9 +1,8 @@
-"""Rectangles, rows and columns, and the choice among them, on small rasters."""
+"""Rectangles, rows and columns on small rasters."""
 
 import numpy as np
-import shapely
 
-from linecad.model.openings.choice import choose
+from linecad.model.openings import rectangles
 from linecad.model.openings.lattice import distinct, propose, support
 from linecad.model.openings.raster import Raster
 from linecad.model.openings.rectangles import count_edges, find_rectangles
@@ -83,6 +82,9 @@ def test_one_rectangle_proposes_nothing():
     assert len(propose(WINDOW[None], raster_of([WINDOW]))) == 0
 
 
-def test_the_likelier_of_two_that_overlap_is_taken():
-    shapes = [shapely.box(0, 0, 2, 2), shapely.box(1, 1, 3, 3), shapely.box(5, 5, 6, 6)]
-    assert choose(shapes, np.array([0.1, 0.4, -0.2])).tolist() == [1, 2]
+def test_only_the_best_closed_rectangles_stay(monkeypatch):
+    raster = raster_of([WINDOW, moved([60, 60, 0, 0])])
+    raster.level[30, :20] = True  # the head of the first goes on to the left
+    monkeypatch.setattr(rectangles, "MOST", 1)
+    [found] = find(raster)
+    assert nearest(found[None], moved([60, 60, 0, 0])) <= 1

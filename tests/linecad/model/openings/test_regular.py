@@ -1,4 +1,4 @@
-"""Openings are put at lines, in the plane of the wall around them, and as deep as lines behind it say."""
+"""Openings are put at lines, in the plane of the wall around them, and doors are told from windows."""
 
 from dataclasses import replace
 
@@ -14,9 +14,9 @@ STEP = np.full((2, 2), 0.02)
 BOXES = np.array([[-2.0, -1.0, 0.0, 1.5], [1.0, 2.03, 0.01, 1.5]])
 
 
-def regular(facade, lines, planes, box=BOXES):
+def regular(facade, lines, planes, box=BOXES, ground=None):
     wall = find_walls(planes, lines, facade.camera, facade.rotation)[0]
-    return make_regular(wall, lines, Seen(box, STEP[: len(box)], np.zeros(len(box), bool)), 5)
+    return make_regular(wall, lines, Seen(box, STEP[: len(box)], np.zeros(len(box), bool)), 5, ground)
 
 
 def plane_of(lines, rows, offset, number=0):
@@ -34,19 +34,16 @@ def test_nearly_equal_openings_become_equal(facade, sides):
     assert found[0].u1 - found[0].u0 == pytest.approx(found[1].u1 - found[1].u0, abs=1e-12)
 
 
-def test_lines_behind_tell_the_depth_and_the_hole_has_their_coordinates(facade, sides):
+def test_lines_behind_the_wall_do_not_move_its_holes(facade, sides):
     edges_of, lines_of = sides
     wall = edges_of(-6, 6, -2, 4) + edges_of(-5, 5, -1.5, 3) + edges_of(-4, -3, -1.4, 3)
     frame = edges_of(-2.05, -1.02, 0.01, 1.52, distance=10.2)
     lines = lines_of(wall + frame)
     seen = np.array([[-2.05, -1.02, 0.01, 1.52]]) * 10 / 10.2  # where the photo shows the frame on the wall
-    [found] = regular(
-        facade, lines, (plane_of(lines, slice(0, 12), 10.0), plane_of(lines, slice(12, 16), 10.2, 1)), seen
-    )
+    planes = (plane_of(lines, slice(0, 12), 10.0), plane_of(lines, slice(12, 16), 10.2, 1))
+    [found] = regular(facade, lines, planes, seen)
     assert found.plane == 0
-    assert found.recess == pytest.approx(0.2)
-    assert found.panel == pytest.approx(10.2)
-    assert (found.u0, found.v0) == (-2.05, 0.01)
+    assert [found.u0, found.u1, found.v0, found.v1] == pytest.approx(seen[0].tolist())
 
 
 def test_opening_is_in_the_plane_of_the_wall_around_it(facade, sides):
@@ -59,15 +56,30 @@ def test_opening_is_in_the_plane_of_the_wall_around_it(facade, sides):
     [found] = regular(facade, lines, planes, true * 10 / 10.3)
     assert found.plane == 1
     assert [found.u0, found.u1, found.v0, found.v1] == pytest.approx(true[0].tolist())
-    assert found.recess is None
 
 
-def test_door_stands_at_the_foot_of_its_wall(facade, sides):
+@pytest.mark.parametrize(
+    ("ground", "kinds"),
+    [
+        (-1.95, ["door", "window"]),
+        (-1.1, ["window", "door"]),
+        (-4.0, ["window", "window"]),
+        (None, ["door", "window"]),  # the wall's lowest line, at -2, stands for it
+    ],
+)
+def test_door_stands_on_the_ground(facade, sides, ground, kinds):
     edges_of, lines_of = sides
     lines = lines_of(edges_of(-6, 6, -2, 4) + edges_of(-5, 5, -1.8, 3) + edges_of(-4, -3, -1.7, 3))
     boxes = np.array([[-2.0, -1.0, -1.95, 0.4], [1.0, 2.0, -1.1, 0.4]])
-    found = regular(facade, lines, (plane_of(lines, slice(None), 10.0),), boxes)
-    assert [each.kind for each in found] == ["door", "window"]
+    found = regular(facade, lines, (plane_of(lines, slice(None), 10.0),), boxes, ground)
+    assert [each.kind for each in found] == kinds
+
+
+def test_what_is_as_wide_as_tall_is_no_door(facade, sides):
+    edges_of, lines_of = sides
+    lines = lines_of(edges_of(-6, 6, -2, 4) + edges_of(-5, 5, -1.8, 3) + edges_of(-4, -3, -1.7, 3))
+    [found] = regular(facade, lines, (plane_of(lines, slice(None), 10.0),), np.array([[-2.0, 0.0, -1.95, 0.4]]), -1.95)
+    assert found.kind == "window"
 
 
 def test_photo_and_coordinates_agree(facade):
