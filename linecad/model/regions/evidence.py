@@ -50,7 +50,7 @@ LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
 MOST_LINES = 0.02  # share of samples on lines inside the sky
 BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
-SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.3
+SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.7
 
 COLOUR_WEIGHT = 0.25
 MOST_BY_COLOUR = 2.0  # log-odds
