@@ -125,7 +125,7 @@ def build_scene(
     planes, openings = with_openings(planes, at_home(openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     cleaning = cleaned.note(lines)
-    notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []))
+    notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []), regions.note)
     return Scene(
         photo=view.photo,
         camera=view.camera,

@@ -11,7 +11,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.normals import UNTOLD
-from linecad.model.regions.raster import Raster
+from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines
 
@@ -50,7 +50,7 @@ LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
 MOST_LINES = 0.02  # share of samples on lines inside the sky
 BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
-SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.3
+SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.7
 
 COLOUR_WEIGHT = 0.25
 MOST_BY_COLOUR = 2.0  # log-odds
@@ -136,7 +136,8 @@ def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) 
     is_own[surface.lines] = True
     own = is_own[raster.line]
     near = raster.distance(raster.marked(own))
-    cost: Float = NEAR_COST * (1 - np.exp(-near / NEAR)) + FAR_COST * (1 - np.exp(-near / FAR))
+    cost: Float = _rising(near, NEAR, NEAR_COST)
+    cost += _rising(near, FAR, FAR_COST)
     if surface.kind in ("ground", "ceiling"):
         cost = np.minimum(cost, LEVEL_COST + COVERED_COST * (_beyond(raster, surface.kind) > COVERED))
     if len(surface.lines):
@@ -146,46 +147,61 @@ def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) 
         # Other components have scales of their own: what is behind what is less sure there.
         behind = ~own & (lines.component[raster.line] == component) & (before > 0)
         through = raster.distance(raster.marked(behind & (raster.line_depth > BEHIND * before)))
-        cost += THROUGH_COST * (through <= SEEN_THROUGH) + BESIDE_COST * np.exp(-through / REACH) * (through < near)
+        beside = np.flatnonzero((through < near) | (through <= SEEN_THROUGH))
+        off = through[beside]
+        cost[beside] += THROUGH_COST * (off <= SEEN_THROUGH) + BESIDE_COST * np.exp(-off / REACH) * (off < near[beside])
     if surface.kind not in ("ground", "ceiling"):
         cost += _outside(raster, lines, surface, depth)
+    return cost
+
+
+def _rising(off: Float, reach: float, most: float) -> Float:
+    """A cost (S,) that rises to `most` with the distance (S,) from a line."""
+    cost = off / -reach  # in place from here: new arrays of this size take longer than the sums in them
+    np.exp(cost, out=cost)
+    np.subtract(1, cost, out=cost)
+    cost *= most
     return cost
 
 
 def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
     """Cost (S,) of being outside the box of a surface's lines, and NEVER far behind all of them."""
     ends = lines.ends[surface.lines].reshape(-1, 3)
-    seen = np.flatnonzero(np.isfinite(depth))
-    met = depth[seen]
-    over = np.zeros(len(seen))
+    is_seen = np.isfinite(depth)
+    met = np.where(is_seen, depth, 0.0)  # whole columns are faster than the seen samples of them
+    over = np.zeros(raster.size)
     for axis in range(3):
         if axis != surface.axis:
             low, high = np.percentile(ends[:, axis], [1, 99])
-            at = raster.rays[seen, axis] * met
-            over += np.maximum(np.maximum(low - at, at - high), 0) / max(high - low, NARROWEST * abs(surface.offset))
+            at = raster.rays[:, axis] * met
+            off = low - at
+            at -= high
+            np.maximum(off, at, out=off)
+            np.maximum(off, 0, out=off)
+            off /= max(high - low, NARROWEST * abs(surface.offset))
+            over += off
     own = raster.line_depth[np.isin(raster.line, surface.lines)]
     furthest = float(np.quantile(own, NEARLY_ALL)) if len(own) else 0.0
-    cost = np.full(raster.size, NEVER)
-    most = NEVER if surface.kind == "level" else MOST_OUTSIDE
-    cost[seen] = (
-        (surface.kind == "level") * RARE_COST
-        + np.minimum(OUTSIDE_COST * over, most)
-        + NEVER * (met > FURTHEST * furthest)
-    )
-    return cost
+    over *= OUTSIDE_COST
+    np.minimum(over, NEVER if surface.kind == "level" else MOST_OUTSIDE, out=over)
+    over += (surface.kind == "level") * RARE_COST
+    over[met > FURTHEST * furthest] += NEVER
+    over[~is_seen] = NEVER
+    return over
 
 
 def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> Bool:
     """Where (S,) a level would be seen through a wall between the wall's ends, by the depths (S, K) of surfaces."""
     hidden = np.zeros(raster.size, bool)
+    reach = depth[:, level] / BEHIND
     for number, surface in enumerate(surfaces):
         if surface.kind != "wall":
             continue
         along = 1 - surface.axis
         low, high = np.percentile(lines.ends[surface.lines][:, :, along], [2, 98])
-        nearer = np.flatnonzero(depth[:, number] < depth[:, level] / BEHIND)
-        at = raster.rays[nearer, along] * depth[nearer, number]
-        hidden[nearer[(at > low) & (at < high)]] = True
+        before = depth[:, number]
+        at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
+        hidden |= (before < reach) & (at > low) & (at < high)
     return hidden
 
 
@@ -232,16 +248,14 @@ def colour_costs(raster: Raster, cell: Int, label: Int, columns: int) -> Float:
 
     A wall that is plain between its windows is known by its colour, and so is the roof above it as another thing.
     """
-    smooth = cv2.GaussianBlur(raster.colour, (0, 0), 1.0).reshape(-1, 3).astype(np.int64)
-    shades = np.clip((smooth[:, 1:] - 88) // 10, 0, 7)
-    colour = smooth[:, 0] // 32 * 64 + shades[:, 0] * 8 + shades[:, 1]
-    everywhere = np.bincount(colour, minlength=512) + 1.0
+    colour = raster.shade
+    everywhere = np.bincount(colour, minlength=SHADES) + 1.0
     everywhere /= everywhere.sum()
-    shown = label[cell]
+    of_cell = np.bincount(cell * SHADES + colour, minlength=len(label) * SHADES).reshape(-1, SHADES)
     costs = np.zeros((len(label), columns))
     for number in np.unique(label).tolist():
-        own = np.bincount(colour[shown == number], minlength=512)
+        own = of_cell[label == number].sum(axis=0)
         share = own + (SHARE_OF_ALL * own.sum() + 1) * everywhere
         odds = np.clip(np.log(share / share.sum() / everywhere), -MOST_BY_COLOUR, MOST_BY_COLOUR)
-        costs[:, number] = -COLOUR_WEIGHT * np.bincount(cell, odds[colour], len(label))
+        costs[:, number] = -COLOUR_WEIGHT * (of_cell @ odds)
     return costs

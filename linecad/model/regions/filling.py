@@ -15,6 +15,7 @@ from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, expand
 from linecad.model.regions.evidence import sums
 from linecad.model.regions.labelling import UNIT, Labels
+from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.scene import Camera
 
@@ -31,6 +32,14 @@ class Filled:
 
     labels: Labels
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
+
+    @property
+    def note(self) -> str:
+        """How sure it is that no other labels are better, for people."""
+        cells = f"faces: what each of the {len(self.labels.cells)} parts of the photo shows"
+        if self.labels.gap == 0:
+            return f"{cells} is proven best for its costs"
+        return f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"
 
 
 def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
@@ -61,7 +70,10 @@ def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
     started = np.where(inside, whole.argmin(axis=1), label)
     borders = _neighbours(cells)
     label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky, found.clutter])
-    return Filled(replace(found, cells=cells, cell=cell, label=label, costs=whole, borders=borders), clutter)
+    proof = prove(Program(whole, borders, 0, 0), label)
+    gap = max(found.gap, proof.gap)
+    filled = replace(found, cells=cells, cell=cell, label=proof.label, costs=whole, borders=borders, gap=gap)
+    return Filled(filled, clutter)
 
 
 def _to_fill(found: Labels, camera: Camera) -> list[shapely.Polygon]:

@@ -2,10 +2,11 @@
 
 Labels are found by lines and edges first, then with the colours that this gives each label. A surface that wins less
 than it costs to have one more is left out. Then lines are taken away that only cut off steps, the shortest first, and
-of all answers on the way that one is taken whose labels and corners together cost least.
+of all answers on the way that one is taken whose labels and corners together cost least. For its cells the labels are
+proven cheapest, or replaced by cheaper ones, or it is told how far from the cheapest they may be.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +19,7 @@ from linecad.arrays import Bool, Float, Int
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, energy, expand
 from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
+from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import Meets, View, find_meets, limit_of_depth
 from linecad.model.regions.surfaces import Surface
@@ -30,8 +32,8 @@ COLOUR_STEP = 12.0  # CIE L*a*b*, by which the rest of it falls to 1 / e
 SURFACE = 0.006  # cost of one more surface, in samples of all
 DOUBTFUL = 3.0  # times that; surfaces that win more are kept without a question
 FEWEST_WINS = 6  # surfaces asked in one turn
-RUNS = (0.01, 0.02, 0.03, 0.04, 0.06)  # of the photo's width; lines of which no longer piece is a border are left out
-CORNER = 0.0004  # cost of one more corner of an outline, in samples of all
+RUNS = (0.02, 0.04, 0.06, 0.08, 0.10)  # of the photo's width; lines of which no longer piece is a border are left out
+CORNER = 0.0012  # cost of one more corner of an outline, in samples of all
 ON_BORDER = 1e-3  # px
 STRAIGHT = 1e-6  # px; a corner nearer to the straight outline is none
 
@@ -47,6 +49,7 @@ class Labels:
     of_samples: Float  # (S, K + 2) costs of each sample by itself
     costs: Int  # (C, K + 2)
     borders: Borders
+    gap: float = 1.0  # by which other labels may be cheaper, as a share of what is not cheapest; 1: nothing is known
 
     @property
     def sky(self) -> int:
@@ -93,7 +96,16 @@ def find_labels(
         answers.append(_labels(partition.cut(border), costs, drawn, surfaces, raster))
         used = np.unique(rows[_bordering(answers[-1], border, run * camera.width) & (rows >= 0)])
         segments, count = segments[used], int((used < count).sum())
-    return min(answers, key=lambda answer: answer.price)
+    return _proven(min(answers, key=lambda answer: answer.price), raster)
+
+
+def _proven(found: Labels, raster: Raster) -> Labels:
+    """The labels, or cheaper ones of the same cells, with their gap to the cheapest."""
+    price = round(SURFACE * raster.size * UNIT)
+    proof = prove(Program(found.costs, found.borders, len(found.surfaces), price), found.label)
+    if proof.label is found.label:
+        return replace(found, gap=proof.gap)
+    return replace(found, label=_like_neighbours(found.cells, found.cell, proof.label), gap=proof.gap)
 
 
 def _meets_of_neighbours(found: Labels, shown: Int, meets: Meets) -> Float:

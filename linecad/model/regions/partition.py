@@ -80,12 +80,12 @@ def _is_beside(own: Float, middle: Float, along: Float, half: float, reach: floa
         return False
     across = np.array([-along[1], along[0]])
     direction = own[:, 1] - own[:, 0]
-    is_parallel = np.abs(direction @ across) < PARALLEL * np.linalg.norm(direction, axis=1)
-    off = np.abs((own - middle) @ across)
-    place = (own - middle) @ along
+    is_parallel = np.abs(direction @ across) < PARALLEL * np.hypot(direction[:, 0], direction[:, 1])
+    own = own[is_parallel] - middle
+    near = np.abs((own[:, 0] + own[:, 1]) @ across) < 2 * reach
+    place = own[near] @ along
     overlap = np.minimum(place.max(axis=1), half) - np.maximum(place.min(axis=1), -half)
-    distance = np.minimum(off.max(axis=1), np.abs((own.mean(axis=1) - middle) @ across))
-    return bool((is_parallel & (distance < reach) & (overlap > half)).any())
+    return bool((overlap > half).any())
 
 
 def _crossings(lines: Float, middle: Float, along: Float) -> Float:

@@ -5,6 +5,7 @@ across whatever the photo's size, so that lengths in samples mean the same in ev
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import cv2
 import numpy as np
@@ -20,6 +21,7 @@ FINER = 2  # times as fine a raster is where the directions of edges are measure
 EDGE = 0.35  # gradient, in units of the noise that light itself has; a stronger one is an edge
 DARK = 8.0  # grey value that is added before the square root, so that black has some noise
 ALONG_AXIS = np.sin(np.radians(8.0))  # of the angle between an edge and an image line through a vanishing point
+SHADES = 512  # in which colours are told apart: 8 of lightness, 8 of each hue
 NO_AXIS = 3  # column of the votes of edges that run along none
 
 Picture = NDArray[np.uint8]
@@ -45,6 +47,14 @@ class Raster:
     def size(self) -> int:
         """S."""
         return self.shape[0] * self.shape[1]
+
+    @cached_property
+    def shade(self) -> Int:
+        """The colour (S,) of each sample as one of SHADES."""
+        smooth = cv2.GaussianBlur(self.colour, (0, 0), 1.0).reshape(-1, 3).astype(np.int64)
+        hues = np.clip((smooth[:, 1:] - 88) // 10, 0, 7)
+        shade: Int = smooth[:, 0] // 32 * 64 + hues[:, 0] * 8 + hues[:, 1]
+        return shade
 
     def marked(self, points: Bool) -> Bool:
         """Mask (S,) of the samples with one of the masked points (T,)."""

@@ -66,6 +66,17 @@ def test_walls_have_few_corners_and_hardly_a_hole(found):
             assert len(shapely.get_coordinates(outline)) - 1 <= 6
 
 
+def test_walls_meet_the_sky_without_a_step(found):
+    walls = [number for number, surface in enumerate(found.surfaces) if surface.kind == "wall"]
+    for region in (region for number, region in found.regions if number in walls):
+        corners = shapely.get_coordinates(region.exterior)[:-1]
+        along = np.roll(corners, -1, axis=0) - corners
+        before = np.roll(along, 1, axis=0)
+        turn = np.sign(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0])
+        short = np.linalg.norm(along, axis=1) < 0.05 * shapely.length(region) / 2
+        assert not ((turn * np.roll(turn, -1) < 0) & short & (region.area > 1)).any()
+
+
 def test_regions_cover_the_photo_once(found):
     regions = [region for _, region in found.regions]
     frame = shapely.box(-0.5, -0.5, 959.5, 719.5)
