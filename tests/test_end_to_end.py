@@ -151,6 +151,14 @@ def test_the_command_turns_a_photo_into_every_kind_of_file(tmp_path):
     mesh = trimesh.load(tmp_path / "model.obj", force="mesh")
     corners = np.concatenate([face.outline for _, face in scene.faces])
     np.testing.assert_allclose(np.sort(np.ptp(mesh.vertices, axis=0)), np.sort(np.ptp(corners, axis=0)), rtol=1e-4)
+    # Of the 18 windows and doors that are seen, most are cut out of their walls, and are things in the GLB.
+    walls = [face for _, face in scene.faces if face.kind == "wall"]
+    panes = [face for _, face in scene.faces if face.kind in ("window", "door")]
+    assert 9 <= len(panes) <= 24
+    assert sum(len(wall.holes) for wall in walls) >= 9
+    nodes = trimesh.load(tmp_path / "model.glb").graph.nodes
+    assert {f"face_{face.id:04d}" for face in panes} <= set(nodes)
+    assert sum(name.startswith(("window", "door")) for name in nodes) == len({face.opening for face in panes})
 
 
 def test_a_photo_with_exif_needs_no_camera_file():

@@ -115,7 +115,7 @@ def build_scene(
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     cleaned = clean_lines(lines, _intersections(graph, decision, found, new_id), sight)
-    lines = cleaned.lines
+    lines = _by_size(cleaned.lines)
     planes = find_planes(lines.ends[:, 0], cleaned.shared, lines.id)
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
@@ -159,6 +159,14 @@ def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Comp
         component=found.component[kept],
         confidence=confidence[kept],
     )
+
+
+def _by_size(lines: Lines) -> Lines:
+    """The lines with the components behind component 0 numbered by their size, which joining lines changed."""
+    count = np.bincount(lines.component)
+    number = np.zeros(len(count), np.int64)
+    number[1 + np.argsort(-count[1:], kind="stable")] = np.arange(1, len(count))
+    return replace(lines, component=number[lines.component])
 
 
 def _intersections(graph: LineGraph, decision: Decision, found: Components, new_id: Int) -> Intersections:
