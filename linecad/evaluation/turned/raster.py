@@ -20,7 +20,8 @@ NOTHING = -1
 BACKGROUND = (0.93, 0.94, 0.96)  # sRGB
 NEAREST = 1e-3  # of the distance that a view looks at; what is nearer is cut away
 LINE_BIAS = 1e-3  # of the depth; a face does not hide the lines in it
-AMBIENT = 0.4  # of the light on a lit face that the lamp at the camera does not shine on
+AMBIENT = 0.4  # of the light on a lit face that the lamp does not shine on
+TO_LAMP = np.array([-0.3, -0.5, -1.0])  # from what is lit, in the frame of the camera: over its left shoulder
 TINY = 1e-12
 
 
@@ -157,12 +158,11 @@ def _sampled(picture: NDArray[np.uint8], u: Float, v: Float) -> Float:
 
 
 def _shade(model: GlbModel, view: View, triangle: Int) -> Float:
-    """The light (M,) on lit triangles (M,) of a lamp at the camera."""
+    """The light (M,) on lit triangles (M,) of a lamp far behind the camera, the same on all of one plane."""
     corners = model.triangles
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    towards = view.position - corners.mean(axis=1)
-    length = np.linalg.norm(normal, axis=1) * np.linalg.norm(towards, axis=1)
-    light: Float = AMBIENT + (1 - AMBIENT) * np.abs((normal * towards).sum(axis=1)) / np.maximum(length, TINY)
+    lamp = TO_LAMP @ view.rotation / np.linalg.norm(TO_LAMP)
+    light: Float = AMBIENT + (1 - AMBIENT) * np.abs(normal @ lamp) / np.maximum(np.linalg.norm(normal, axis=1), TINY)
     return light[triangle]
 
 

@@ -172,3 +172,10 @@ def test_a_lit_face_is_darker_at_a_flat_angle(model):
         for each in (flat, replace(flat, triangles=slanted))
     )
     assert straight_on > flat_angle + 20
+
+
+def test_a_face_has_one_light_all_over(model):
+    wide = replace(square(4.0, 4.0, model), materials=(Material(np.full(3, 0.5), None, True, True),))
+    lit = replace(wide, triangles=wide.triangles + np.array([3.0, 0.0, 0.0]))  # one triangle is nearer than the other
+    colours = paint(lit, straight(), draw_triangles(lit, straight()))
+    assert len({tuple(colours[row, column].tolist()) for row in (5, 50, 95) for column in (40, 60, 95)}) == 1
