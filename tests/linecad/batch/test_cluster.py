@@ -76,6 +76,7 @@ def cluster(tmp_path_factory, thorough):
         cluster.close()
 
 
+@pytest.mark.thorough
 def test_photos_travel_as_bytes_and_results_are_those_of_convert(cluster, survey, output, tmp_path, thorough):
     photos = survey(3 if thorough else 1)
     camera = tmp_path / "camera.json"

@@ -68,6 +68,7 @@ def test_after_random_kills_every_photo_is_done_once(kills, photos, calm, tmp_pa
     assert killed.total() >= 3
 
 
+@pytest.mark.thorough
 def test_all_processes_die_with_the_one_that_gives_out_photos(kills, photos, tmp_path):
     batch = kills.start(photos[0].parent, tmp_path / "out")
     end = time.monotonic() + 60
@@ -103,6 +104,7 @@ def test_ctrl_c_ends_the_batch_in_one_line_and_leaves_it_ready_to_go_on(kills, p
     kills.check_done(output, photos, calm.contents)
 
 
+@pytest.mark.thorough
 def test_a_second_batch_in_the_folder_is_refused_in_one_line(kills, photos, tmp_path):
     batch = kills.start(photos[0].parent, tmp_path / "out")
     end = time.monotonic() + 60

@@ -92,6 +92,7 @@ def test_photos_are_converted_and_told_of(executor, survey, job_of, output):
         assert 50 < outcome.memory_mb < 1500
 
 
+@pytest.mark.thorough
 def test_a_photo_makes_the_same_files_as_convert(executor, survey, job_of, output, tmp_path):
     suffixes = (".json", ".dxf", ".glb", ".obj", ".png")
     photo = sorted(survey(1).iterdir())[0]
@@ -141,6 +142,7 @@ def test_the_time_limit_ends_a_photo_and_no_other(executor, slow, slow_job, surv
     assert found[1].status == "done"
 
 
+@pytest.mark.thorough
 def test_the_memory_limit_ends_a_photo_and_no_other(executor, slow, slow_job, survey, job_of):
     executor.submit(0, slow_job(slow, memory_mb=400))
     executor.submit(1, job_of(sorted(survey(1).iterdir())[0]))

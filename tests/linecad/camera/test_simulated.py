@@ -113,6 +113,7 @@ def test_what_is_called_recovered() -> None:
     assert not verdict(np.nan, np.nan, 0.0, "", "no frame").is_recovered
 
 
+@pytest.mark.thorough
 def test_the_same_seed_gives_the_same_photo() -> None:
     first, again = (draw_canvas(draw_shot(5, 9), np.random.default_rng(2)) for _ in range(2))
     assert (first.pixels == again.pixels).all()

@@ -64,6 +64,7 @@ def test_the_sky_of_the_truth_is_brighter_than_the_ground_of_the_photo(dataset: 
     assert grey[truth.ids == NOTHING].mean() > grey[-20:].mean() + 20
 
 
+@pytest.mark.thorough
 def test_the_same_seed_gives_the_same_truth(dataset: Path) -> None:
     again = measure(draw_draft(3, 1), 320, 180)
     found = read_truth(dataset / "street-0001")

@@ -109,6 +109,7 @@ def is_gone(pid):
     return False
 
 
+@pytest.mark.thorough
 @posix
 def test_kill_9_loses_nothing_that_was_saved_and_leaves_no_process(serve, folder):
     first = serve()

@@ -9,6 +9,8 @@ from exporters.formats import export
 from linecad.camera.photo import read_photo
 from linecad.io.scene_file import read_scene
 
+pytestmark = pytest.mark.thorough  # every day the server is asked what the page asks it (test_server.py)
+
 STEPS = 30
 
 
@@ -65,7 +67,6 @@ def test_the_inspector_says_why_a_crossing_is_real_or_not(screen):
     assert "chosen" in seen
 
 
-@pytest.mark.thorough
 def test_a_click_draws_its_mark_as_drawing_everything_does(screen):
     crossing = next(each for each in apart(screen.state["crossings"]) if each["real"])
     screen.run("linecad.photo.change((viewport) => viewport.zoom(2))")
@@ -99,7 +100,6 @@ def test_keys_say_what_the_crossing_under_the_pointer_is(screen):
         assert by_id(screen.served.ask("state"), "crossings", crossing["id"])["label"] == value
 
 
-@pytest.mark.thorough
 def test_thirty_edits_are_undone_and_redone_exactly(screen):
     chosen = apart(screen.state["crossings"], 40.0)[:10]
     assert len(chosen) == 10
@@ -160,7 +160,6 @@ def test_a_line_is_split_where_it_is_clicked_and_joined_again(screen):
     assert {each["id"] for each in screen.state["lines"]} == ids
 
 
-@pytest.mark.thorough
 def test_a_line_is_drawn_with_undo_inside_it_and_a_proposed_axis(screen):
     state = screen.state
     line = longest(state, "z")
@@ -206,7 +205,6 @@ def test_a_known_length_sets_the_scale(screen):
     assert "7.50 m" in screen.page.locator("#inspector").inner_text()
 
 
-@pytest.mark.thorough
 def test_lines_drawn_along_the_axes_give_the_frame(screen):
     screen.press("a")
     for axis in ("z", "x"):
@@ -301,7 +299,6 @@ def test_a_contradiction_is_named_and_lit_up(screen, made):
     screen.page.get_by_text(contradiction["text"]).wait_for(state="detached")
 
 
-@pytest.mark.thorough
 def test_labelling_goes_from_one_crossing_to_the_next(screen):
     screen.press("l")
     order = [each["id"] for each in screen.state["crossings"]]
@@ -321,7 +318,6 @@ def test_labelling_goes_from_one_crossing_to_the_next(screen):
     assert screen.run("linecad.store.labelling") is False
 
 
-@pytest.mark.thorough
 def test_an_export_is_the_file_that_linecad_export_writes(screen, tmp_path):
     for name in ("json", "dxf", "glb"):
         screen.press("e")
@@ -339,7 +335,6 @@ def test_an_export_is_the_file_that_linecad_export_writes(screen, tmp_path):
         assert (tmp_path / f"page.{name}").read_bytes() == (tmp_path / f"command.{name}").read_bytes()
 
 
-@pytest.mark.thorough
 def test_a_reload_and_a_killed_server_bring_everything_back(new_screen, start):
     first = new_screen(start())
     first.open()
@@ -362,7 +357,6 @@ def test_a_reload_and_a_killed_server_bring_everything_back(new_screen, start):
     first.complaints = [text for text in first.complaints if "ERR_CONNECTION_REFUSED" not in text]
 
 
-@pytest.mark.thorough
 def test_a_search_tells_how_far_it_is_and_stop_keeps_the_best(new_screen, start, long_search):
     slow = new_screen(
         start("--option", "extension=200", "--option", "formulation=gain", "--time-limit", "120", photo=long_search)
