@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float
-from linecad.model.openings.corners import rectangle_in_space
+from linecad.model.openings.corners import panel_in_space, rectangle_in_space
 from linecad.scene import Face, FaceKind, Opening, Plane
 
 UP = 2  # the vertical axis
@@ -133,16 +133,14 @@ def _with_faces(planes: list[Plane], cuts: list[_Cut]) -> tuple[Plane, ...]:
 def _faces_of(cut: _Cut) -> list[tuple[int, float, Face]]:
     """Pane and reveals of an opening: the axis and offset of the plane, and the face, each with id 0."""
     opening, wall = cut.opening, cut.wall
-    hole = rectangle_in_space(opening, wall)
-    if opening.panel is None:
+    hole, deep = rectangle_in_space(opening, wall), panel_in_space(opening, wall)
+    if deep is None:
         rectangle = shapely.Polygon(_flat(hole, wall))
         parts = [shapely.make_valid(shapely.Polygon(_flat(ring, wall))) for ring in cut.face.hidden]
         shared = [shapely.intersection(part, rectangle) for part in parts]
         return [(wall.axis, wall.offset, _face(hole, opening.kind, opening, _rings(shared, rectangle, wall)))]
-    deep = hole.copy()
-    deep[:, wall.axis] = opening.panel
-    behind = replace(wall, offset=opening.panel)
-    found = [(wall.axis, opening.panel, _face(deep, opening.kind, opening, _hidden_by_wall(deep, opening, behind)))]
+    behind = replace(wall, offset=float(deep[0, wall.axis]))
+    found = [(wall.axis, behind.offset, _face(deep, opening.kind, opening, _hidden_by_wall(deep, opening, behind)))]
     for side in range(4):  # sill, right, head, left: the sides of the hole in the order of its corners
         other = (side + 1) % 4
         ring = np.array([hole[side], hole[other], deep[other], deep[side]])
