@@ -132,7 +132,7 @@ def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, F
     """The line (P,) nearest to each pixel, and the log depth (P,) of its ray where that line has log depth 0."""
     graph = setting.graph
     ends = np.repeat(graph.rays[:, None], 2, axis=1)
-    lines = SimpleNamespace(segment=graph.segments.ends, axis=graph.axis, ends=ends)
+    lines = SimpleNamespace(axis=graph.axis, ends=ends, segments_of=lambda line: graph.segments.ends[line : line + 1])
     scene = SimpleNamespace(camera=found.camera, rotation=found.frame.rotation, lines=lines)
     on = nearest_lines(scene, pixels, np.ones(len(graph.axis), bool))
     factor = depths_of(scene, pixels, on)
