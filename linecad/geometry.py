@@ -4,6 +4,7 @@ Frames are those of `linecad.scene`. `K` is the camera matrix in px, `R` takes w
 `pixel ~ K R P` and the world ray of a pixel is `d = R^-1 K^-1 pixel` (paper, equations 1 and 2).
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import permutations
 
@@ -146,3 +147,9 @@ def segment_coordinates(points: Float, ends: Float) -> tuple[Float, Float]:
     place: Float = (off * along).sum(axis=-1)
     beside: Float = along[..., 0] * off[..., 1] - along[..., 1] * off[..., 0]
     return place, beside
+
+
+def ring_sides(rings: Iterable[Float]) -> Float:
+    """Both ends (E, 2, 3) of each side of closed rings (V, 3), ring by ring; (0, 2, 3) for none."""
+    sides = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
+    return np.concatenate([np.zeros((0, 2, 3)), *sides])

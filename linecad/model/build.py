@@ -17,6 +17,7 @@ from linecad.model.clean.clean import clean_lines
 from linecad.model.clean.roles import with_roles
 from linecad.model.clean.settling import settled
 from linecad.model.clean.sight import Sight
+from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
 from linecad.model.lifting import Lifted
@@ -126,7 +127,7 @@ def build_scene(
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     cleaning = cleaned.note(lines)
     notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []), regions.note)
-    return Scene(
+    scene = Scene(
         photo=view.photo,
         camera=view.camera,
         rotation=view.frame.rotation,
@@ -142,6 +143,7 @@ def build_scene(
         depth_map=depth_map,
         openings=openings,
     )  # fmt: skip
+    return without_ticks(scene, sight)
 
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:

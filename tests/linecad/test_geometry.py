@@ -19,6 +19,7 @@ from linecad.geometry import (
     homogeneous,
     plane_normals,
     project,
+    ring_sides,
     rotation_about,
     segment_coordinates,
     vanishing_points,
@@ -150,3 +151,13 @@ def test_a_ray_passes_nearest_to_a_line_at_its_depth(axis):
     assert (distance(depth) <= np.minimum(distance(depth + 1e-3), distance(depth - 1e-3))).all()
     met = depths_beside(rays, 3 * rays + 7 * np.eye(3)[axis], np.full(5, axis))
     assert met == pytest.approx(np.full(5, 3.0))
+
+
+def test_sides_of_rings_lead_from_corner_to_corner_and_back():
+    ring = np.array([[0.0, 0, 0], [1, 0, 0], [1, 1, 0]])
+    sides = ring_sides([ring, ring + 5])
+    assert sides.shape == (6, 2, 3)
+    np.testing.assert_array_equal(sides[:3, 0], ring)
+    np.testing.assert_array_equal(sides[:3, 1], ring[[1, 2, 0]])
+    np.testing.assert_array_equal(sides[3:], sides[:3] + 5)
+    assert ring_sides([]).shape == (0, 2, 3)

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int
 from linecad.evaluation.draughting.shapes import Shape
-from linecad.geometry import project
+from linecad.geometry import project, ring_sides
 from linecad.scene import Scene
 
 NEAR = 0.01  # an end that misses a line by less was meant to meet it
@@ -122,9 +122,8 @@ def _at_outlines(scene: Scene, points: Float, depth: Float, shapes: list[Shape])
 
     Behind a nearer face, or behind what hides a part of a face, nobody sees where a line ends.
     """
-    rings = [ring for shape in shapes for ring in shape.face.hidden]
-    hidden = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
-    edges = np.concatenate([*(shape.edges for shape in shapes), *hidden])
+    hidden = ring_sides(ring for shape in shapes for ring in shape.face.hidden)
+    edges = np.concatenate([*(shape.edges for shape in shapes), hidden])
     found: Bool = np.array(distances(points, edges) < ON_OUTLINE * depth, np.bool_)
     before = ((edges @ scene.rotation[2]) > SMALLEST_DEPTH).all(axis=1)
     seen = project(edges[before], scene.camera.matrix, scene.rotation)

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
-from linecad.geometry import world_rays
+from linecad.geometry import ring_sides, world_rays
 from linecad.scene import Face, Plane, Scene
 
 NO_FACE = -1
@@ -46,11 +46,7 @@ class Shape:
     @cached_property
     def edges(self) -> Float:
         """(E, 2, 3) both ends of each side of all rings, in the world."""
-        found = []
-        for ring in self.rings:
-            world = np.insert(ring, self.plane.axis, self.plane.offset, axis=1)
-            found.append(np.stack([world, np.roll(world, -1, axis=0)], axis=1))
-        return np.concatenate(found)
+        return ring_sides(np.insert(ring, self.plane.axis, self.plane.offset, axis=1) for ring in self.rings)
 
     @property
     def diagonal(self) -> float:

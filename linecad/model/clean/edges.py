@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.geometry import ring_sides
 from linecad.model.clean.strokes import Strokes, pairs_within
 
 ON_EDGE = 0.003  # of the depth, between a line and an edge that it is
@@ -40,9 +41,8 @@ class Edges:
 
 def ring_edges(rings: list[Float]) -> Edges:
     """The edges of rings (V, 3) that run along axes."""
-    starts = np.concatenate([np.zeros((0, 3)), *rings])
-    ends = np.concatenate([np.zeros((0, 3)), *(np.roll(ring, -1, axis=0) for ring in rings)])
-    return Edges.between(starts, ends)
+    sides = ring_sides(rings)
+    return Edges.between(sides[:, 0], sides[:, 1])
 
 
 def sides_of(openings: Float) -> Edges:

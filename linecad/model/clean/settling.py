@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.geometry import depths_beside, world_rays
+from linecad.geometry import depths_beside, ring_sides, world_rays
 from linecad.model.clean.ends import MEETS, NEAR, close_ends, ends_that_meet, nearest_crossings, without_new_twins
 from linecad.model.clean.joining import with_ends
 from linecad.model.clean.sight import NEAREST, Sight
@@ -39,9 +39,8 @@ def settled(lines: Lines, planes: tuple[Plane, ...], sight: Sight) -> Lines:
 
 def outlines_of(planes: tuple[Plane, ...]) -> Float:
     """The edges (E, 2, 3) of all faces, of their holes, and of what hides parts of them."""
-    rings = [ring for plane in planes for face in plane.faces for ring in (face.outline, *face.holes, *face.hidden)]
-    edges = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
-    return np.concatenate([np.zeros((0, 2, 3)), *edges])
+    faces = [face for plane in planes for face in plane.faces]
+    return ring_sides(ring for face in faces for ring in (face.outline, *face.holes, *face.hidden))
 
 
 def settle_ends(strokes: Strokes, outlines: Float, sight: Sight) -> Strokes:

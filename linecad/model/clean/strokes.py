@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.scene import Lines
 
 # Of the depth, in which parallel lines are one: a thousandth, which is a pixel in a small photo and three in a large
@@ -40,6 +40,12 @@ class Strokes:
         points = np.repeat(self.offset[:, None], reach.shape[1], axis=1)
         points[self.rows[:, None], np.arange(reach.shape[1]), self.axis[:, None]] = reach
         return points
+
+    def of(self, chosen: Bool) -> "Strokes":
+        """The masked lines (N,) alone."""
+        given = (self.axis, self.component, self.weight, self.offset, self.number, self.reach)
+        axis, component, weight, offset, number, reach = (each[chosen] for each in given)
+        return Strokes(axis, component, self.forward, weight, offset, number, reach)
 
     @property
     def end_depth(self) -> Float:

@@ -1,0 +1,57 @@
+"""Ticks: stubs of detail that stand on a line and end nowhere, which a draughtsman does not draw.
+
+Detection breaks off an edge that grows faint, and what is left of it may be shorter than the distance by which an end
+misses a line: then its free end is near the line that it stands on, and nothing can close it.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from linecad.arrays import Bool, Float
+from linecad.confidence import with_lines
+from linecad.model.clean.ends import NEAR, close_ends, ends_that_meet
+from linecad.model.clean.joining import with_ends
+from linecad.model.clean.settling import at_outlines, outlines_of
+from linecad.model.clean.sight import Sight
+from linecad.model.clean.strokes import Strokes, strokes_of
+from linecad.scene import DETAIL, Scene
+
+LONGEST = 2 * NEAR  # of the depth; whatever its one end meets, the other end of a longer line is no near miss of it
+MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by then
+
+
+def without_ticks(scene: Scene, sight: Sight) -> Scene:
+    """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
+
+    Lines stay that a person said something about. Planes go that only ticks showed; a note counts the ticks.
+    """
+    outlines = outlines_of(scene.planes)
+    found = scene
+    for _ in range(MOST_ROUNDS):
+        strokes = strokes_of(found.lines, sight.forward)
+        ticks = _ticks(found, strokes, outlines, sight)
+        if not ticks.any():
+            break
+        found = with_lines(found, ~ticks)
+        found = replace(found, lines=with_ends(found.lines, close_ends(strokes_of(found.lines, sight.forward))[0]))
+    gone = len(scene.lines) - len(found.lines)
+    if gone == 0:
+        return scene
+    shown = {plane.id for plane in scene.planes if not plane.lines}
+    planes = tuple(plane for plane in found.planes if plane.lines or plane.faces or plane.id in shown)
+    note = f"{gone} stubs shorter than {LONGEST:.1%} of their depth end nowhere and are left out"
+    return replace(found, planes=planes, notes=(*scene.notes, note))
+
+
+def _ticks(scene: Scene, strokes: Strokes, outlines: Float, sight: Sight) -> Bool:
+    """Which lines (N,) are ticks."""
+    crossings = scene.intersections
+    said = np.unique(crossings.lines[np.asarray(crossings.reason) == "annotated"])
+    share = np.ptp(strokes.reach, axis=1) / np.abs(strokes.depth)
+    meets = ends_that_meet(strokes)
+    ticks: Bool = (share < LONGEST) & ~meets.all(axis=1)
+    ticks &= (scene.lines.role == DETAIL) & ~np.isin(scene.lines.id, said)
+    stopped = at_outlines(strokes.of(ticks), outlines, sight) & (share[ticks] >= NEAR)[:, None]
+    ticks[ticks] = ~(meets[ticks] | stopped).all(axis=1)
+    return ticks

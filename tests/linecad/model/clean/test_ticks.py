@@ -1,0 +1,84 @@
+"""Stubs that end nowhere are not drawn."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linecad.model.clean.sight import Sight
+from linecad.model.clean.ticks import LONGEST, without_ticks
+from linecad.scene import Face, Plane, Scene, SolveReport
+
+X, Y, Z = range(3)
+DEPTH = 10.0
+SILL = (X, (-2, DEPTH, 0), (2, DEPTH, 0))
+LEFT = (Z, (-2, DEPTH, -1), (-2, DEPTH, 0))
+
+
+def tick(height, x=0.0):
+    """An upright line of that height on the sill."""
+    return (Z, (x, DEPTH, 0), (x, DEPTH, height))
+
+
+@pytest.fixture
+def drawn(lines, crossings, camera, rotation):
+    """The scene, without ticks, of rows of detail behind SILL and LEFT, in one wall."""
+
+    def draw(rows, planes=None, roles=None, reason=""):
+        rows = [SILL, LEFT, *rows]
+        found = replace(lines(rows), role=roles or ["outline"] * 2 + ["detail"] * (len(rows) - 2))
+        scene = Scene(
+            photo="wall.jpg", camera=camera, rotation=rotation, lines=found,
+            intersections=crossings([(0, row) for row in range(1, len(rows))], reason=reason),
+            planes=planes or (Plane(0, Y, DEPTH, tuple(range(len(rows))), ()),),
+            solve=SolveReport("SCIP 10.0", "bodies", "optimal", 0, 0, 0), notes=("before",),
+        )  # fmt: skip
+        return scene, without_ticks(scene, Sight.of(camera, rotation, None))
+
+    return draw
+
+
+def test_a_tick_goes_with_its_crossing_and_a_note_counts_it(drawn):
+    _, found = drawn([tick(0.07), tick(0.3, 1)])
+    assert found.lines.id.tolist() == [0, 1, 3]
+    assert found.intersections.lines.tolist() == [[0, 1], [0, 3]]
+    assert found.planes[0].lines == (0, 1, 3)
+    assert found.notes == ("before", f"1 stubs shorter than {LONGEST:.1%} of their depth end nowhere and are left out")
+
+
+def test_a_scene_without_ticks_is_the_scene_as_it_is(drawn):
+    before, found = drawn([tick(0.3)])
+    assert found is before
+
+
+def test_a_short_line_between_two_lines_is_none(drawn):
+    before, found = drawn([tick(0.07), (X, (-1, DEPTH, 0.07), (1, DEPTH, 0.07))])
+    assert found is before
+
+
+@pytest.mark.parametrize(("roles", "reason"), [(["outline"] * 3, ""), (None, "annotated")])
+def test_outlines_and_what_a_person_spoke_of_stay(drawn, roles, reason):
+    before, found = drawn([tick(0.07)], roles=roles, reason=reason)
+    assert found is before
+
+
+@pytest.mark.parametrize(("height", "ids"), [(0.15, [0, 1, 2]), (0.07, [0, 1])])
+def test_a_stub_may_end_at_an_outline_unless_it_misses_the_line_that_it_stands_on(drawn, height, ids):
+    ring = [(-2, DEPTH, 0), (2, DEPTH, 0), (2, DEPTH, height), (-2, DEPTH, height)]
+    _, found = drawn([tick(height)], (Plane(0, Y, DEPTH, (0, 1, 2), (Face(0, ring, (), "wall"),)),))
+    assert found.lines.id.tolist() == ids
+
+
+def test_a_line_that_ended_on_a_tick_ends_on_what_the_tick_stood_on(drawn):
+    ends_on_tick = (X, (0.0, DEPTH, 0.07), (1, DEPTH, 0.07))
+    beam = (Z, (1, DEPTH, 0.07), (1, DEPTH, 2))
+    post = (Z, (-0.05, DEPTH, -1), (-0.05, DEPTH, 1))
+    _, found = drawn([(Z, (0, DEPTH, 0.03), (0, DEPTH, 0.12)), ends_on_tick, beam, post])
+    assert found.lines.id.tolist() == [0, 1, 3, 4, 5]
+    np.testing.assert_array_equal(found.lines.ends[2], [[-0.05, DEPTH, 0.07], [1, DEPTH, 0.07]])
+
+
+def test_a_plane_that_only_ticks_showed_goes_and_one_without_lines_stays(drawn):
+    planes = (Plane(0, Y, DEPTH, (0, 1, 2), ()), Plane(1, X, 0.0, (2,), ()), Plane(2, Z, -3.0, (), ()))
+    _, found = drawn([tick(0.07)], planes)
+    assert [plane.id for plane in found.planes] == [0, 2]
