@@ -6,6 +6,9 @@ from typing import Literal, get_args
 import numpy as np
 
 from linecad.confidence import with_lines
+from linecad.model.clean.ends import close_ends
+from linecad.model.clean.joining import with_ends
+from linecad.model.clean.strokes import strokes_of
 from linecad.scene import DETAIL, OPENING, OUTLINE, Scene
 
 Detail = Literal["none", "openings", "all"]
@@ -20,12 +23,14 @@ _ROLES: dict[Detail, tuple[str, ...]] = {
 def keep_drawn(scene: Scene, detail: Detail) -> Scene:
     """The scene with the lines that `detail` asks for, and with all planes and faces.
 
-    A note counts what was left out; where that is nothing, the scene comes back as it is.
+    Ends that met a line that is left out, and nearly meet one that stays, go there. A note counts what was left out;
+    where that is nothing, the scene comes back as it is.
     """
     kept = np.isin(scene.lines.role, _ROLES[detail])
     if kept.all():
         return scene
     rest = with_lines(scene, kept)
+    rest = replace(rest, lines=with_ends(rest.lines, close_ends(strokes_of(rest.lines, scene.rotation[2]))[0]))
     what = "detail" if detail == "openings" else "openings and detail"
     note = f"{len(scene.lines) - len(rest.lines)} of {len(scene.lines)} lines are left out: they are {what}"
     return replace(rest, notes=(*scene.notes, note))

@@ -10,7 +10,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float
 from linecad.confidence import with_lines
-from linecad.model.clean.ends import NEAR, close_ends, ends_that_meet
+from linecad.model.clean.ends import NEAR, close_ends, ends_that_meet, nearest_crossings
 from linecad.model.clean.joining import with_ends
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
@@ -48,10 +48,17 @@ def _ticks(scene: Scene, strokes: Strokes, outlines: Float, sight: Sight) -> Boo
     """Which lines (N,) are ticks."""
     crossings = scene.intersections
     said = np.unique(crossings.lines[np.asarray(crossings.reason) == "annotated"])
-    share = np.ptp(strokes.reach, axis=1) / np.abs(strokes.depth)
     meets = ends_that_meet(strokes)
-    ticks: Bool = (share < LONGEST) & ~meets.all(axis=1)
+    ticks: Bool = (np.ptp(strokes.reach, axis=1) < LONGEST * np.abs(strokes.depth)) & ~meets.all(axis=1)
     ticks &= (scene.lines.role == DETAIL) & ~np.isin(scene.lines.id, said)
-    stopped = at_outlines(strokes.of(ticks), outlines, sight) & (share[ticks] >= NEAR)[:, None]
-    ticks[ticks] = ~(meets[ticks] | stopped).all(axis=1)
+    ends_well = meets[ticks] | (at_outlines(strokes.of(ticks), outlines, sight) & ~_misses(strokes, ticks))
+    ticks[ticks] = ~ends_well.all(axis=1)
     return ticks
+
+
+def _misses(strokes: Strokes, chosen: Bool) -> Bool:
+    """Which ends (K, 2) of the masked lines (N,) are beyond a line that they cross, and near it."""
+    line, end = np.nonzero(np.repeat(chosen[:, None], 2, axis=1))
+    over = nearest_crossings(strokes, line, end)[1].reshape(-1, 2)
+    misses: Bool = over <= NEAR * np.abs(strokes.end_depth[chosen])
+    return misses

@@ -43,6 +43,14 @@ def test_lines_go_with_their_crossings_and_faces_stay(scene, detail, ids, said):
     assert found.notes == ("before", said)
 
 
+def test_ends_at_lines_that_are_left_out_go_to_those_beside_them(lines, scene):
+    rows = [(0, (-1, 10, 0), (1, 10, 0)), (0, (-1, 10, 0.05), (1, 10, 0.05)), (2, (0, 10, 0.05), (0, 10, 2))]
+    rows.append((2, (1, 10, 0), (1, 10, 2)))
+    near = replace(lines(rows), role=["outline", "detail", "outline", "outline"])
+    found = keep_drawn(replace(scene, lines=near), "none")
+    np.testing.assert_array_equal(found.lines.ends[1], [[0, 10, 0], [0, 10, 2]])
+
+
 def test_a_plane_without_lines_keeps_its_faces(scene):
     bare = replace(scene, lines=replace(scene.lines, role=np.full(4, "detail")))
     found = keep_drawn(bare, "none")

@@ -69,6 +69,13 @@ def test_a_stub_may_end_at_an_outline_unless_it_misses_the_line_that_it_stands_o
     assert found.lines.id.tolist() == ids
 
 
+def test_a_stub_that_crosses_a_line_close_to_an_outline_goes(drawn):
+    ring = [(-2, DEPTH, -0.08), (2, DEPTH, -0.08), (2, DEPTH, 0.09), (-2, DEPTH, 0.09)]
+    stub = (Z, (0, DEPTH, -0.08), (0, DEPTH, 0.09))
+    _, found = drawn([stub], (Plane(0, Y, DEPTH, (0, 1, 2), (Face(0, ring, (), "wall"),)),))
+    assert found.lines.id.tolist() == [0, 1]
+
+
 def test_a_line_that_ended_on_a_tick_ends_on_what_the_tick_stood_on(drawn):
     ends_on_tick = (X, (0.0, DEPTH, 0.07), (1, DEPTH, 0.07))
     beam = (Z, (1, DEPTH, 0.07), (1, DEPTH, 2))
