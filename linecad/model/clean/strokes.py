@@ -5,7 +5,7 @@ two lines of different axes meet where their common third offset is. All that cl
 for all lines that have them at once, and to move ends along their lines: no line is bent, and lines that met meet.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,9 +43,15 @@ class Strokes:
 
     def of(self, chosen: Bool) -> "Strokes":
         """The masked lines (N,) alone."""
-        given = (self.axis, self.component, self.weight, self.offset, self.number, self.reach)
-        axis, component, weight, offset, number, reach = (each[chosen] for each in given)
-        return Strokes(axis, component, self.forward, weight, offset, number, reach)
+        return replace(
+            self,
+            axis=self.axis[chosen],
+            component=self.component[chosen],
+            weight=self.weight[chosen],
+            offset=self.offset[chosen],
+            number=self.number[chosen],
+            reach=self.reach[chosen],
+        )
 
     @property
     def end_depth(self) -> Float:
