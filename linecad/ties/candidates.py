@@ -2,8 +2,9 @@
 
 A ratio is of one kind. Where crossings ask for it, it is of kind *bundle*; else, where planes would become one, of kind
 *plane*; else, where levels match, of kind *level*. Planes and levels that match at the ratio of a bundle are then
-features of the bundle. Only planes may repeat a ratio, each pair of planes for itself. Kind *ground* ties a body to
-the ground, which counts as one more body, of which the log scale is that of the camera's height above it.
+features of the bundle; sizes that match are a feature of whatever asks for a ratio. Only planes may repeat a ratio,
+each pair of planes for itself. Kind *ground* ties a body to the ground, which counts as one more body, of which the log
+scale is that of the camera's height above it.
 """
 
 from dataclasses import dataclass
@@ -17,6 +18,7 @@ from linecad.ties.feet import MOST_LOG_ODDS, Foot, find_feet
 from linecad.ties.levels import LEAST_MATCHES, MOST, LevelPair, Match, find_levels
 from linecad.ties.planes import SharedPlane, find_shared_planes, is_induced
 from linecad.ties.setting import Setting
+from linecad.ties.sizes import SizePair, find_sizes
 
 Kind = Literal["bundle", "plane", "level", "ground"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -44,15 +46,17 @@ class Candidate:
 class _Pair:
     """What candidates of one pair of bodies share."""
 
-    def __init__(self, setting: Setting, bodies: tuple[int, int], levels: LevelPair, like: float) -> None:
-        sizes = np.sort(setting.bodies.size[list(bodies)])
+    def __init__(
+        self, setting: Setting, bodies: tuple[int, int], levels: LevelPair, sizes: SizePair, like: float
+    ) -> None:
+        lines = np.sort(setting.bodies.size[list(bodies)])
         distance = setting.distance(*bodies)
-        self.setting, self.bodies, self.levels = setting, bodies, levels
+        self.setting, self.bodies, self.levels, self.sizes = setting, bodies, levels, sizes
         self.features: Features = {
             "near": float(np.exp(-distance / NEAR)),
             "not far": float(np.exp(-distance / FAR)),
-            "lines of the smaller": float(np.log(sizes[0])),
-            "lines of the larger": float(np.log(sizes[1])),
+            "lines of the smaller": float(np.log(lines[0])),
+            "lines of the larger": float(np.log(lines[1])),
             "levels": float(np.log1p(levels.fewest)),
             "colour": like,
         }
@@ -63,6 +67,7 @@ class _Pair:
             "level excess": min(match.excess, MOST_EXCESS),
             "level lead": self.levels.lead(match),
             "same eaves": float(self.levels.same_eaves(log_ratio)),
+            "size excess": float(np.clip(self.sizes.at(log_ratio), 0.0, MOST_EXCESS)),
             "apart": min(abs(log_ratio), FARTHEST),
         }
         return Candidate(kind, self.bodies, log_ratio, normal, {**self.features, **common, **own})
@@ -117,14 +122,15 @@ def find_candidates(setting: Setting) -> list[Candidate]:
         bundles.setdefault(bundle.bodies, []).append(bundle)
     for plane in find_shared_planes(setting):
         planes.setdefault(plane.bodies, []).append(plane)
-    levels, colours = find_levels(setting), find_colours(setting)
+    levels, sizes, colours = find_levels(setting), find_sizes(setting), find_colours(setting)
     found = [_of_foot(setting, foot) for foot in find_feet(setting)]
     for first in range(setting.bodies.count):
         for second in range(first + 1, setting.bodies.count):
             bodies = (first, second)
             pair = LevelPair(levels[first], levels[second])
             if bodies in bundles or bodies in planes or pair.peaks:
-                known = _Pair(setting, bodies, pair, likeness(colours, first, second))
+                of_sizes = SizePair(sizes[first], sizes[second])
+                known = _Pair(setting, bodies, pair, of_sizes, likeness(colours, first, second))
                 found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []))
     return found
 

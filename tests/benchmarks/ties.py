@@ -44,6 +44,7 @@ WITHOUT: dict[str, tuple[tuple[Kind, ...], tuple[str, ...]]] = {
     "without the ground": (("ground",), ()),
     "without planes": (("plane",), ("plane of it", "plane beside")),
     "without levels": (("level",), ("levels", "level excess", "level lead", "same eaves")),
+    "without sizes": ((), ("size excess",)),
     "without colour": ((), ("colour",)),
     "without resampling": ((), ("supported", "connected")),
 }
