@@ -14,7 +14,7 @@ where two segments meet in the image, an *axis* is 0, 1 or 2 (x, y, z), a *depth
 from linecad.scene.camera import Camera, Certainty
 from linecad.scene.lines import Intersections, Lines
 from linecad.scene.reports import DepthMapReport, SolveReport
-from linecad.scene.surfaces import Face, Opening, Plane
+from linecad.scene.surfaces import Face, Opening, Plane, ground_of
 from linecad.scene.whole import Scene
 from linecad.scene.words import (
     AXES,
@@ -70,4 +70,5 @@ __all__ = [
     "Role",
     "Scene",
     "SolveReport",
+    "ground_of",
 ]

@@ -1,5 +1,6 @@
 """What is flat in a scene: planes, their faces, and the openings in walls."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,6 +43,16 @@ class Plane:
         if self.axis not in (0, 1, 2) or not np.isfinite(self.offset):
             found = f"axis {self.axis} and offset {self.offset}"
             raise ValueError(f"Plane {self.id} has {found}, expected 0, 1 or 2 and a finite number")
+
+    @property
+    def shows_ground(self) -> bool:
+        """Whether it is a horizontal plane below the camera with a face of the ground."""
+        return self.axis == 2 and self.offset < 0 and any(face.kind == "ground" for face in self.faces)
+
+
+def ground_of(planes: Iterable[Plane]) -> Plane | None:
+    """The plane that counts as the ground: the lowest that shows it; None where none does."""
+    return min((plane for plane in planes if plane.shows_ground), key=lambda plane: plane.offset, default=None)
 
 
 @dataclass(frozen=True)

@@ -10,11 +10,11 @@ FOLDER = Path(linecad.scene.__file__).parent
 
 
 def defined(path: Path) -> set[str]:
-    """The classes and names that a module defines."""
+    """The classes, functions and names that a module defines."""
     found = set()
     for node in ast.parse(path.read_text(encoding="utf-8")).body:
         match node:
-            case ast.ClassDef():
+            case ast.ClassDef() | ast.FunctionDef():
                 found.add(node.name)
             case ast.Assign():
                 found |= {name.id for target in node.targets for name in ast.walk(target) if isinstance(name, ast.Name)}
