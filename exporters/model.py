@@ -15,7 +15,7 @@ from exporters.bands import BANDS, bands_of
 from exporters.faces import FlatFace, Frame, build_faces
 from exporters.openings import Fitting, build_fittings
 from linecad.arrays import Float, Int, Text
-from linecad.scene import AXES, ROLES, Scene
+from linecad.scene import AXES, ROLES, Scene, ground_of
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
 
@@ -121,11 +121,8 @@ def _ground_height(scene: Scene) -> float | None:
 
     Of several planes with faces of the ground the lowest counts, as where a camera's height is measured from.
     """
-    if scene.metres_per_unit is None:
-        return None
-    heights = [plane.offset for plane, face in scene.faces if face.kind == "ground" and plane.axis == 2]
-    below = [height * scene.metres_per_unit for height in heights if height < 0]
-    return min(below, default=None)
+    ground = ground_of(scene.planes)
+    return None if ground is None or scene.metres_per_unit is None else ground.offset * scene.metres_per_unit
 
 
 def metres_per_unit(scene: Scene) -> float:

@@ -177,7 +177,7 @@ def _say(weight: Float, label: Int, residual: Float, error: Float) -> Float:
 
 
 def name_frame(segments: Segments, K: Float, axes: Float) -> ManhattanFrame:
-    """Axes (3, 3), rows, as a frame with deterministic names: z up, x most left to right, y away (see scene.py)."""
+    """Axes (3, 3), rows, as a frame with deterministic names: z up, x most left to right, y away (linecad.scene)."""
     up = int(np.abs(axes[:, 1]).argmax())
     z = axes[up] * -np.sign(axes[up, 1])
     level = [axis for axis in range(3) if axis != up]

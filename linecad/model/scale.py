@@ -16,7 +16,7 @@ import shapely
 from linecad.arrays import Float
 from linecad.errors import ScaleError
 from linecad.geometry import world_rays
-from linecad.scene import AXES, Face, Plane, Scene
+from linecad.scene import AXES, Face, Plane, Scene, ground_of
 
 REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in the photo lies on it
 LOWER_SHARE = 0.1  # of the camera's height: what reaches farther below a plane speaks against its being the ground
@@ -66,7 +66,7 @@ def set_scale(scene: Scene, known: Known) -> Scene:
             plane = find_ground(scene)
             units = -plane.offset
             number, height = f"plane {plane.id}", f"z = {plane.offset:.4g}"
-            if _shows_ground(plane):
+            if plane.shows_ground:
                 where = f"the ground, {number} ({height})"
             else:
                 where = f"{number} ({height}), taken to be the ground as the lowest horizontal plane"
@@ -82,9 +82,9 @@ def find_ground(scene: Scene) -> Plane:
     down than LOWER_SHARE of its depth, more than STRAY_LINES of them, show that it is a balcony or a row of sills.
     Raises ScaleError then, and where there is no such plane.
     """
-    shown = [plane for plane in scene.planes if _shows_ground(plane)]
-    if shown:
-        return min(shown, key=lambda plane: plane.offset)
+    shown = ground_of(scene.planes)
+    if shown is not None:
+        return shown
     own = _own_lines(scene)
     below = [plane for plane in scene.planes if plane.axis == 2 and plane.offset < 0 and own & set(plane.lines)]
     if not below:
@@ -101,11 +101,6 @@ def find_ground(scene: Scene) -> Plane:
             f"reach below it, down to z = {lowest.min():.4g}; give a length with --scale instead"
         )
     return ground
-
-
-def _shows_ground(plane: Plane) -> bool:
-    """Whether it is a plane below the camera with a face of the ground."""
-    return plane.axis == 2 and plane.offset < 0 and any(face.kind == "ground" for face in plane.faces)
 
 
 def _own_lines(scene: Scene) -> set[int]:

@@ -4,12 +4,14 @@ import io
 import struct
 import tempfile
 import zipfile
+import zlib
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
+ZEROS = bytes(2**20)
 Z_NEAR, Z_FAR = 0.5, 8.0  # m, of the phone's depth image
 
 
@@ -65,12 +67,20 @@ def points_of(depth, focal, center):
 
 def zip_bomb(megabytes):
     """An .npz that promises and holds far more zeros than it takes on the disk."""
-    stream = io.BytesIO()
-    with zipfile.ZipFile(stream, "w", zipfile.ZIP_DEFLATED) as archive, archive.open("depth.npy", "w") as member:
-        member.write(npy_header((megabytes, 2**18)))
-        for _ in range(megabytes):
-            member.write(bytes(2**20))
-    return stream.getvalue()
+    header = npy_header((megabytes, 2**18))
+    # Zeros are compressed once and repeated: a full flush makes a block that is read without those before it.
+    packer = zlib.compressobj(wbits=-zlib.MAX_WBITS)
+    packed = packer.compress(header) + packer.flush(zlib.Z_FULL_FLUSH)
+    packed += megabytes * (packer.compress(ZEROS) + packer.flush(zlib.Z_FULL_FLUSH)) + packer.flush()
+    name, size = b"depth.npy", len(header) + megabytes * 2**20
+    check = zlib.crc32(header)
+    for _ in range(megabytes):
+        check = zlib.crc32(ZEROS, check)
+    sizes = struct.pack("<HHHHHIIIHH", 20, 0, zipfile.ZIP_DEFLATED, 0, 33, check, len(packed), size, len(name), 0)
+    local = b"PK\3\4" + sizes + name
+    central = b"PK\1\2" + struct.pack("<H", 20) + sizes + struct.pack("<HHHII", 0, 0, 0, 0, 0) + name
+    end = b"PK\5\6" + struct.pack("<HHHHIIH", 0, 0, 1, 1, len(central), len(local) + len(packed), 0)
+    return local + packed + central + end
 
 
 # A HEIF file with a depth image: no library at hand writes one, so its boxes are put together here (ISO/IEC 23008-12)

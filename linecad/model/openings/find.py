@@ -22,7 +22,7 @@ from linecad.model.openings.recess import depth_ratios
 from linecad.model.openings.rectangles import count_edges, find_rectangles
 from linecad.model.openings.regular import Seen, make_regular
 from linecad.model.openings.walls import Wall, find_walls
-from linecad.scene import Camera, Lines, Opening, Plane
+from linecad.scene import Camera, Lines, Opening, Plane, ground_of
 
 ALMOST_SAME = 0.8  # overlap of rectangles of which one is judged
 BRIGHTER = 1.0  # than the wall around it, by LEVELS of the evidence, a window is from inside; shelves are not
@@ -94,8 +94,8 @@ def find_openings(
 
 def _ground_height(planes: tuple[Plane, ...]) -> float | None:
     """The height of the ground; None where no face is part of it."""
-    heights = [plane.offset for plane in planes if any(face.kind == "ground" for face in plane.faces)]
-    return max(heights, default=None)
+    ground = ground_of(planes)
+    return None if ground is None else ground.offset
 
 
 def _with_recess(openings: list[Opening], likely: _Likely) -> list[Opening]:

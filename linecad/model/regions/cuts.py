@@ -39,34 +39,57 @@ def expand(costs: Int, borders: Borders, label: Int, labels: list[int]) -> Int:
         if idle == len(labels):
             break
         idle += 1
-        if not _may_gain(costs, borders, label, number):
+        taken = _takes(costs, borders, label, number)
+        if not taken.any():
             continue
-        found = np.where(_takes(costs, borders, label, number), number, label)
+        found = np.where(taken, number, label)
         cost = energy(costs, borders, found)
         if cost < best:
             label, best, idle = found, cost, 1
     return label
 
 
-def _may_gain(costs: Int, borders: Borders, label: Int, number: int) -> bool:
-    """Whether any cell would gain by a label if that made all its borders free; else no set of cells does."""
-    one, other = borders.cells.T
-    was = borders.cost * (label[one] != label[other])
-    count = len(label)
-    rise = costs[:, number] - costs[np.arange(count), label]
-    return bool((rise < _sums(one, was, count) + _sums(other, was, count))[label != number].any())
-
-
 def _takes(costs: Int, borders: Borders, label: Int, number: int) -> Bool:
-    """Which cells (C,) take a label in its best expansion."""
-    count = len(label)
+    """Which cells (C,) that have another label take this one in its best expansion, as many as may."""
+    count, cost = len(label), borders.cost
     one, other = borders.cells.T
-    was = borders.cost * (label[one] != label[other])
-    first_stays = borders.cost * (label[one] != number)  # and the second takes it
-    second_stays = borders.cost * (label[other] != number)
-    gain = costs[:, number] - costs[np.arange(count), label]
-    gain = gain + _sums(one, second_stays - was, count) - _sums(other, second_stays, count)
-    capacity = first_stays + second_stays - was
+    was = cost * (label[one] != label[other])
+    rise = costs[:, number] - costs[np.arange(count), label]
+    # What either cell of a border saves there by taking the label while the other stays as it is; all if both take it.
+    first, second = was - cost * (label[other] != number), was - cost * (label[one] != number)
+
+    def saved(takes: Bool) -> Int:
+        """By each cell (C,) where others take the label."""
+        of_one, of_other = np.where(takes[other], cost, first), np.where(takes[one], cost, second)
+        return _sums(one, of_one, count) + _sums(other, of_other, count)
+
+    takes, is_open = np.zeros(count, bool), label != number
+    if not (is_open & (rise < saved(is_open))).any():
+        return takes  # no set of cells gains
+    while is_open.any():
+        # A cell whose rise is more than it can save stays; one that saves as much in any case takes the label. They are
+        # nearly all, so that a network is seldom needed, and small.
+        stays, gains = is_open & (rise > saved(takes | is_open)), is_open & (rise <= saved(takes))
+        if not (stays | gains).any():
+            break
+        takes |= gains
+        is_open &= ~(stays | gains)
+    if is_open.any():
+        gain, place = rise - saved(takes), np.cumsum(is_open) - 1
+        both = is_open[one] & is_open[other]
+        one, other, capacity = one[both], other[both], (2 * cost - was)[both]
+        gain -= _sums(other, capacity, count)
+        takes[is_open] = _cut_off(gain[is_open], place[one], place[other], capacity)
+    return takes
+
+
+def _cut_off(gain: Int, one: Int, other: Int, capacity: Int) -> Bool:
+    """Which cells (N,) a minimal cut leaves on the sink's side, as many as may be.
+
+    A `gain` (N,) above 0 is what a cell there costs, one below 0 what it saves; a cell `one` (M,) that is not there
+    while the `other` is costs `capacity`.
+    """
+    count = len(gain)
     cell = np.arange(count)
     source, sink = count, count + 1
     tail = np.concatenate([np.full(count, source), cell, one])
@@ -79,9 +102,9 @@ def _takes(costs: Int, borders: Borders, label: Int, number: int) -> Bool:
     left = network - maximum_flow(network, source, sink).flow
     left.data[left.data < 0] = 0
     left.eliminate_zeros()
-    taken = np.ones(count + 2, bool)
-    taken[breadth_first_order(left, source, return_predecessors=False)] = False
-    return taken[:count]
+    cut = np.ones(count + 2, bool)
+    cut[breadth_first_order(left, source, return_predecessors=False)] = False
+    return cut[:count]
 
 
 def _sums(cell: Int, values: Int, count: int) -> Int:

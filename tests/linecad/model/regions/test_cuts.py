@@ -6,6 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linecad.model.regions import cuts as cuts_module
 from linecad.model.regions.cuts import Borders, energy, expand
 
 NEVER = 10**7
@@ -72,3 +73,30 @@ def test_three_labels_are_no_worse_than_any_expansion(problem):
     # What Boykov, Veksler and Zabih prove: at most twice the least, where no cost is negative.
     if costs.min() >= 0:
         assert best <= 2 * least(costs, borders, [range(3)] * len(start))
+
+
+@settings(max_examples=60)
+@given(problems(2))
+def test_an_expansion_takes_as_many_cells_as_may_be_at_the_least_cost(problem):
+    # So that the same costs give the same labels, however much of it is known without a cut.
+    costs, borders, start = problem
+    choices = [np.where(mask, 1, start) for mask in product([False, True], repeat=len(start))]
+    best = min(energy(costs, borders, label) for label in choices)
+    most = np.any([label != start for label in choices if energy(costs, borders, label) == best], axis=0)
+    found = expand(costs, borders, start, [1])
+    wanted = np.where(most, 1, start) if best < energy(costs, borders, start) else start
+    assert found.tolist() == wanted.tolist()
+
+
+def test_a_cut_is_asked_only_where_single_cells_do_not_tell(monkeypatch):
+    cuts = []
+    cut_off = cuts_module._cut_off
+    monkeypatch.setattr(cuts_module, "_cut_off", lambda gain, *rest: cuts.append(len(gain)) or cut_off(gain, *rest))
+    costs = np.array([[9, 0], [0, 9], [6, 0], [2, 0], [0, 9]])
+    row = Borders(np.array([[0, 1], [1, 2], [2, 3], [3, 4]]), np.array([1, 1, 3, 1]))
+    assert expand(costs, row, np.zeros(5, np.int64), [1]).tolist() == [1, 0, 1, 1, 0]
+    assert cuts == []
+    # Neither gains alone, both together do.
+    pair = Borders(np.array([[0, 1]]), np.array([4]))
+    assert expand(np.array([[3, 0], [0, 1]]), pair, np.zeros(2, np.int64), [1]).tolist() == [1, 1]
+    assert cuts == [2]

@@ -1,0 +1,62 @@
+"""The whole scene: what was found in one photo."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from linecad.arrays import Float, check_unique, freeze
+from linecad.scene.camera import Camera, Certainty
+from linecad.scene.lines import Intersections, Lines
+from linecad.scene.reports import DepthMapReport, SolveReport
+from linecad.scene.surfaces import Face, Opening, Plane
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """The reconstruction of one photo: what the scene file says."""
+
+    photo: str  # file name, as given
+    camera: Camera
+    rotation: Float  # (3, 3) world to camera
+    lines: Lines
+    intersections: Intersections
+    planes: tuple[Plane, ...]
+    solve: SolveReport
+    metres_per_unit: float | None = None
+    scale_source: str = ""  # what told metres_per_unit: one clause, without a full stop; "" where that is not known
+    notes: tuple[str, ...] = field(default=())
+    certainty: Certainty | None = None  # of camera and rotation; None in scenes that do not tell
+    depth_map: DepthMapReport | None = None  # None where none was given
+    openings: tuple[Opening, ...] = ()
+
+    def __post_init__(self) -> None:
+        freeze(self, "rotation", np.float64, (3, 3))
+        known = set(self.lines.id.tolist())
+        for name, ids in [("Intersections.lines", set(self.intersections.lines.ravel().tolist()))] + [
+            (f"Plane {plane.id}", set(plane.lines)) for plane in self.planes
+        ]:
+            if not ids <= known:
+                raise ValueError(f"{name} names line {min(ids - known)}, which the scene does not have")
+        check_unique("Scene.planes", [plane.id for plane in self.planes])
+        check_unique("Scene.openings", [opening.id for opening in self.openings])
+        walls, openings = {plane.id for plane in self.planes if plane.axis != 2}, {each.id for each in self.openings}
+        for opening in self.openings:
+            if opening.plane not in walls:
+                raise ValueError(f"Opening {opening.id} is in plane {opening.plane}, which is no wall of the scene")
+        for _, face in self.faces:
+            if face.opening is not None and face.opening not in openings:
+                raise ValueError(f"Face {face.id} is of opening {face.opening}, which the scene does not have")
+        check_unique("Scene.faces", [face.id for _, face in self.faces])
+        if self.metres_per_unit is not None and not 0 < self.metres_per_unit < np.inf:
+            raise ValueError(f"Scene.metres_per_unit is {self.metres_per_unit}, expected a positive number")
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What a reader of the scene should know: the notes, and where the scale came from."""
+        return (*self.notes, *([f"scale: {self.scale_source}"] if self.scale_source else []))
+
+    @property
+    def faces(self) -> list[tuple[Plane, Face]]:
+        """Every face with its plane, in ascending order of face id."""
+        pairs = [(plane, face) for plane in self.planes for face in plane.faces]
+        return sorted(pairs, key=lambda pair: pair[1].id)
