@@ -121,12 +121,14 @@ def build_scene(
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
-    openings = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
-    lines = with_roles(settled(lines, planes, sight), planes, sight.forward, _rectangles(openings, planes))
-    planes, openings = with_openings(planes, at_home(openings, planes, view.camera, view.frame.rotation))
+    holes = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
+    lines = with_roles(settled(lines, planes, sight), planes, sight.forward, _rectangles(holes.openings, planes))
+    planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     cleaning = cleaned.note(lines)
-    notes = (*_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []), regions.note)
+    notes = (
+        *_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []), regions.note, *holes.notes
+    )  # fmt: skip
     scene = Scene(
         photo=view.photo,
         camera=view.camera,

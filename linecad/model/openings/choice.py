@@ -1,19 +1,37 @@
 """Which rectangles are taken: of those that overlap in the photo none twice, the most in sum, exactly."""
 
+from dataclasses import dataclass
+
 import numpy as np
 import shapely
 from scipy.optimize import Bounds, LinearConstraint, milp
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 
 SHARED = 0.1  # of the smaller of two openings, from which they overlap in the photo
 MOST_NODES = 10_000  # of a search; the largest of 50 photos were solved at the first
+OPTIMAL = 0  # the status of milp where nothing is better
 
 
-def choose(shapes: list[shapely.Polygon], odds: Float) -> Int:
-    """The places (M,) of the taken ones among shapes (N,) in the photo, in the order of their places.
+@dataclass(frozen=True, eq=False)
+class Choice:
+    """Which rectangles are taken, and how sure it is that no other choice is better."""
+
+    taken: Int  # (M,) their places, ascending
+    gap: float  # how much more another choice may be worth, as a share of this one; 0 where this is proven best
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """A note for people where the search ended at its limit."""
+        if self.gap == 0:
+            return ()
+        return (f"windows and doors: another choice of them may be up to {self.gap:.1%} better; not proven",)
+
+
+def choose(shapes: list[shapely.Polygon], odds: Float) -> Choice:
+    """Which of shapes (N,) in the photo are taken.
 
     `odds` are above those of a rectangle that is as well left out. Openings of different walls compete too, since each
     pixel shows one of them. Odds count by the size of a shape, as long as its outline is: each opening is told by its
@@ -27,11 +45,13 @@ def choose(shapes: list[shapely.Polygon], odds: Float) -> Int:
     graph = coo_array((np.ones(len(pairs), np.int8), pairs.T), (len(every), len(every)))
     count, group = connected_components(graph, directed=False)
     group_of_pair = group[pairs[:, 0]]
+    more = 0.0
     for number in np.flatnonzero(np.bincount(group, minlength=count) > 1).tolist():
         members = np.flatnonzero(group == number)
         inside = np.searchsorted(members, pairs[group_of_pair == number])
-        taken[members] = heaviest_set(value[members], inside)
-    return np.flatnonzero(taken)
+        taken[members], unproven = heaviest_set(value[members], inside)
+        more += unproven
+    return Choice(np.flatnonzero(taken), more / float(value[taken].sum()) if more > 0 else 0.0)
 
 
 def overlapping(shapes: np.ndarray[tuple[int], np.dtype[np.object_]]) -> Int:
@@ -44,11 +64,14 @@ def overlapping(shapes: np.ndarray[tuple[int], np.dtype[np.object_]]) -> Int:
     return found
 
 
-def heaviest_set(value: Float, pairs: Int) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
-    """The mask (N,) of the ones of most value (N,) in sum of which no two are a pair (P, 2); all above 0."""
+def heaviest_set(value: Float, pairs: Int) -> tuple[Bool, float]:
+    """The mask (N,) of the ones of most value (N,) in sum of which no two are a pair (P, 2); all above 0.
+
+    And how much more another set may be worth: above 0 only where the search ended at MOST_NODES.
+    """
     if 2 * len(pairs) == len(value) * (len(value) - 1):
         # All overlap all others, as most groups do: one is taken.
-        return np.asarray(np.arange(len(value)) == value.argmax())
+        return np.arange(len(value)) == value.argmax(), 0.0
     cliques = _cliques(len(value), pairs)
     row = np.repeat(np.arange(len(cliques)), [len(clique) for clique in cliques])
     rows = coo_array((np.ones(len(row)), (row, np.concatenate(cliques))), (len(cliques), len(value))).tocsr()
@@ -61,7 +84,9 @@ def heaviest_set(value: Float, pairs: Int) -> np.ndarray[tuple[int], np.dtype[np
     )
     # To take none is an answer, so that there is always one.
     assert found.x is not None, found.message
-    return np.asarray(found.x > 0.5)
+    taken = np.asarray(found.x > 0.5)
+    more = 0.0 if found.status == OPTIMAL else -float(found.mip_dual_bound) - float(value[taken].sum())
+    return taken, max(more, 0.0)
 
 
 def _cliques(count: int, pairs: Int) -> list[list[int]]:

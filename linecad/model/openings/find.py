@@ -46,15 +46,23 @@ class _Likely:
         return list(shapely.polygons(self.wall.pixels(corners)))
 
 
+@dataclass(frozen=True, eq=False)
+class Found:
+    """The openings of a scene."""
+
+    openings: tuple[Opening, ...] = ()
+    notes: tuple[str, ...] = ()  # for people
+
+
 def find_openings(
     planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, pixels: NDArray[np.uint8] | None
-) -> tuple[Opening, ...]:
+) -> Found:
     """The openings of the vertical planes, in the order of their planes; none without pixels (H, W, 3) of the photo.
 
     `rotation` (3, 3) takes world to camera.
     """
     if pixels is None:
-        return ()
+        return Found()
     sight = look(pixels)
     is_inside = any(face.kind == "ceiling" for plane in planes for face in plane.faces)
     found = []
@@ -65,8 +73,8 @@ def find_openings(
             if len(likely.box):
                 found.append(likely)
     if not found:
-        return ()
-    taken = choose(
+        return Found()
+    choice = choose(
         [shape for likely in found for shape in likely.shapes()],
         np.concatenate([likely.odds for likely in found]) - LEAST_ODDS,
     )
@@ -74,7 +82,7 @@ def find_openings(
     openings: list[Opening] = []
     start = 0
     for likely in found:
-        own = taken[(taken >= start) & (taken < start + len(likely.box))] - start
+        own = choice.taken[(choice.taken >= start) & (choice.taken < start + len(likely.box))] - start
         start += len(likely.box)
         if len(own):
             box = likely.box[own]
@@ -89,7 +97,7 @@ def find_openings(
                 likely.cover[own] < SEEN_COVER,
             )
             openings += _with_recess(make_regular(likely.wall, lines, seen, len(openings), ground), likely)
-    return tuple(openings)
+    return Found(tuple(openings), choice.notes)
 
 
 def _ground_height(planes: tuple[Plane, ...]) -> float | None:

@@ -33,7 +33,7 @@ class Facade:
     def openings(self, pixels=None):
         """What is found in its photo, or in another."""
         seen = self.pixels if pixels is None else pixels
-        return find_openings(self.planes, self.lines, self.camera, self.rotation, seen)
+        return find_openings(self.planes, self.lines, self.camera, self.rotation, seen).openings
 
 
 def paint(pixels, u0, u1, v0, v1, colour):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.model.openings import find, regular
+from linecad.model.openings.choice import Choice
 from linecad.model.openings.find import find_openings
 from linecad.scene import Face, Plane
 
@@ -55,11 +56,21 @@ def test_bare_wall_has_no_openings(facade):
 
 
 def test_without_a_photo_nothing_is_found(facade):
-    assert find_openings(facade.planes, facade.lines, facade.camera, facade.rotation, None) == ()
+    assert find_openings(facade.planes, facade.lines, facade.camera, facade.rotation, None).openings == ()
 
 
 def test_without_planes_nothing_is_found(facade):
-    assert find_openings((), facade.lines, facade.camera, facade.rotation, facade.pixels) == ()
+    assert find_openings((), facade.lines, facade.camera, facade.rotation, facade.pixels).openings == ()
+
+
+def test_choice_that_ended_at_its_limit_is_told(facade, monkeypatch):
+    args = (facade.planes, facade.lines, facade.camera, facade.rotation, facade.pixels)
+    assert find_openings(*args).notes == ()
+    first = find.choose
+    monkeypatch.setattr(find, "choose", lambda *each: Choice(first(*each).taken, 0.0123))
+    assert find_openings(*args).notes == (
+        "windows and doors: another choice of them may be up to 1.2% better; not proven",
+    )
 
 
 def test_the_same_photo_gives_the_same_openings(facade):
@@ -85,8 +96,8 @@ def with_level(facade, kind, height):
 
 def test_from_inside_what_is_darker_than_the_wall_is_no_window(facade):
     planes = with_level(facade, "ceiling", 4.0)
-    dark = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels)
-    bright = find_openings(planes, facade.lines, facade.camera, facade.rotation, 255 - facade.pixels)
+    dark = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels).openings
+    bright = find_openings(planes, facade.lines, facade.camera, facade.rotation, 255 - facade.pixels).openings
     assert dark == ()
     assert len(bright) == len(facade.boxes)
 
@@ -94,7 +105,7 @@ def test_from_inside_what_is_darker_than_the_wall_is_no_window(facade):
 def test_what_stands_on_the_ground_is_a_door(facade, monkeypatch):
     monkeypatch.setattr(regular, "TALL", 1.3)  # these are 1.5 times as tall as wide
     planes = with_level(facade, "ground", min(box[2] for box in facade.boxes))
-    found = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels)
+    found = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels).openings
     assert {(each.kind, each.v0 < 0) for each in found} == {("door", True), ("window", False)}
 
 

@@ -92,6 +92,15 @@ def test_hole_that_was_found_too_small_tells_the_same():
     assert found == pytest.approx(0.012, rel=0.2)
 
 
+@pytest.mark.parametrize("starts", [STARTS, -STARTS[::-1] - WIDE])
+def test_holes_are_tried_larger_on_both_sides(starts, monkeypatch):
+    # With shifts both ways a wrong sign is no other set of holes; outwards alone it is.
+    monkeypatch.setattr(recess, "SHIFTS", np.array([0.0, 0.04, 0.09]))
+    raster = raster_of(starts, 0.012)
+    assert depth_ratios(raster, boxes(starts, (0.05, -0.05))) == pytest.approx(0.012, rel=0.2)
+    assert np.isnan(depth_ratios(raster, boxes(starts, (-0.05, 0.05)))).all()
+
+
 def test_what_fits_before_the_wall_as_well_tells_nothing(monkeypatch):
     raster, box = raster_of(STARTS, 0.012), boxes(STARTS)
     monkeypatch.setattr(recess, "BETTER", 9.0)
