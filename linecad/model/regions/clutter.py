@@ -6,6 +6,7 @@ ground around it and reaches up to the wall behind it.
 """
 
 from dataclasses import replace
+from typing import Any
 
 import cv2
 import numpy as np
@@ -14,7 +15,6 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import Raster
 
 STRANGE = (2.0, 2.75, 3.5)  # spreads of the ground's colours, from which on it is not the ground; none fits all photos
@@ -37,7 +37,7 @@ def with_hidden(filled: Filled, raster: Raster) -> Filled:
     labels = filled.labels
     shown = labels.label[labels.cell].reshape(raster.shape)
     ground = np.isin(shown, [k for k, surface in enumerate(labels.surfaces) if surface.kind == "ground"])
-    before = find_things(raster.colour, ground, (shown < labels.sky) & ~ground) | _before_walls(raster, labels, ground)
+    before = find_things(raster.colour, ground, (shown < labels.sky) & ~ground) | _before_walls(raster, ground)
     return replace(filled, clutter=shapely.union_all([filled.clutter, *outlines(before, raster.step)]))
 
 
@@ -97,7 +97,7 @@ def _whole(colour: NDArray[np.uint8], start: Bool, ground: Bool) -> Bool:
     mask[0], mask[:, 0], mask[:, -1] = cv2.GC_BGD, cv2.GC_BGD, cv2.GC_BGD
     mask[start] = cv2.GC_FGD
     cv2.setRNGSeed(0)  # the mixtures of colours start at random; the same photo gives the same things
-    cv2.grabCut(colour, mask, None, np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
+    cv2.grabCut(colour, mask, [0, 0, 0, 0], np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
     thing = np.isin(mask, [cv2.GC_FGD, cv2.GC_PR_FGD]).astype(np.uint8)
     thing = cv2.morphologyEx(thing, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) | start.astype(np.uint8)
     _, part = cv2.connectedComponents(thing)
@@ -106,14 +106,15 @@ def _whole(colour: NDArray[np.uint8], start: Bool, ground: Bool) -> Bool:
     return np.asarray(cv2.morphologyEx(whole, cv2.MORPH_CLOSE, gap) > 0)
 
 
-def _before_walls(raster: Raster, labels: Labels, ground: Bool) -> Bool:
+def _before_walls(raster: Raster, ground: Bool) -> Bool:
     """Where (H, W) plants hide walls, and the ground at their foot: a lawn is the ground itself."""
     plants = raster.plants.reshape(raster.shape)
     count, part = cv2.connectedComponents(plants.astype(np.uint8), connectivity=8)
     on_ground = np.bincount(part[plants & ground], minlength=count)
     all_of_it = np.bincount(part[plants], minlength=count)
     is_lawn = 2 * on_ground > all_of_it
-    return plants & ~(ground & is_lawn[part])
+    hidden: Bool = plants & ~(ground & is_lawn[part])
+    return hidden
 
 
 def outlines(mask: Bool, step: float) -> list[shapely.Geometry]:
@@ -129,7 +130,7 @@ def outlines(mask: Bool, step: float) -> list[shapely.Geometry]:
     return found
 
 
-def _pixels(ring: NDArray[np.int32], step: float) -> Float:
+def _pixels(ring: NDArray[Any], step: float) -> Float:
     """Pixels (N, 2) at the middles of samples (N, 1, 2)."""
     pixels: Float = (ring[:, 0].astype(np.float64) + 0.5) * step - 0.5
     return pixels
