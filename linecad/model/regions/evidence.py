@@ -33,7 +33,6 @@ WALLED_COST = 0.5  # of ground and ceiling behind a wall
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
 CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
-PLANT_GAIN = 1.0  # of clutter, where plants are
 GREEN_COST = 0.5  # of a wall; what is green grows
 FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
 GREEN = (118, 134)  # of CIE a* and b*, in bytes: less of the first and more of the second is green
@@ -127,7 +126,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
     costs[:, SKY] = _sky_cost(raster, heaven)
-    costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth - PLANT_GAIN * raster.plants
+    costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth
     return costs
 
 

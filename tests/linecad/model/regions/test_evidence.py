@@ -13,7 +13,6 @@ from linecad.model.regions.evidence import (
     GREEN_COST,
     NEAR_COST,
     NEVER,
-    PLANT_GAIN,
     SKY,
     SMOOTH_COST,
     THROUGH_COST,
@@ -217,8 +216,7 @@ def test_green_speaks_against_walls_and_smoothness_against_clutter(house):
     assert more[:, 1] == pytest.approx(0)  # a lawn is ground
     for x in (600, 850):
         assert costs[sample(x, 200), CLUTTER] == pytest.approx(CLUTTER_COST + SMOOTH_COST)
-        gain = PLANT_GAIN if x == 850 else 0.0  # what is green and rough is a plant
-        assert costs[sample(x, 600), CLUTTER] == pytest.approx(CLUTTER_COST - gain, abs=1e-3)
+        assert costs[sample(x, 600), CLUTTER] == pytest.approx(CLUTTER_COST, abs=1e-3)
 
 
 def test_sums_are_by_cell():
