@@ -6,6 +6,7 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.depth.normals import Normals
+from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.evidence import look_up
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.labelling import find_labels
@@ -33,4 +34,4 @@ def find_regions(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotati
     found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
-    return fill(found, meets[np.argsort(-length, kind="stable")], raster, camera)
+    return with_hidden(fill(found, meets[np.argsort(-length, kind="stable")], raster, camera), raster)

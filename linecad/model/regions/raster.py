@@ -23,6 +23,13 @@ DARK = 8.0  # grey value that is added before the square root, so that black has
 ALONG_AXIS = np.sin(np.radians(8.0))  # of the angle between an edge and an image line through a vanishing point
 SHADES = 512  # in which colours are told apart: 8 of lightness, 8 of each hue
 NO_AXIS = 3  # column of the votes of edges that run along none
+GREEN = (123, 131)  # of CIE a* and b*, in bytes; less of the first and more of the second is green
+DIM, DIM_GREEN = 70, (128, 3)  # below that L*, in bytes: less a*, and more b* than a* by so much
+LIT = 0.25  # least share of a plant that is green, not dim
+LEAVES = 13  # samples around one, whose edges tell whether leaves are there
+MANY_EDGES, ASTRAY = 0.3, 0.4  # pixels of edges a sample among leaves, and the share of them along no axis
+LEAST_PLANT, LEAST_LEAF = 0.002, 3  # of the photo; samples across, narrower green is none
+BETWEEN_LEAVES = 9  # samples; dark gaps that are no wider are the plant's
 
 Picture = NDArray[np.uint8]
 
@@ -55,6 +62,26 @@ class Raster:
         hues = np.clip((smooth[:, 1:] - 88) // 10, 0, 7)
         shade: Int = smooth[:, 0] // 32 * 64 + hues[:, 0] * 8 + hues[:, 1]
         return shade
+
+    @cached_property
+    def plants(self) -> Bool:
+        """Mask (S,) of trees, hedges and bushes: green, and full of edges that mostly run along no axis."""
+        colour = cv2.GaussianBlur(self.colour, (0, 0), 1.5)
+        votes = cv2.blur(self.votes.astype(np.float32).reshape(*self.shape, 4), (LEAVES, LEAVES))
+        edges = votes.sum(axis=2)
+        rough = (edges > MANY_EDGES) & (votes[:, :, NO_AXIS] > ASTRAY * edges)
+        light, red, yellow = (colour[:, :, channel].astype(np.int64) for channel in range(3))
+        green = (red < GREEN[0]) & (yellow > GREEN[1])
+        dim = (light < DIM) & (red < DIM_GREEN[0]) & (yellow - red > DIM_GREEN[1])  # in the dark all is nearly grey
+        leaf = np.ones((LEAST_LEAF, LEAST_LEAF), np.uint8)
+        gap = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (BETWEEN_LEAVES, BETWEEN_LEAVES))
+        solid = cv2.morphologyEx(((green | dim) & rough).astype(np.uint8), cv2.MORPH_OPEN, leaf)
+        count, part = cv2.connectedComponents(cv2.morphologyEx(solid, cv2.MORPH_CLOSE, gap), connectivity=8)
+        area = np.bincount(part.ravel(), minlength=count)
+        is_plant = (area >= LEAST_PLANT * self.size) & (np.bincount(part[green & rough], minlength=count) > LIT * area)
+        is_plant[0] = False
+        found: Bool = is_plant[part.ravel()]
+        return found
 
     def marked(self, points: Bool) -> Bool:
         """Mask (S,) of the samples with one of the masked points (T,)."""
