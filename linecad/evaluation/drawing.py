@@ -30,7 +30,8 @@ class DrawingScore:
     faces: FaceCounts
     lines: LineCounts
     truth: TrueCounts | None  # made photos alone
-    windows: float | None  # F1 at overlap 0.5; None where the truth does not know windows
+    windows: float | None  # F1 at overlap 0.5 in component 0; None where the truth does not know windows
+    all_windows: float | None  # of the whole scene
 
 
 def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> DrawingScore:
@@ -56,6 +57,7 @@ def score_drawing(scene: Scene, reference: Reference, scale: float | None) -> Dr
         lines=count_lines(scene, shapes, _details(scene)),
         truth=truth,
         windows=None if reference.truth is None else windows_f1(scene, reference.truth),
+        all_windows=None if reference.truth is None else windows_f1(scene, reference.truth, everywhere=True),
     )
 
 

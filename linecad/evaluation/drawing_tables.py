@@ -54,6 +54,7 @@ TRUTH: dict[Column, Reader] = {
     Column("one ground", "%"): _of_truth(lambda truth: truth.has_one_ground),
     Column("ground height right", "%"): _of_truth(lambda truth: truth.has_right_height),
     Column("windows F1", "%"): lambda score: score.windows,
+    Column("all windows F1", "%"): lambda score: score.all_windows,
 }
 TABLES: dict[str, tuple[str, dict[Column, Reader]]] = {
     "Drawing: faces": ("What a draughtsman would object to in the faces.", FACES),

@@ -12,20 +12,20 @@ from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, TrueOpenings, Truth, planes_of
 from linecad.geometry import PhotoLength, project
 from linecad.model.openings.corners import rectangle_in_space
-from linecad.scene import OpeningKind, Scene
+from linecad.scene import OpeningKind, Plane, Scene
 
 OVERLAP = 0.5  # intersection over union in the photo, from which an opening is found
 RELIEF = 0.3  # m before a wall: what stands further before it hides it
 VISIBLE = 0.5  # share of an opening's pixels that must show it, for it to count
 INSIDE = 0.9  # share of it that must lie in the photo
 LEAST_SIDE = PhotoLength(30.0)  # of a square as large as the smallest opening that counts
-FEWEST_LINES = 6  # of component 0 that a facade must show to count
+FEWEST_LINES = 6  # that a facade must show to be in the scene
 NEAREST = 0.1  # m of depth; what reaches nearer to the camera is not projected
 
 
 @dataclass(frozen=True)
 class OpeningScore:
-    """Openings of one kind on the facades that component 0 shows."""
+    """Openings of one kind, those of component 0 or all."""
 
     right: int  # found ones that are true
     found: int  # that were found, without those where nothing can be said
@@ -37,17 +37,21 @@ class OpeningScore:
         return 2 * self.right / (self.found + self.true) if self.found + self.true else None
 
 
-def windows_f1(scene: Scene, truth: Truth) -> float | None:
+def windows_f1(scene: Scene, truth: Truth, everywhere: bool = False) -> float | None:
     """F1 of the windows at overlap 0.5; None where the truth tells no openings, or neither side has windows."""
-    scored = score_openings(scene, truth, "window")
+    scored = score_openings(scene, truth, "window", everywhere)
     return None if scored is None else scored.f1
 
 
-def score_openings(scene: Scene, truth: Truth, kind: OpeningKind) -> OpeningScore | None:
+def score_openings(scene: Scene, truth: Truth, kind: OpeningKind, everywhere: bool = False) -> OpeningScore | None:
     """Score the openings of one kind; None where the truth does not tell them.
 
-    A true opening counts where the photo shows most of it and its facade is in component 0. A found one counts unless
-    it is a true one that does not count, or lies on a facade that does not.
+    A true opening counts where the photo shows most of it and its facade, the plane of one building, is in component 0:
+    at least FEWEST_LINES lines of that component show the facade, and at least as many as of all others together. A
+    found one counts where its plane is of component 0, as half of its lines are, and where it is no true one that does
+    not count and does not lie on a facade that does not.
+
+    `everywhere` counts all that the photo shows and all that was found.
     """
     if truth.openings is None:
         return None
@@ -55,18 +59,19 @@ def score_openings(scene: Scene, truth: Truth, kind: OpeningKind) -> OpeningScor
     facade = _facades(known)
     shown = np.array([_in_photo(truth, corners) for corners in known.corners], object)
     own = known.is_door == (kind == "door")
-    in_scene = _facades_in_scene(scene, truth, facade)[facade] if len(facade) else np.zeros(0, bool)
+    is_in = _facades_in_scene(scene, truth, facade)[facade]
+    is_in |= everywhere
     is_there = np.array([shape is not None for shape in shown], bool)
-    counts = own & is_there & in_scene
+    counts = own & is_there & is_in
     for row in np.flatnonzero(counts).tolist():
         counts[row] = _is_visible(truth, known.corners[row], shown[row])
-    found = _found_shapes(scene, kind)
+    found = _found_shapes(scene, kind, everywhere)
     targets = np.flatnonzero(own & is_there)
     pairs = _pairs(found, [shown[row] for row in targets])
     excused = {i for i, j in pairs if not counts[targets[j]]}
     right = len(pairs) - len(excused)
     others = [shape for i, shape in enumerate(found) if i not in {i for i, _ in pairs}]
-    false = sum(_lies_on_counted(truth, known, in_scene, shape) for shape in others)
+    false = sum(_lies_on_counted(truth, known, is_in, shape) for shape in others)
     return OpeningScore(right, right + false, int(counts.sum()))
 
 
@@ -80,19 +85,20 @@ def _facades(known: TrueOpenings) -> Int:
 
 
 def _facades_in_scene(scene: Scene, truth: Truth, facade: Int) -> Bool:
-    """Which facades (F,) show lines of component 0."""
+    """Which facades (F,) are in component 0, by the lines that show them."""
     known = truth.openings
     assert known is not None
-    pixels = scene.lines.segment[scene.lines.component == 0].mean(axis=1)
+    pixels = scene.lines.segment.mean(axis=1)
     quads = truth.quad_at(pixels)
-    pixels, quads = pixels[quads != NOTHING], quads[quads != NOTHING]
+    shown = quads != NOTHING
+    pixels, quads, is_first = pixels[shown], quads[shown], (scene.lines.component == 0)[shown]
     points = truth.rays(pixels) * truth.quad_depth(pixels, quads)[:, None]
     normal, offset = planes_of(known.corners)
     there = np.zeros(facade.max(initial=-1) + 1, bool)
     for number in range(len(there)):
         first = int(np.flatnonzero(facade == number)[0])
-        near = np.abs(points @ normal[first] - offset[first]) <= RELIEF
-        there[number] = (near & (truth.body[quads] == known.body[first])).sum() >= FEWEST_LINES
+        on = (np.abs(points @ normal[first] - offset[first]) <= RELIEF) & (truth.body[quads] == known.body[first])
+        there[number] = (on & is_first).sum() >= max(FEWEST_LINES, on.sum() / 2)
     return there
 
 
@@ -120,15 +126,22 @@ def _is_visible(truth: Truth, corners: Float, shape: shapely.Polygon) -> bool:
     return bool(np.mean((quads != NOTHING) & (before <= RELIEF)) >= VISIBLE)
 
 
-def _found_shapes(scene: Scene, kind: OpeningKind) -> list[shapely.Polygon]:
-    """The found openings of one kind in the photo."""
-    planes = {plane.id: plane for plane in scene.planes}
-    corners = [rectangle_in_space(o, planes[o.plane]) for o in scene.openings if o.kind == kind]
+def _found_shapes(scene: Scene, kind: OpeningKind, everywhere: bool) -> list[shapely.Polygon]:
+    """The found openings of one kind in the photo: those on planes of component 0, or all."""
+    component = dict(zip(scene.lines.id.tolist(), scene.lines.component.tolist(), strict=True))
+    planes = {plane.id: plane for plane in scene.planes if everywhere or _is_of_first(plane, component)}
+    corners = [rectangle_in_space(o, planes[o.plane]) for o in scene.openings if o.kind == kind and o.plane in planes]
     return [
         shapely.Polygon(project(ring, scene.camera.matrix, scene.rotation))
         for ring in corners
         if (ring @ scene.rotation[2] > 0).all()
     ]
+
+
+def _is_of_first(plane: Plane, component: dict[int, int]) -> bool:
+    """Whether at least half of a plane's lines, which have a `component` each, are in component 0."""
+    first = sum(component[line] == 0 for line in plane.lines)
+    return first > 0 and 2 * first >= len(plane.lines)
 
 
 def _pairs(found: Sequence[shapely.Polygon], true: Sequence[shapely.Polygon]) -> list[tuple[int, int]]:
@@ -142,7 +155,7 @@ def _pairs(found: Sequence[shapely.Polygon], true: Sequence[shapely.Polygon]) ->
     return [(int(i), int(j)) for i, j in zip(rows, columns, strict=True) if overlap[i, j] > 0]
 
 
-def _lies_on_counted(truth: Truth, known: TrueOpenings, in_scene: Bool, shape: shapely.Polygon) -> bool:
+def _lies_on_counted(truth: Truth, known: TrueOpenings, is_in: Bool, shape: shapely.Polygon) -> bool:
     """Whether a found opening that is none counts as false: not on a facade that does not count."""
     middle = shapely.get_coordinates(shape.centroid)
     quad = truth.quad_at(middle)
@@ -151,4 +164,4 @@ def _lies_on_counted(truth: Truth, known: TrueOpenings, in_scene: Bool, shape: s
     point = truth.rays(middle)[0] * truth.quad_depth(middle, quad)[0]
     normal, offset = planes_of(known.corners)
     on = (np.abs(normal @ point - offset) <= RELIEF) & (known.body == truth.body[quad[0]])
-    return not on.any() or bool(in_scene[on].any())
+    return not on.any() or bool(is_in[on].any())

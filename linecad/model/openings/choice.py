@@ -64,6 +64,16 @@ def overlapping(shapes: np.ndarray[tuple[int], np.dtype[np.object_]]) -> Int:
     return found
 
 
+def not_overlapping(shapes: list[shapely.Polygon], others: list[shapely.Polygon]) -> Bool:
+    """Which shapes (N,) overlap none of the others in the photo."""
+    one, other = np.array(shapes, object), np.array(others, object)
+    first, second = shapely.STRtree(other).query(one).reshape(2, -1) if len(one) else np.zeros((2, 0), np.int64)
+    shared = shapely.area(shapely.intersection(one[first], other[second]))
+    free = np.ones(len(one), bool)
+    free[first[shared > SHARED * np.minimum(shapely.area(one[first]), shapely.area(other[second]))]] = False
+    return free
+
+
 def heaviest_set(value: Float, pairs: Int) -> tuple[Bool, float]:
     """The mask (N,) of the ones of most value (N,) in sum of which no two are a pair (P, 2); all above 0.
 

@@ -2,8 +2,8 @@
 
 Each wall is looked at straight on (`raster`). Rectangles that edges close (`rectangles`) are judged by what the photo
 shows in and around them (`evidence`) and by the rows and columns they stand in (`lattice`, which proposes what edges
-missed). The best set of which no two overlap is taken (`choice`) and made regular (`regular`); then windows of one size
-tell together how deep their panes are (`recess`).
+missed). The best set of which no two overlap is taken (`choice`), gaps in its rows and columns are filled (`gaps`), and
+all are made regular (`regular`); then windows of one size tell together how deep their panes are (`recess`).
 """
 
 from dataclasses import dataclass, replace
@@ -13,10 +13,11 @@ import shapely
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.model.openings.choice import choose
-from linecad.model.openings.evidence import NAMES, Sums, measure
+from linecad.model.openings.choice import Choice, choose, not_overlapping
+from linecad.model.openings.evidence import Sums, measure
+from linecad.model.openings.gaps import Pool, are_odd, find_gaps, may_be
 from linecad.model.openings.lattice import distinct, propose, support
-from linecad.model.openings.odds import LEAST_ODDS, first_odds, odds
+from linecad.model.openings.odds import LEAST_FILLED, LEAST_ODDS, first_odds, odds
 from linecad.model.openings.raster import Raster, build_raster, look
 from linecad.model.openings.recess import depth_ratios
 from linecad.model.openings.rectangles import count_edges, find_rectangles
@@ -25,7 +26,6 @@ from linecad.model.openings.walls import Wall, find_walls
 from linecad.scene import Camera, Lines, Opening, Plane, ground_of
 
 ALMOST_SAME = 0.8  # overlap of rectangles of which one is judged
-BRIGHTER = 1.0  # than the wall around it, by LEVELS of the evidence, a window is from inside; shelves are not
 SEEN_COVER = 1.2  # of the four sides in sum: with less, an opening was not seen
 
 
@@ -37,7 +37,7 @@ class _Likely:
     raster: Raster
     box: Int  # (N, 4)
     odds: Float  # (N,) log-odds
-    cover: Float  # (N,) of the four sides in sum
+    pool: Pool
 
     def shapes(self) -> list[shapely.Polygon]:
         """The rectangles in the photo."""
@@ -74,30 +74,60 @@ def find_openings(
                 found.append(likely)
     if not found:
         return Found()
-    choice = choose(
-        [shape for likely in found for shape in likely.shapes()],
-        np.concatenate([likely.odds for likely in found]) - LEAST_ODDS,
-    )
+    taken, choice = _choice(found, LEAST_ODDS)
+    taken, more = _filled(taken)
     ground = _ground_height(planes)
     openings: list[Opening] = []
-    start = 0
-    for likely in found:
-        own = choice.taken[(choice.taken >= start) & (choice.taken < start + len(likely.box))] - start
-        start += len(likely.box)
-        if len(own):
-            box = likely.box[own]
+    for likely in taken:
+        if len(likely.box):
+            box = likely.box
             seen = Seen(
                 np.column_stack([likely.raster.u[box[:, :2]], likely.raster.v[box[:, 2:]]]),
                 np.column_stack(
                     [
                         np.diff(likely.raster.u)[box[:, 0].clip(max=len(likely.raster.u) - 2)],
-                        np.full(len(own), likely.raster.v[1] - likely.raster.v[0]),
+                        np.full(len(box), likely.raster.v[1] - likely.raster.v[0]),
                     ]
                 ),
-                likely.cover[own] < SEEN_COVER,
+                likely.pool.edges.cover(box).sum(axis=1) < SEEN_COVER,
             )
             openings += _with_recess(make_regular(likely.wall, lines, seen, len(openings), ground), likely)
-    return Found(tuple(openings), choice.notes)
+    return Found(tuple(openings), max((choice, more), key=lambda each: each.gap).notes)
+
+
+def _choice(found: list[_Likely], least: float) -> tuple[list[_Likely], Choice]:
+    """Of the rectangles of all walls the best set of which no two overlap in the photo, wall by wall."""
+    choice = choose(
+        [shape for likely in found for shape in likely.shapes()],
+        np.concatenate([likely.odds for likely in found]) - least,
+    )
+    starts = np.cumsum([0, *(len(likely.box) for likely in found)])
+    chosen = []
+    for likely, start, end in zip(found, starts[:-1].tolist(), starts[1:].tolist(), strict=True):
+        own = choice.taken[(choice.taken >= start) & (choice.taken < end)] - start
+        chosen.append(replace(likely, box=likely.box[own], odds=likely.odds[own]))
+    return chosen, choice
+
+
+def _filled(taken: list[_Likely]) -> tuple[list[_Likely], Choice]:
+    """What was taken of each wall without odd ones, and what fills gaps in its rows and columns."""
+    kept = [~are_odd(likely.raster, likely.box) for likely in taken]
+    taken = [
+        replace(likely, box=likely.box[own], odds=likely.odds[own]) for likely, own in zip(taken, kept, strict=True)
+    ]
+    before = [shape for likely in taken for shape in likely.shapes()]
+    gaps = []
+    for likely in taken:
+        box, likeliness = find_gaps(likely.pool, likely.box, likely.odds)
+        gap = replace(likely, box=box, odds=likeliness)
+        free = not_overlapping(gap.shapes(), before)
+        gaps.append(replace(gap, box=box[free], odds=likeliness[free]))
+    more, choice = _choice(gaps, LEAST_FILLED)
+    pairs = zip(taken, more, strict=True)
+    return [
+        replace(one, box=np.concatenate([one.box, other.box]), odds=np.concatenate([one.odds, other.odds]))
+        for one, other in pairs
+    ], choice
 
 
 def _ground_height(planes: tuple[Plane, ...]) -> float | None:
@@ -136,8 +166,5 @@ def _likely(wall: Wall, raster: Raster, is_inside: bool) -> _Likely:
     evidence = np.concatenate([evidence, measure(proposed, edges, sums, raster)])
     # Once: asked again with what was proposed, rows and columns would support themselves.
     whole = odds(evidence, support(box, raster, others, other_odds))
-    likely = whole >= LEAST_ODDS
-    if is_inside:
-        likely &= evidence[:, NAMES.index("darker")] <= -BRIGHTER
-    cover = edges.cover(box[likely]).sum(axis=1)
-    return _Likely(wall, raster, box[likely], whole[likely], cover)
+    likely = may_be(whole, LEAST_ODDS, evidence, is_inside)
+    return _Likely(wall, raster, box[likely], whole[likely], Pool(raster, edges, sums, box, evidence, is_inside))

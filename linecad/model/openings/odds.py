@@ -33,6 +33,7 @@ WEIGHTS = {
 }
 ROW, COLUMN = 1.40, 2.31  # the weights of the support by row and column
 LEAST_ODDS = -0.5  # of an opening; the best F1 in either half of these scenes, fitted to the other
+LEAST_FILLED = -1.5  # of one that fills a gap between openings that were taken
 
 
 def first_odds(evidence: Float) -> Float:

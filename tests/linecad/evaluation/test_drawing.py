@@ -90,10 +90,10 @@ def test_tables_have_a_row_for_each_photo_and_the_means(scene):
 
 def test_truth_has_a_table_where_there_is_any(scene):
     plain = score_drawing(scene, Reference(), None)
-    made = replace(plain, truth=TrueCounts(100, 80, 60, 30, 20, 5, 0.04, 0.9), windows=0.7)
+    made = replace(plain, truth=TrueCounts(100, 80, 60, 30, 20, 5, 0.04, 0.9), windows=0.7, all_windows=0.6)
     unseen = replace(plain, truth=TrueCounts(100, 80, 80, 80, 0, 0, None, None))
     table = drawings({"plain": plain, "made": made, "unseen": unseen})[-1]
     assert [row.name for row in table.rows] == ["made", "unseen", MEAN]
-    assert [cell.value for cell in table.rows[0].cells] == [0.6, 0.3, 0.25, 0.9, 1, 1, 0.7]
-    assert table.rows[1].cells[2:] == (None, None, None, None, None)
+    assert [cell.value for cell in table.rows[0].cells] == [0.6, 0.3, 0.25, 0.9, 1, 1, 0.7, 0.6]
+    assert table.rows[1].cells[2:] == (None,) * 6
     assert table.rows[2].cells[0].value == pytest.approx(0.7)

@@ -37,16 +37,16 @@ def truth():
     )  # fmt: skip
 
 
-def scene_of(boxes, lines=8):
-    """Openings at boxes in metres, in a scene of another scale, with lines of component 0 on the wall."""
+def scene_of(boxes, lines=8, others=0):
+    """Openings at boxes in metres, in a scene of another scale, with lines on the wall, the last ones `others`."""
     starts = np.column_stack([np.linspace(-4, 4, lines), np.full(lines, DISTANCE), np.zeros(lines)])
     ends = np.stack([starts, starts + np.array([0, 0, 1.0])], axis=1)
     return Scene(
         photo="wall.jpg", camera=CAMERA, rotation=AHEAD,
         lines=Lines(np.arange(lines), np.full(lines, 2), project(ends, CAMERA.matrix, AHEAD), SCALE * ends,
-                    np.zeros(lines, bool), np.zeros(lines, int), np.full(lines, "supported")),
+                    np.zeros(lines, bool), np.arange(lines) >= lines - others, np.full(lines, "supported")),
         intersections=Intersections(np.zeros((0, 2)), (), np.zeros((0, 2)), (), (), ()),
-        planes=(Plane(4, 1, SCALE * DISTANCE, ()),), solve=SolveReport("", "", "", 0.0, 0.0, 0.0),
+        planes=(Plane(4, 1, SCALE * DISTANCE, tuple(range(lines))),), solve=SolveReport("", "", "", 0.0, 0.0, 0.0),
         openings=tuple(
             Opening(number, 4, *(SCALE * np.array(box)).tolist(), kind=kind) for number, (box, kind) in enumerate(boxes)
         ),
@@ -57,8 +57,8 @@ def windows(*boxes):
     return [(box, "window") for box in boxes]
 
 
-def counts(scene, truth, kind="window"):
-    found = score_openings(scene, truth, kind)
+def counts(scene, truth, kind="window", everywhere=False):
+    found = score_openings(scene, truth, kind, everywhere)
     return found.right, found.found, found.true
 
 
@@ -99,6 +99,26 @@ def test_hidden_window_counts_neither_way(truth):
 def test_facade_without_lines_of_component_0_does_not_count(truth):
     assert counts(scene_of(windows(*WINDOWS), lines=3), truth) == (0, 0, 0)
     assert windows_f1(scene_of(windows(WINDOWS[0], (1.5, 2.5, 0.0, 1.5)), lines=3), truth) is None
+
+
+def test_facade_that_other_components_show_more_of_does_not_count(truth):
+    half = scene_of(windows(WINDOWS[0], (1.5, 2.5, 0.0, 1.5)), lines=12, others=6)
+    assert counts(half, truth) == (1, 2, 3)
+    less = scene_of(windows(WINDOWS[0], (1.5, 2.5, 0.0, 1.5)), lines=13, others=7)
+    assert counts(less, truth) == (0, 0, 0)
+    assert counts(less, truth, everywhere=True) == (1, 2, 3)
+    assert windows_f1(less, truth, everywhere=True) == pytest.approx(2 / 5)
+
+
+@pytest.mark.parametrize("lines", [(), (6, 7), (0, 6, 7)])
+def test_opening_on_a_plane_of_another_component_is_not_found(truth, lines):
+    scene = scene_of(windows(*WINDOWS), others=2)
+    moved = replace(scene, planes=(*scene.planes, Plane(5, 1, SCALE * DISTANCE, lines)))
+    moved = replace(moved, openings=tuple(replace(each, plane=4 + (each.id == 1)) for each in scene.openings))
+    assert counts(moved, truth) == (2, 2, 3)
+    assert counts(moved, truth, everywhere=True) == (3, 3, 3)
+    whole = replace(moved, planes=(scene.planes[0], replace(moved.planes[1], lines=(0, 7))))
+    assert counts(whole, truth) == (3, 3, 3)
 
 
 def test_window_in_the_sky_is_false(truth):

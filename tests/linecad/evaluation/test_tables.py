@@ -27,6 +27,7 @@ DRAWING = DrawingScore(
     LineCounts(20, 0, 3, 6, 40, 7, 10),
     None,
     windows=None,
+    all_windows=None,
 )
 ALL = DepthScore(10, 8, 0.3, 0.6, 0.375, 0.75, 1.0)
 LARGEST = DepthScore(10, 5, 0.2, 0.4, 0.5, 1.0, 1.0)

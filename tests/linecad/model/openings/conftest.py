@@ -63,8 +63,11 @@ def lines_of(edges):
     )  # fmt: skip
 
 
-def make_facade(hidden=(), with_lines=None):
-    """Windows at every column and row; those in `hidden` are behind a tree, the first `with_lines` have lines."""
+def make_facade(hidden=(), with_lines=None, half_hidden=()):
+    """Windows at every column and row, the first `with_lines` with lines.
+
+    Those in `hidden` are behind a tree; of those in `half_hidden` the lower half shows the wall.
+    """
     pixels = np.full((900, 1200, 3), (215, 225, 240), np.uint8)
     paint(pixels, -6, 6, FOOT, EAVES, WALL)
     boxes = [(u, u + WIDE, v, v + TALL) for v in ROWS for u in COLUMNS]
@@ -79,6 +82,9 @@ def make_facade(hidden=(), with_lines=None):
             u, v = rng.uniform(u0 - 0.2, u1 + 0.2), rng.uniform(v0 - 0.2, v1 + 0.2)
             colour = tuple(int(shade) for shade in rng.integers(40, 110, 3) * [0.7, 1.2, 0.5])
             paint(pixels, u, u + 0.12, v, v + 0.1, colour)
+    for number in half_hidden:
+        u0, u1, v0, v1 = boxes[number]
+        paint(pixels, u0 - 0.3, u1 + 0.3, v0 - 0.3, (v0 + v1) / 2, WALL)
     edges = edges_of(-6, 6, FOOT, EAVES)
     for box in boxes[:with_lines]:
         edges += edges_of(*box)

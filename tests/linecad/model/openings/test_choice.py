@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from linecad.model.openings import choice
-from linecad.model.openings.choice import choose, heaviest_set, overlapping
+from linecad.model.openings.choice import choose, heaviest_set, not_overlapping, overlapping
 
 
 def best_by_trying(value, pairs):
@@ -86,3 +86,11 @@ def test_gap_is_a_share_of_what_is_taken(monkeypatch):
 
 def test_nothing_is_told_of_a_choice_that_is_proven():
     assert choose([shapely.box(0, 0, 2, 2)], np.ones(1)).notes == ()
+
+
+def test_what_overlaps_nothing_taken_is_free():
+    taken = [shapely.box(0, 0, 2, 2)]
+    shapes = [shapely.box(1, 1, 3, 3), shapely.box(1.9, 0, 4, 2), shapely.box(5, 5, 6, 6)]
+    assert not_overlapping(shapes, taken).tolist() == [False, True, True]
+    assert not_overlapping([], taken).tolist() == []
+    assert not_overlapping(shapes, []).all()

@@ -1,0 +1,71 @@
+"""What the openings that were taken tell about others of their wall.
+
+What alone is too uncertain to be an opening, such as a window half behind a bush, is likely one where openings of its
+size stand in its row and its column, so that gaps are filled. Only taken ones ask here: rectangles of bricks cannot
+support each other. And a rectangle that is tiny beside all others, with none of its size in its row or column, is none.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.model.openings.evidence import NAMES, Sums, measure
+from linecad.model.openings.lattice import propose, support
+from linecad.model.openings.odds import LEAST_FILLED, odds
+from linecad.model.openings.raster import Raster
+from linecad.model.openings.rectangles import Edges
+
+BRIGHTER = 1.0  # than the wall around it, by LEVELS of the evidence, a window is from inside; shelves are not
+TINY, FEWEST = 0.1, 4  # of the median area of taken ones, so many at least: smaller ones need a mate
+LEAST_MATES = 0.9  # support by row and column in sum, which one mate does not reach and two do
+LEAST_COVER = 1.2  # of the four sides in sum: between two windows is often wall
+LOOK = [NAMES.index("contrast"), NAMES.index("edges inside")]
+ALIKE = 0.5  # of what those taken show of these, in the median
+SURE = 3.0  # log-odds of what was taken, at least, for what it says about others
+
+
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """All rectangles of a wall that were judged, likely or not."""
+
+    raster: Raster
+    edges: Edges
+    sums: Sums
+    box: Int  # (N, 4)
+    evidence: Float  # (N, F)
+    is_inside: bool  # seen below a ceiling
+
+
+def may_be(odds: Float, least: float, evidence: Float, is_inside: bool) -> Bool:
+    """Which rectangles (N,) may be openings; seen from inside, only those that light comes through."""
+    found = odds >= least
+    if is_inside:
+        found &= evidence[:, NAMES.index("darker")] <= -BRIGHTER
+    return np.asarray(found)
+
+
+def are_odd(raster: Raster, taken: Int) -> Bool:
+    """Which of those taken (T, 4) are tiny beside the others and have none of their size in their row or column."""
+    if len(taken) < FEWEST:
+        return np.zeros(len(taken), bool)
+    area = (raster.u[taken[:, 1]] - raster.u[taken[:, 0]]) * (raster.v[taken[:, 3]] - raster.v[taken[:, 2]])
+    has_mate = support(taken, raster, taken, np.zeros(len(taken))).any(axis=1)
+    return np.asarray((area < TINY * np.median(area)) & ~has_mate)
+
+
+def find_gaps(pool: Pool, taken: Int, taken_odds: Float) -> tuple[Int, Float]:
+    """Rectangles (M, 4) that the rows and columns of those taken (T, 4) ask for, and their log-odds (M,)."""
+    if len(taken) < 2:
+        return np.zeros((0, 4), np.int64), np.zeros(0)
+    proposed = propose(taken[np.argsort(-taken_odds, kind="stable")], pool.raster)
+    box = np.concatenate([pool.box, proposed])
+    evidence = np.concatenate([pool.evidence, measure(proposed, pool.edges, pool.sums, pool.raster)])
+    mates = support(box, pool.raster, taken, np.maximum(taken_odds, SURE))
+    found = odds(evidence, mates)
+    asked = may_be(found, LEAST_FILLED, evidence, pool.is_inside) & (mates.sum(axis=1) >= LEAST_MATES)
+    asked &= pool.edges.cover(box).sum(axis=1) >= LEAST_COVER
+    # The sides of its neighbours close a piece of wall too, but in it is nothing.
+    own = measure(taken, pool.edges, pool.sums, pool.raster)
+    asked &= (evidence[:, LOOK] >= ALIKE * np.median(own[:, LOOK], axis=0)).all(axis=1)
+    return box[asked], found[asked]
