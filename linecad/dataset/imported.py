@@ -157,11 +157,12 @@ def _plinths(surfaces: list[Surface], ground: float) -> list[Surface]:
                     if ends[:, 2].max() <= lowest + FLAT_FOOT:
                         feet[key].append(ends)
     down = np.array([1.0, 1.0, 0.0])
-    return [
+    found = [
         Surface(Polygon("wall", None, (np.concatenate([ends[0], (ends[0] * down + ground * UP)[::-1]]),)))
         for ends in feet.values()
         if len(ends) == 1
     ]
+    return [surface for surface in found if surface.area > LEAST_AREA]  # not below short upright sides
 
 
 def _add_building(model: Model, surfaces: list[Surface], paints: Paints) -> None:
