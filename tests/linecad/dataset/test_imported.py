@@ -96,8 +96,13 @@ def triangles() -> Float:
                 (a, c), (b, d) = np.min(place, axis=0), np.max(place, axis=0)
                 strips = [(0, a, 0, 1), (b, 1, 0, 1), (a, b, 0, c), (a, b, d, 1)]
                 outlines = [
-                    np.array([corner + u * along + v * up for u, v in ((l, f), (r, f), (r, t), (l, t))])
-                    for l, r, f, t in strips
+                    np.array(
+                        [
+                            corner + u * along + v * up
+                            for u, v in ((left, low), (right, low), (right, high), (left, high))
+                        ]
+                    )
+                    for left, right, low, high in strips
                 ]
             found += [np.array([o[0], o[i], o[i + 1]]) for o in outlines for i in range(1, len(o) - 1)]
     return np.array(found)
@@ -133,11 +138,8 @@ def test_depth_is_that_of_a_ray_cast_through_the_polygons(files: tuple[Path, Pat
 def test_the_two_frames_differ_by_the_angle_of_the_houses(truth: Truth) -> None:
     assert truth.frames is not None
     assert sorted(np.round(np.abs(np.degrees(truth.frames.turn)), 6)) == [0.0, TURN]
-    for body, frame in ((1, 0), (2, 1)):
-        upright = (truth.body == body) & (truth.frames.quad_slope == np.pi / 2)
-        assert len(set(truth.frames.quad[upright].tolist())) == 1
-        assert frame in (0, 1)
-    assert set(truth.frames.quad[truth.body == 1]) != set(truth.frames.quad[truth.body == 2])
+    of = [set(truth.frames.quad[truth.body == body].tolist()) for body in (1, 2)]
+    assert of in ([{0}, {1}], [{1}, {0}])
 
 
 def test_roofs_slope_and_their_verges_lie_in_the_frame(truth: Truth) -> None:
@@ -182,7 +184,8 @@ def test_a_truth_with_frames_and_triangles_is_read_as_it_was_written(truth: Trut
         np.testing.assert_array_equal(getattr(again.frames, name), getattr(truth.frames, name))
 
 
-def test_depths_of_lines_of_all_frames_are_scored(truth: Truth) -> None:
+def test_depths_of_lines_of_all_frames_are_scored(files: tuple[Path, Path]) -> None:
+    truth = measure(plan_views(*files, seed=1).draw(0), 960, 640)
     points = reference_of(truth).edges
     assert points is not None
     shown = truth.body[truth.quad_at(points.pixels)]
@@ -202,7 +205,11 @@ def test_a_foot_above_the_ground_gets_a_plinth(files: tuple[Path, Path]) -> None
     [
         (0, "{", "not JSON"),
         (0, '{"buildings": []}', "holds no buildings"),
-        (0, '{"buildings": [{"id": "a", "polygons": [{"class": "tower", "rings": []}]}]}', "class"),
+        (
+            0,
+            '{"buildings": [{"id": "a", "polygons": [{"class": "tower", "rings": [[[0, 0, 0], [1, 0, 0], [0, 0, 1]]]}]}]}',
+            "class",
+        ),
         (0, '{"buildings": [{"id": "a", "polygons": [{"class": "wall", "rings": [[[0, 0, 0]]]}]}]}', "3 points"),
         (1, json.dumps({"views": [VIEW, VIEW]}), "two views"),
         (1, json.dumps({"views": [VIEW | {"id": "../x"}]}), "a name of"),
