@@ -207,7 +207,7 @@ def test_a_foot_above_the_ground_gets_a_plinth(files: tuple[Path, Path]) -> None
         (0, '{"buildings": []}', "holds no buildings"),
         (
             0,
-            '{"buildings": [{"id": "a", "polygons": [{"class": "tower", "rings": [[[0, 0, 0], [1, 0, 0], [0, 0, 1]]]}]}]}',
+            '{"buildings": [{"id": "a", "polygons": [{"class": "tower", "rings": [[[0,0,0], [1,0,0], [0,1,0]]]}]}]}',
             "class",
         ),
         (0, '{"buildings": [{"id": "a", "polygons": [{"class": "wall", "rings": [[[0, 0, 0]]]}]}]}', "3 points"),
