@@ -81,7 +81,8 @@ class Surface:
         ]
         found = np.array(corners).reshape(-1, 3, 3)
         size = np.linalg.norm(np.cross(found[:, 1] - found[:, 0], found[:, 2] - found[:, 0]), axis=1)
-        return found[size > 2 * LEAST_AREA]
+        kept: Float = found[size > 2 * LEAST_AREA]
+        return kept
 
 
 def surfaces_of(building: Building) -> list[Surface]:
@@ -171,7 +172,7 @@ def _add_building(model: Model, surfaces: list[Surface], paints: Paints) -> None
     for surface in surfaces:
         material = paints.of(surface)
         for corners in surface.triangles:
-            model.triangle(*corners, material)
+            model.triangle(corners[0], corners[1], corners[2], material)
         for key, both in surface.sides:
             sides[key].append((surface.normal, material))
             ends[key] = both

@@ -194,4 +194,5 @@ def _own_coordinates(quads: Float) -> Float:
     size = np.linalg.norm(level, axis=1, keepdims=True)
     level = np.where(size < LEVEL, (1.0, 0.0, 0.0), level / np.maximum(size, LEVEL))
     own = np.stack([level, np.cross(normal, level)], axis=2)
-    return quads @ own
+    coordinates: Float = quads @ own
+    return coordinates

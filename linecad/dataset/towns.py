@@ -94,7 +94,7 @@ def _add_row(model: Model, sign: float, extent: tuple[float, float], curve: floa
 
 def _turn(stray: float, rng: Generator) -> float:
     """The angle, rad, between a house and its neighbour; back to the curve of the street where it strayed too far."""
-    size = min(float(rng.exponential(MEDIAN_TURN / np.log(2))), LARGEST_TURN)
+    size = float(min(rng.exponential(MEDIAN_TURN / np.log(2)), LARGEST_TURN))
     back = -1.0 if stray > 0 else 1.0
     return size * (back if abs(stray) > STRAY or rng.random() < 0.6 else -back)
 
