@@ -11,6 +11,7 @@ from linecad.geometry import rotation_about
 QUARTER = np.pi / 2  # rad; a frame turned by it is the same frame
 SAME_FRAME = np.radians(1.0)  # between two directions of one frame
 BINS = 900  # of a quarter turn, in which the most frequent directions are looked for
+ROUNDS = 20  # of finding the mean of a frame and what is near it
 BROAD = 0.3  # m; what is narrower has no frame of its own
 UNSEEN = 1e-6  # px for each m2: what no pixel shows counts last
 
@@ -76,7 +77,14 @@ def _find_turns(turn: Float, weight: Float) -> Float:
         around = sum(np.roll(total, shift) for shift in range(-reach, reach + 1))
         peak = (int(np.argmax(around)) + 0.5) * step
         own = left & (np.abs(_folded(turn - peak)) <= SAME_FRAME + step)
-        found.append((weight[own].sum(), peak + np.average(_folded(turn[own] - peak), weights=weight[own])))
+        for _ in range(ROUNDS):
+            # What is within SAME_FRAME of the peak need not be so of the mean; what is not founds another frame.
+            angle = peak + float(np.average(_folded(turn[own] - peak), weights=weight[own]))
+            again = left & (np.abs(_folded(turn - angle)) <= SAME_FRAME)
+            if not again.any() or (again == own).all():
+                break
+            own = again
+        found.append((float(weight[own].sum()), angle))
         left &= ~own
     return np.array([angle for _, angle in sorted(found, reverse=True)])
 

@@ -5,9 +5,11 @@ import hashlib
 import numpy as np
 import pytest
 
+from linecad.dataset.frames import SAME_FRAME, _find_turns, _nearest
 from linecad.dataset.make import DatasetOptions, draw_draft, measure, plan_scenes
-from linecad.dataset.scenes import draw_scene
+from linecad.dataset.scenes import SceneKind, draw_scene
 from linecad.dataset.towns import LARGEST_TURN, MEDIAN_TURN, _turn
+from linecad.dataset.truth import NOTHING
 
 
 def test_neighbours_turn_as_measured() -> None:
@@ -29,6 +31,13 @@ def test_a_town_has_several_frames_and_sloped_roofs() -> None:
     assert np.abs(truth.frames.turn).max() <= np.pi / 4
 
 
+def test_walls_two_degrees_apart_and_one_between_are_all_in_frames() -> None:
+    turns = np.radians([0.0, 0.9, 1.9, 40.0])
+    frames = _find_turns(turns, np.array([5.0, 1.0, 4.0, 2.0]))
+    assert (_nearest(turns, frames, np.full(4, SAME_FRAME)) != NOTHING).all()
+    assert len(frames) == 3
+
+
 def test_a_plan_of_one_kind_has_scenes_of_it_alone() -> None:
     plan = plan_scenes(DatasetOptions(scenes=12, seed=1), "town")
     assert plan.names[11] == "town-0011"
@@ -39,7 +48,7 @@ def test_a_plan_of_one_kind_has_scenes_of_it_alone() -> None:
     ("kind", "expected"),
     [("street", "e28438d6c3a061e6"), ("courtyard", "2022f2d4854e1354"), ("room", "657318812d34d306")],
 )
-def test_scenes_of_other_kinds_are_what_they_were(kind: str, expected: str) -> None:
+def test_scenes_of_other_kinds_are_what_they_were(kind: SceneKind, expected: str) -> None:
     model, _ = draw_scene(kind, np.random.default_rng([7, 0, 0]))
     found = hashlib.sha256((np.round(np.array(model.corners), 6) + 0.0).tobytes()).hexdigest()[:16]
     assert found == expected
