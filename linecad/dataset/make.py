@@ -13,14 +13,16 @@ from numpy.random import Generator
 
 from linecad.dataset.choice import MOST_TRIES, judge
 from linecad.dataset.depth_maps import NARROWEST, WIDEST, MapKind, draw_depth_map
+from linecad.dataset.frames import with_frames
 from linecad.dataset.light import Light, draw_light
 from linecad.dataset.modelling import Model, parallelograms
-from linecad.dataset.rasteriser import rasterise, visible_pieces
-from linecad.dataset.scenes import draw_scene, scene_kind
+from linecad.dataset.rasteriser import IN_PLANE, rasterise, visible_pieces
+from linecad.dataset.scenes import SceneKind, draw_scene, scene_kind
 from linecad.dataset.store import (
     DEPTH_MAP,
     LARGEST_SEED,
     LIST,
+    OF_ALL_KINDS,
     TRUTH,
     DatasetList,
     read_list,
@@ -83,6 +85,15 @@ class Draft:
     attempt: int  # how many scenes of this index were drawn and not taken before
 
 
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """The scenes of a dataset before they are drawn."""
+
+    names: tuple[str, ...]
+    draw: Callable[[int], Draft]  # by the place among the names
+    source: str = OF_ALL_KINDS  # what the scenes are drawn from, as dataset.json tells
+
+
 @dataclass(frozen=True)
 class Made:
     """What a run did."""
@@ -91,13 +102,19 @@ class Made:
     kept: int  # scenes that were there already
 
 
-def draw_draft(seed: int, index: int) -> Draft:
+def plan_scenes(options: DatasetOptions, kind: SceneKind | None = None) -> Plan:
+    """The scenes of a seed, of all kinds or of one."""
+    names = tuple(scene_name(index, kind) for index in range(options.scenes))
+    return Plan(names, lambda index: draw_draft(options.seed, index, kind), kind or OF_ALL_KINDS)
+
+
+def draw_draft(seed: int, index: int, kind: SceneKind | None = None) -> Draft:
     """Scene `index` of the datasets of a seed: the first one drawn that `judge` takes, else the last one."""
-    kind = scene_kind(index)
+    kind = kind or scene_kind(index)
     for attempt in range(MOST_TRIES):
         model, view = draw_scene(kind, np.random.default_rng([seed, index, attempt]))
         light = draw_light(np.random.default_rng([seed, index, attempt, 1]), kind == "room")
-        draft = Draft(scene_name(index), model, view, light, attempt)
+        draft = Draft(scene_name(index, kind), model, view, light, attempt)
         if judge(measure(draft, *JUDGED_SIZE), model).accepts(kind):
             break
     return draft
@@ -106,43 +123,51 @@ def draw_draft(seed: int, index: int) -> Draft:
 def measure(draft: Draft, width: int, height: int) -> Truth:
     """The ground truth of a scene at a size, px."""
     matrix, rotation = draft.view.matrix(width, height), draft.view.rotation()
-    quads = draft.model.quads(draft.view.eye)
-    edges, edge_body = draft.model.edges()
+    model = draft.model
+    quads = model.quads(draft.view.eye)
+    edges, edge_body = model.edges()
     edges = edges - draft.view.eye
     ids, _ = rasterise(quads, matrix, rotation, width, height)
-    pieces, piece_edge = visible_pieces(edges, quads, matrix, rotation, ids)
-    return Truth(
+    pieces, piece_edge = visible_pieces(edges, quads, matrix, rotation, ids, max(IN_PLANE, model.rounding / 10))
+    truth = Truth(
         name=draft.name,
         width=width,
         height=height,
         matrix=matrix,
         rotation=rotation,
         quads=quads,
-        body=np.array(draft.model.body, np.int64),
+        body=np.array(model.body, np.int64),
         edges=edges,
         edge_body=edge_body,
         pieces=pieces,
         piece_edge=piece_edge,
         ids=ids,
         openings=TrueOpenings(
-            parallelograms(np.array(draft.model.openings).reshape(-1, 3, 3) - draft.view.eye),
-            np.array(draft.model.opening_is_door, bool),
-            np.array(draft.model.opening_body, np.int64),
+            parallelograms(np.array(model.openings).reshape(-1, 3, 3) - draft.view.eye),
+            np.array(model.opening_is_door, bool),
+            np.array(model.opening_body, np.int64),
         ),
     )
+    if not model.has_frames:
+        return truth
+    return with_frames(truth, np.array(model.kinds)[truth.body] == "building", model.rounding)
 
 
-def make_dataset(folder: Path, options: DatasetOptions, on_stage: OnStage) -> Made:
-    """Make what is missing of a dataset in `folder`. Raises LinecadError."""
+def make_dataset(folder: Path, options: DatasetOptions, on_stage: OnStage, plan: Plan | None = None) -> Made:
+    """Make what is missing of a dataset in `folder`: by a plan of `options.scenes` scenes, or of scenes of all kinds.
+
+    Raises LinecadError.
+    """
+    plan = plan or plan_scenes(options)
     render = _renderer()
     _make_folder(folder)
     with alone(folder / LOCK, f"another linecad dataset works in {folder}", "wait for it, or give another folder"):
-        return _make_missing(folder, options, render, on_stage)
+        return _make_missing(folder, options, plan, render, on_stage)
 
 
-def _make_missing(folder: Path, options: DatasetOptions, render: ModuleType, on_stage: OnStage) -> Made:
-    made = _begin(folder, options)
-    names = [scene_name(index) for index in range(options.scenes)]
+def _make_missing(folder: Path, options: DatasetOptions, plan: Plan, render: ModuleType, on_stage: OnStage) -> Made:
+    made = _begin(folder, options, plan.source)
+    names = plan.names
     missing = [index for index, name in enumerate(names) if name not in made]
     on_stage(f"{len(missing)} of {options.scenes} scenes to make; Mitsuba computes with {render.choose_variant()}")
     for index, name in enumerate(names):
@@ -152,7 +177,7 @@ def _make_missing(folder: Path, options: DatasetOptions, render: ModuleType, on_
     for index in missing:
         begun = f"{names[index]}, {index + 1} of {options.scenes}"
         on_stage(f"{begun}: drawing and measuring")
-        draft = draw_draft(options.seed, index)
+        draft = plan.draw(index)
         truth = measure(draft, options.width, options.height)
         seed = np.random.SeedSequence([options.seed, index, draft.attempt, 2])
         scene = render.load(draft.model, draft.view, draft.light, options.width, options.height)
@@ -165,7 +190,7 @@ def _make_missing(folder: Path, options: DatasetOptions, render: ModuleType, on_
         write_scene_folder(folder, truth, _photo_writer(radiance, options.samples, np.random.default_rng(seed)))
         _write_depth_map(folder, index, truth, options)
         made = made | {names[index]}
-        _write_list(folder, options, made)
+        _write_list(folder, options, plan.source, made)
     return Made(len(missing), options.scenes - len(missing))
 
 
@@ -202,7 +227,7 @@ def _make_folder(folder: Path) -> None:
         raise OutputError(f"{folder} cannot be used: {error.strerror}; choose another folder") from error
 
 
-def _begin(folder: Path, options: DatasetOptions) -> frozenset[str]:
+def _begin(folder: Path, options: DatasetOptions, source: str) -> frozenset[str]:
     """The scenes that are there already; makes the list where there is none. Raises LinecadError."""
     try:
         others = [path.name for path in folder.iterdir() if not path.name.startswith(".linecad-")]
@@ -211,7 +236,7 @@ def _begin(folder: Path, options: DatasetOptions) -> frozenset[str]:
     if LIST not in others:
         if others:
             raise OutputError(f"{folder} holds {sorted(others)[0]} and is no dataset; give a new or empty folder")
-        _write_list(folder, options, frozenset())
+        _write_list(folder, options, source, frozenset())
         return frozenset()
     found = read_list(folder)
     asked = (options.seed, options.width, options.height, options.samples)
@@ -220,18 +245,20 @@ def _begin(folder: Path, options: DatasetOptions) -> frozenset[str]:
             f"{folder} was begun with seed {found.seed}, {found.width}x{found.height} px and {found.samples} samples; "
             "go on with these, or give another folder"
         )
+    if found.source != source:
+        raise DatasetError(f"{folder} was begun with scenes of another kind; give another folder")
     # A run can be killed between a scene and its entry in the list; its folder is whole all the same.
     whole = {path.parent.name for path in folder.glob(f"*/{TRUTH}") if not path.parent.name.startswith(".")}
     if whole != set(found.scenes):
-        _write_list(folder, options, frozenset(whole))
+        _write_list(folder, options, source, frozenset(whole))
     return frozenset(whole)
 
 
-def _write_list(folder: Path, options: DatasetOptions, names: frozenset[str]) -> None:
+def _write_list(folder: Path, options: DatasetOptions, source: str, names: frozenset[str]) -> None:
     in_order = tuple(sorted(names, key=lambda name: (name.rpartition("-")[2], name)))
-    write_list(DatasetList(options.seed, options.width, options.height, options.samples, in_order), folder)
+    write_list(DatasetList(options.seed, options.width, options.height, options.samples, in_order, source), folder)
 
 
-def scene_name(index: int) -> str:
+def scene_name(index: int, kind: SceneKind | None = None) -> str:
     """The name of a scene, which is that of its folder."""
-    return f"{scene_kind(index)}-{index:04d}"
+    return f"{kind or scene_kind(index)}-{index:04d}"

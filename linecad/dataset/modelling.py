@@ -1,4 +1,4 @@
-"""A scene as planar parallelograms, straight edges and bodies, and the walls, boxes and prisms that it is built of.
+"""A scene as planar parallelograms and triangles, straight edges and bodies, and the walls and boxes it is built of.
 
 Building frame: metres, z up, the ground at 0, x to the right of the street, y along it. A *body* is one thing that
 stands by itself: a building, a car, a tree. A *wall frame* has its own coordinates: `along` the wall, `up`, and `out`
@@ -15,7 +15,7 @@ from linecad.arrays import Float, Int
 
 Interval = tuple[float, float]
 Point = tuple[float, float, float]
-Pattern = Literal["plain", "brick", "panel", "ashlar", "slabs", "asphalt", "glass", "paint", "leaves"]
+Pattern = Literal["plain", "brick", "panel", "ashlar", "slabs", "asphalt", "glass", "paint", "leaves", "tiles"]
 
 BODY_KINDS = ("ground", "building", "car", "tree", "lamp", "furniture")
 BodyKind = Literal["ground", "building", "car", "tree", "lamp", "furniture"]
@@ -44,6 +44,9 @@ class Model:
     openings: list[Float] = field(default_factory=list)  # windows and doors in walls, each (3, 3) as in `corners`
     opening_is_door: list[bool] = field(default_factory=list)
     opening_body: list[int] = field(default_factory=list)
+    triangles: list[int] = field(default_factory=list)  # the quads that are but half a parallelogram
+    has_frames: bool = False  # walls may stand at any angle; the truth then tells the frames
+    rounding: float = 0.0  # m, by which corners may lie off their planes
 
     def start_body(self, kind: BodyKind) -> None:
         """What is added from here on belongs to a new body."""
@@ -54,6 +57,11 @@ class Model:
         self.corners.append(np.array([corner, corner + first, corner + second]))
         self.materials.append(material)
         self.body.append(len(self.kinds) - 1)
+
+    def triangle(self, first: Float, second: Float, third: Float, material: Material) -> None:
+        """Add the triangle of three points."""
+        self.triangles.append(len(self.corners))
+        self.quad(first, second - first, third - first, material)
 
     def edge(self, start: Float, end: Float) -> None:
         """Add a straight edge."""
@@ -96,7 +104,8 @@ class Model:
 
     def quads(self, eye: Float) -> Float:
         """(Q, 4, 3) corners in order around, m, counted from a point `eye` (3,) of the building frame."""
-        return parallelograms(np.array(self.corners).reshape(-1, 3, 3) - eye)
+        corners = np.array(self.corners).reshape(-1, 3, 3) - eye
+        return halved(parallelograms(corners), np.array(self.triangles, np.int64))
 
     def edges(self) -> tuple[Float, Int]:
         """Ends (M, 2, 3), m, and bodies (M,) of the different edges that are not points."""
@@ -114,6 +123,12 @@ def parallelograms(corners: Float) -> Float:
     """(Q, 4, 3) corners in order around of parallelograms given by a corner and its two neighbours (Q, 3, 3)."""
     origin, first, second = corners[:, 0], corners[:, 1], corners[:, 2]
     quads: Float = np.stack([origin, first, first + second - origin, second], axis=1)
+    return quads
+
+
+def halved(quads: Float, triangles: Int) -> Float:
+    """The quads (Q, 4, 3) of which those in `triangles` (T,) end at the diagonal: their third corner is its middle."""
+    quads[triangles, 2] = (quads[triangles, 1] + quads[triangles, 3]) / 2
     return quads
 
 

@@ -89,8 +89,12 @@ def _draw(image: Float, plane: Float, index: int, inverse_depth: Float, ids: Int
     ids[window][inside] = index
 
 
-def visible_pieces(edges: Float, quads: Float, matrix: Float, rotation: Float, ids: Int) -> tuple[Float, Int]:
+def visible_pieces(
+    edges: Float, quads: Float, matrix: Float, rotation: Float, ids: Int, in_plane: float = IN_PLANE
+) -> tuple[Float, Int]:
     """Ends (V, 2, 2), px, of the visible pieces of edges (M, 2, 3), and the edge (V,) that each shows.
+
+    `in_plane`, m, is how far off a plane a point of an edge may lie that is in it, at a depth near 0; more farther off.
 
     Pieces lie inside the photo and end within about a pixel of where the edge does, or where something hides it.
     """
@@ -111,7 +115,7 @@ def visible_pieces(edges: Float, quads: Float, matrix: Float, rotation: Float, i
         share = place / (counts[owner] - 1)
         pixels = image[owner, 0] + share[:, None] * (image[owner, 1] - image[owner, 0])
         inverse = (1 - share) / depth[owner, 0] + share / depth[owner, 1]
-        seen = _is_seen(pixels, 1 / inverse, ids, planes, matrix, rotation)
+        seen = _is_seen(pixels, 1 / inverse, ids, planes, matrix @ rotation, in_plane)
         for row in range(start, stop):
             begin = int(first[row - start])
             runs = _runs(seen[begin : begin + int(counts[row])], length[row] / (counts[row] - 1))
@@ -162,10 +166,10 @@ def _plane_table(quads: Float) -> Float:
     return np.vstack([np.column_stack([normal, offset]), [np.nan] * 4])
 
 
-def _is_seen(pixels: Float, depth: Float, ids: Int, planes: Float, matrix: Float, rotation: Float) -> Bool:
+def _is_seen(pixels: Float, depth: Float, ids: Int, planes: Float, projection: Float, in_plane: float) -> Bool:
     """Whether points (N,) of edges lie in the plane of a quad that a pixel beside them shows."""
     height, width = ids.shape
-    rays = np.column_stack([pixels, np.ones(len(pixels))]) @ np.linalg.inv(matrix @ rotation).T
+    rays = np.column_stack([pixels, np.ones(len(pixels))]) @ np.linalg.inv(projection).T
     points = rays * depth[:, None]
     corner = np.floor(pixels).astype(np.int64)
     seen = np.zeros(len(pixels), bool)
@@ -174,7 +178,7 @@ def _is_seen(pixels: Float, depth: Float, ids: Int, planes: Float, matrix: Float
             column = np.clip(corner[:, 0] + right, 0, width - 1)
             row = np.clip(corner[:, 1] + down, 0, height - 1)
             plane = planes[ids[row, column]]
-            seen |= np.abs((plane[:, :3] * points).sum(axis=1) - plane[:, 3]) < IN_PLANE * (1 + depth)
+            seen |= np.abs((plane[:, :3] * points).sum(axis=1) - plane[:, 3]) < in_plane * (1 + depth)
     return seen
 
 

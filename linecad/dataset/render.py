@@ -28,6 +28,7 @@ PASS = 2 * 3840 * 2160  # samples rendered at a time, which bounds the memory
 BRIGHTEST = 4.0  # radiance of one pass above which a pixel is a firefly
 BOUNCES_OUTDOORS, BOUNCES_IN_ROOMS = 3, 6  # segments of a path of light
 REACH = 1000.0  # m
+LEVEL = 1e-3  # rad; the direction up a slope below it is not sure
 FILTER = 0.45  # px, standard deviation of a pixel's footprint
 
 
@@ -81,7 +82,8 @@ def load(model: Model, view: View, light: Light, width: int, height: int) -> Any
     for number, (material, indices) in enumerate(by_material.items()):
         tile, side = texture(material)
         quads = corners[indices]
-        mesh = _mesh(f"m{number}", quads, _texture_coordinates(quads + view.eye) / side, _surface(material, tile))
+        place = _own_coordinates(quads) if model.has_frames else _texture_coordinates(quads + view.eye)
+        mesh = _mesh(f"m{number}", quads, place / side, _surface(material, tile))
         scene[f"m{number}"] = mesh
     return mi.load_dict(scene)
 
@@ -177,3 +179,20 @@ def _texture_coordinates(quads: Float) -> Float:
     normal = np.abs(np.cross(quads[:, 1] - quads[:, 0], quads[:, 3] - quads[:, 0]))
     others = np.array([[1, 2], [0, 2], [0, 1]])[normal.argmax(axis=1)]
     return np.take_along_axis(quads, np.broadcast_to(others[:, None], (len(quads), 4, 2)), axis=2)
+
+
+def _own_coordinates(quads: Float) -> Float:
+    """(N, 4, 2) m: for each quad (N, 4, 3) those along its level direction and up its slope; x and y where it is level.
+
+    So courses run level at any angle, and two quads of one plane share them.
+    """
+    normal = np.cross(quads[:, 1] - quads[:, 0], quads[:, 3] - quads[:, 0])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    leading = 2 - (np.abs(normal[:, ::-1]) > LEVEL).argmax(axis=1)
+    normal *= np.sign(np.take_along_axis(normal, leading[:, None], axis=1))  # two sides of one plane share the courses
+    level = np.stack([-normal[:, 1], normal[:, 0], np.zeros(len(normal))], axis=1)
+    size = np.linalg.norm(level, axis=1, keepdims=True)
+    level = np.where(size < LEVEL, (1.0, 0.0, 0.0), level / np.maximum(size, LEVEL))
+    own = np.stack([level, np.cross(normal, level)], axis=2)
+    coordinates: Float = quads @ own
+    return coordinates

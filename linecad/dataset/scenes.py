@@ -11,9 +11,10 @@ from linecad.dataset.facades import Style, build_facade, draw_style
 from linecad.dataset.furniture import add_car, add_lamp, add_sign, add_tree
 from linecad.dataset.interior import build_room
 from linecad.dataset.modelling import UP, Interval, Material, Model, Wall
+from linecad.dataset.towns import build_town
 from linecad.dataset.view import View
 
-SceneKind = Literal["street", "courtyard", "room"]
+SceneKind = Literal["street", "courtyard", "room", "town"]
 SCENE_KINDS: tuple[SceneKind, ...] = get_args(SceneKind)
 OF_TEN: tuple[SceneKind, ...] = (*("street",) * 8, "courtyard", "room")  # the kinds of scenes 0 to 9, 10 to 19 ...
 
@@ -42,7 +43,7 @@ def scene_kind(index: int) -> SceneKind:
 def draw_scene(kind: SceneKind, rng: Generator) -> tuple[Model, View]:
     """A scene of a kind and the view of it; the same numbers from `rng` give the same scene."""
     build: Callable[[Generator], tuple[Model, Float, float]]
-    build = {"street": _street, "courtyard": _courtyard, "room": build_room}[kind]
+    build = {"street": _street, "courtyard": _courtyard, "room": build_room, "town": build_town}[kind]
     model, eye, side = build(rng)
     view = View(
         eye=eye,

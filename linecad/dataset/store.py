@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.dataset.modelling import parallelograms
-from linecad.dataset.truth import NOTHING, TrueOpenings, Truth
+from linecad.dataset.modelling import halved, parallelograms
+from linecad.dataset.truth import NOTHING, TrueFrames, TrueOpenings, Truth
 from linecad.errors import DatasetError, OutputError
 from linecad.io.files import write_atomically, write_text_atomically
 from linecad.io.strict_json import JsonError, parse
@@ -29,6 +29,7 @@ TRUTH = "truth.npz"
 DEPTH_MAP = "photo.depth.npz"  # by the photo's name, as `linecad batch` looks for it
 FORMAT = "linecad-dataset"
 VERSION = 1
+OF_ALL_KINDS = "all"  # the source of datasets whose list names none: streets, courtyards and rooms
 LARGEST_SIDE = 16384  # px
 LARGEST_SEED = 2**32 - 1
 LARGEST_TRUTH = 4_000_000_000  # bytes of all arrays; a file that claims more is not one of ours
@@ -57,7 +58,16 @@ OPENING_ARRAYS: dict[str, Shape] = {
     "opening_is_door": ("O",),
     "opening_body": ("O",),
 }
-REAL_NAMES = {*REAL_ARRAYS, "openings"}
+# Of scenes of several frames: all of them or none.
+FRAME_ARRAYS: dict[str, Shape] = {
+    "frames": ("F",),
+    "quad_slope": ("Q",),
+    "edge_slope": ("M",),
+    "quad_frame": ("Q",),
+    "edge_frame": ("M",),
+    "triangles": ("T",),
+}
+REAL_NAMES = {*REAL_ARRAYS, "openings", "frames", "quad_slope", "edge_slope"}
 
 
 @dataclass(frozen=True)
@@ -69,6 +79,7 @@ class DatasetList:
     height: int  # px
     samples: int  # a pixel
     scenes: tuple[str, ...]  # names of the folders that are there, in ascending order
+    source: str = OF_ALL_KINDS  # what the scenes are drawn from
 
 
 def write_list(made: DatasetList, folder: Path) -> None:
@@ -81,6 +92,8 @@ def write_list(made: DatasetList, folder: Path) -> None:
         "samples": made.samples,
         "scenes": list(made.scenes),
     }
+    if made.source != OF_ALL_KINDS:
+        document["source"] = made.source
     text = json.dumps(document, indent=1) + "\n"
     write_text_atomically(folder / LIST, text)
 
@@ -102,13 +115,15 @@ def read_list(folder: Path) -> DatasetList:
         names = [name.text() for name in top["scenes"].items()]
         samples = top["samples"].integer(1)
         seed = top["seed"].integer(0, LARGEST_SEED)
+        named = top.get("source")
+        source = OF_ALL_KINDS if named is None else named.text()
     except (JsonError, UnicodeDecodeError, OSError) as error:
         raise DatasetError(f"{path} is not a list of scenes: {_reason(error)}; make the dataset again") from error
     for name in names:
         # A list does not send us to other folders.
         if not name or name in (".", "..") or Path(name).name != name or "\\" in name:
             raise DatasetError(f"{path} names the scene {name!r}, which is no name of a folder; make the dataset again")
-    return DatasetList(seed, size[0], size[1], samples, tuple(names))
+    return DatasetList(seed, size[0], size[1], samples, tuple(names), source)
 
 
 def write_scene_folder(folder: Path, truth: Truth, write_photo: Callable[[Path], None]) -> None:
@@ -152,6 +167,11 @@ def write_truth(truth: Truth, folder: Path) -> None:
         real["openings"] = truth.openings.corners[:, [0, 1, 3]]
         whole["opening_is_door"] = truth.openings.is_door
         whole["opening_body"] = truth.openings.body
+    if truth.frames is not None:
+        real |= {"frames": truth.frames.turn, "quad_slope": truth.frames.quad_slope}
+        real["edge_slope"] = truth.frames.edge_slope
+        whole |= {"quad_frame": truth.frames.quad, "edge_frame": truth.frames.edge}
+        whole["triangles"] = _triangles(truth.quads)
     arrays = real | {name: numbers.astype(np.int32) for name, numbers in whole.items()}
     write_atomically(folder / TRUTH, lambda path: _write_arrays(path, arrays))
 
@@ -178,7 +198,7 @@ def read_truth(folder: Path) -> Truth:
         height=height,
         matrix=real["matrix"],
         rotation=real["rotation"],
-        quads=parallelograms(real["corners"]),
+        quads=halved(parallelograms(real["corners"]), whole.get("triangles", np.zeros(0, np.int64))),
         body=whole["body"],
         edges=real["edges"],
         edge_body=whole["edge_body"],
@@ -186,7 +206,22 @@ def read_truth(folder: Path) -> Truth:
         piece_edge=whole["piece_edge"],
         ids=whole["ids"],
         openings=_openings(real, whole),
+        frames=_frames(real, whole),
     )
+
+
+def _triangles(quads: Float) -> Int:
+    """The quads (T,) whose third corner lies between its neighbours."""
+    beyond = quads[:, 2] - (quads[:, 1] + quads[:, 3]) / 2
+    half = np.linalg.norm(quads[:, 1] + quads[:, 3] - 2 * quads[:, 0], axis=1) / 2
+    triangles: Int = np.flatnonzero(np.linalg.norm(beyond, axis=1) < half / 2)
+    return triangles
+
+
+def _frames(real: dict[str, Float], whole: dict[str, Int]) -> TrueFrames | None:
+    if "frames" not in real:
+        return None
+    return TrueFrames(real["frames"], whole["quad_frame"], real["quad_slope"], whole["edge_frame"], real["edge_slope"])
 
 
 def _openings(real: dict[str, Float], whole: dict[str, Int]) -> TrueOpenings | None:
@@ -204,7 +239,9 @@ def _read_arrays(path: Path) -> tuple[dict[str, Float], dict[str, Int]]:
         version = int(found["version"])
         if version != VERSION:
             raise ValueError(f"its version is {version}, this linecad reads {VERSION}")
-        names = [*REAL_ARRAYS, *WHOLE_ARRAYS, *(OPENING_ARRAYS if set(OPENING_ARRAYS) & set(found.files) else ())]
+        names = [*REAL_ARRAYS, *WHOLE_ARRAYS]
+        for optional in (OPENING_ARRAYS, FRAME_ARRAYS):
+            names += optional if set(optional) & set(found.files) else ()
         real = {name: _of_kind(found[name], "f", name).astype(np.float64) for name in names if name in REAL_NAMES}
         whole = {name: _of_kind(found[name], "i", name).astype(np.int64) for name in names if name not in REAL_NAMES}
     return real, whole
@@ -220,6 +257,7 @@ def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
     """Raise ValueError where shapes, indices or numbers are not what a truth has."""
     lengths: dict[str, int] = {}
     told = OPENING_ARRAYS if "openings" in real else {}
+    told = told | (FRAME_ARRAYS if "frames" in real else {})
     for name, shape in (REAL_ARRAYS | WHOLE_ARRAYS | told).items():
         found = (real[name] if name in real else whole[name]).shape
         wanted = [
@@ -240,7 +278,10 @@ def _check(real: dict[str, Float], whole: dict[str, Int]) -> None:
         "body": (0, bodies),
         "edge_body": (0, bodies),
     }
-    if told:
+    if "frames" in real:
+        limits |= dict.fromkeys(("quad_frame", "edge_frame"), (NOTHING, lengths["F"]))
+        limits["triangles"] = (0, lengths["Q"])
+    if "openings" in real:
         limits |= {"opening_is_door": (0, 2), "opening_body": (0, bodies)}
     for name, (low, high) in limits.items():
         named = whole[name]

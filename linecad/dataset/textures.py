@@ -34,6 +34,7 @@ COURSES: dict[Pattern, Courses] = {
     "panel": Courses(3.0, 1.5, 0.75, 0.018, 0.03, 0.0, 0.4),
     "ashlar": Courses(3.2, 0.8, 0.4, 0.02, 0.06, 0.5, 0.5),
     "slabs": Courses(3.0, 0.5, 0.5, 0.008, 0.05, 0.5, 0.65),
+    "tiles": Courses(2.4, 0.2, 0.3, 0.018, 0.10, 0.5, 0.6),
 }
 # Side of the tile in m, large stains and fine grain, for patterns without courses.
 CLOUDS: dict[Pattern, tuple[float, float, float]] = {

@@ -23,6 +23,20 @@ class TrueOpenings:
 
 
 @dataclass(frozen=True, eq=False)
+class TrueFrames:
+    """The F horizontal frames of a scene of several: two level directions at right angles, and the vertical.
+
+    They are in the order of the pixels of their walls; the first one has the axes of the world.
+    """
+
+    turn: Float  # (F,) rad from the world's x axis to one of the frame's, counterclockwise from above, -pi/4 to pi/4
+    quad: Int  # (Q,) the frame in which a quad's level direction lies; NOTHING for level quads and those in no frame
+    quad_slope: Float  # (Q,) rad between the quad and the horizontal: 0 for the ground, pi / 2 for walls
+    edge: Int  # (M,) the frame of an edge that is level, or whose plan is an axis of it; NOTHING for upright ones
+    edge_slope: Float  # (M,) rad above the horizontal, 0 to pi / 2
+
+
+@dataclass(frozen=True, eq=False)
 class Truth:
     """The ground truth of one made photo of Q quads and M edges, V visible pieces of edges."""
 
@@ -31,7 +45,7 @@ class Truth:
     height: int  # px
     matrix: Float  # (3, 3) K, px
     rotation: Float  # (3, 3) world to camera
-    quads: Float  # (Q, 4, 3) corners of planar parallelograms, m, in order around
+    quads: Float  # (Q, 4, 3) corners of planar parallelograms and triangles, m, in order around
     body: Int  # (Q,) which body (a building, a car) a quad belongs to
     edges: Float  # (M, 2, 3) both ends of each straight edge of the scene, hidden or not, m
     edge_body: Int  # (M,)
@@ -39,6 +53,7 @@ class Truth:
     piece_edge: Int  # (V,) the edge that each piece shows
     ids: Int  # (H, W) the quad that the centre of each pixel shows, or NOTHING
     openings: TrueOpenings | None = None  # None in scenes that were made before they were told
+    frames: TrueFrames | None = None  # None where the world's axes are the only ones
 
     def planes(self) -> tuple[Float, Float]:
         """Unit normals (Q, 3) and offsets (Q,), m, of the quads: normal . P = offset."""

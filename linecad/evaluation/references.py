@@ -117,13 +117,16 @@ def reference_of(truth: Truth) -> Reference:
 
 
 def _on_edges(truth: Truth) -> Points:
-    """Points every POINT_STEP px on the visible pieces of edges that run along an axis."""
+    """Points every POINT_STEP px on the visible pieces of edges that run along an axis, or that a frame has."""
     along = truth.edges[:, 1] - truth.edges[:, 0]
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
+    counted = np.abs(along).max(axis=1) >= MANHATTAN
+    if truth.frames is not None:
+        counted |= truth.frames.edge != NOTHING
     pixels, edges = [np.zeros((0, 2))], [np.zeros(0, np.int64)]
     for ends, edge in zip(truth.pieces, truth.piece_edge.tolist(), strict=True):
         count = int(np.linalg.norm(ends[1] - ends[0]) / POINT_STEP)
-        if np.abs(along[edge]).max() >= MANHATTAN and count > 0:
+        if counted[edge] and count > 0:
             at = (np.arange(count) + 0.5) / count
             pixels.append(ends[0] + at[:, None] * (ends[1] - ends[0]))
             edges.append(np.full(count, edge))
