@@ -60,7 +60,7 @@ def test_beyond_the_widest_ratio_nothing_is_told():
     assert pair.at(WIDEST + 0.2) == 0.0
 
 
-def test_bodies_of_which_one_has_moved_match_where_they_were(build_row, build_setting, build_town):
+def test_bodies_of_which_one_has_moved_match_where_they_were(build_setting, build_town):
     """Two like grids in one wall: the sizes of the second are moved by as much as its depths."""
     across = np.cumsum([0.0, 0.31, 0.52, 0.23, 0.44, 0.65])
     pieces = [row(place, across) for place in (-2.6, 0.3)]
