@@ -7,6 +7,7 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.camera.crop_history import usual_aspect
 from linecad.camera.exif_focal import ExifFocal
+from linecad.camera.horizontal_frames import HorizontalFrames, find_horizontal_frames, only_frame
 from linecad.camera.joint_fit import FOCAL, Fit, Prior, View, fit_view, known
 from linecad.camera.photo import Photo
 from linecad.camera.quality import ENOUGH_LINES, Findings
@@ -54,11 +55,16 @@ class Calibrated:
     """A camera and its Manhattan frame, how sure both are, and notes on it."""
 
     camera: Camera
-    frame: ManhattanFrame
+    frames: HorizontalFrames  # the main one is the Manhattan frame
     certainty: Certainty
     notes: tuple[str, ...]  # those of the photo among them
     prior: Prior | None = None  # of a focal length from the vanishing points alone
     findings: Findings = field(default_factory=Findings)
+
+    @property
+    def frame(self) -> ManhattanFrame:
+        """The Manhattan frame whose axes are those of the world."""
+        return self.frames.main
 
 
 def calibrate(photo: Photo, raw: Segments, drawn: SetFrame | None = None) -> Calibrated:
@@ -103,17 +109,19 @@ def _calibrated(photo: Photo, raw: Segments, chosen: Segments, found: "_Found", 
         # of its own is for the camera and for the errors.
         K = camera.matrix
         frame = name_frame(raw, K, best_axes(chosen, K, found.fit.view.axes, *found.searched))
+        frames = find_horizontal_frames(raw, camera, frame)
     else:
         ends = np.array([line.ends for line in drawn.lines])
         frame = fit_frame(ends, np.array([line.axis for line in drawn.lines]), camera.matrix, raw)
         notes.append("the Manhattan frame is that of lines drawn by hand")
-    certainty, more = certainty_of(camera, frame, found.fit, found.lines, raw, found.findings, photo.bend)
+        frames = only_frame(raw, camera, frame)
+    certainty, more = certainty_of(camera, frames, found.fit, found.lines, found.findings, photo.bend)
     if camera.source == "vanishing points" and certainty.focal is not None:
         notes.append(
             f"focal length guessed from the vanishing points: {camera.focal:.0f} px, standard error "
             f"{certainty.focal / camera.focal:.1%}"
         )
-    return Calibrated(camera, frame, certainty, (*notes, *more), found.prior, found.findings)
+    return Calibrated(camera, frames, certainty, (*notes, *more), found.prior, found.findings)
 
 
 def prior_of(photo: Photo) -> Prior:

@@ -128,7 +128,7 @@ def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, it
         own = replace(view, axes=_turned(view.axes, turns))
         sine, scale, slope = _angles(ends, own, width, height, free)
         scale = scale * wider
-        density = _student(sine / scale) / scale
+        density = student(sine / scale) / scale
         likely = np.vstack([share[:3, None] * density, np.full((1, len(ends)), share[3] / np.pi)])
         belongs = likely / likely.sum(axis=0)
         share = np.maximum(belongs.mean(axis=1), LEAST_SHARE)
@@ -175,7 +175,7 @@ def _turned(axes: Float, turns: Float) -> Float:
     return np.array([axis @ rotation_about(turn).T for axis, turn in zip(axes, turns, strict=True)])
 
 
-def _student(ratio: Float) -> Float:
+def student(ratio: Float) -> Float:
     """Density of Student's t with FREEDOM = 1 degree of freedom."""
     density: Float = 1 / np.pi / (1 + ratio**2)
     return density
@@ -186,15 +186,12 @@ def _angles(ends: Float, view: View, width: int, height: int, free: "np.ndarray"
 
     The slopes (3, N, F) are by the `free` parameters.
     """
-    sine, scale, cosine, towards, middle = _against(ends, view, width, height)
+    sine, scale, cosine, towards, middle = angles_against(ends, view, width, height)
     size, K = float(max(width, height)), view.matrix
-    squared = (towards**2).sum(axis=-1)
 
     def by(change: Float) -> Float:
         """Slope of the sine where the vanishing points (3, 3) change so."""
-        moved = change[:, None, :2] - middle * change[:, None, 2:]
-        slope: Float = cosine * (towards[..., 0] * moved[..., 1] - towards[..., 1] * moved[..., 0]) / squared
-        return slope
+        return slope_by(change, cosine, towards, middle)
 
     changes = [by(np.cross(turn, view.axes) @ K.T) for turn in np.eye(3)]
     for parameter in free[3:]:
@@ -202,7 +199,7 @@ def _angles(ends: Float, view: View, width: int, height: int, free: "np.ndarray"
             # The center of the distortion moves with the principal point.
             step = np.zeros(PARAMETERS)
             step[parameter] = RADIAL_STEP
-            there = _against(ends, view.moved(step, size), width, height)[0]
+            there = angles_against(ends, view.moved(step, size), width, height)[0]
             changes.append((there - sine) / RADIAL_STEP)
             continue
         change = np.zeros((3, 3))
@@ -214,8 +211,22 @@ def _angles(ends: Float, view: View, width: int, height: int, free: "np.ndarray"
     return sine, scale, np.stack(changes, axis=-1)
 
 
-def _against(ends: Float, view: View, width: int, height: int) -> tuple[Float, Float, Float, Float, Float]:
-    """Signed sines, scales and cosines (3, N) against the axes; vectors to the vanishing points; middles."""
+def slope_by(change: Float, cosine: Float, towards: Float, middle: Float) -> Float:
+    """Slope (M, N) of the signed sines where the M homogeneous vanishing points change by `change` (M, 3).
+
+    The other arguments are what `angles_against` gives.
+    """
+    moved = change[:, None, :2] - middle * change[:, None, 2:]
+    across = towards[..., 0] * moved[..., 1] - towards[..., 1] * moved[..., 0]
+    slope: Float = cosine * across / (towards**2).sum(axis=-1)
+    return slope
+
+
+def angles_against(ends: Float, view: View, width: int, height: int) -> tuple[Float, Float, Float, Float, Float]:
+    """Signed sines, scales and cosines (M, N) against the axes; vectors to the vanishing points; middles.
+
+    The view may have any number M of axes, in rows.
+    """
     ends = undistorted(ends, view.radial, view.center, width, height)
     middle, along = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(along, axis=1)

@@ -3,11 +3,11 @@
 import numpy as np
 
 from linecad.arrays import Float, Int
+from linecad.camera.horizontal_frames import HorizontalFrames
 from linecad.camera.joint_fit import CENTER_X, CENTER_Y, FOCAL, TURNS, Fit
 from linecad.camera.photo import Bend
 from linecad.camera.quality import Findings, Fitted, Other, quality_of
-from linecad.geometry import angle_between_frames, angles_to, plane_normals, vanishing_points
-from linecad.line_graph import ManhattanFrame, Segments
+from linecad.geometry import angle_between_frames, angles_to
 from linecad.scene import Camera, Certainty
 
 FEW_LINES = 20.0  # standard errors grow as the root of 1 + this over the lines of that axis
@@ -21,10 +21,6 @@ OTHER_FOCAL = 0.1  # relative; cameras nearer than this and OTHER_TURN are one
 OTHER_TURN = np.radians(3.0)
 LINE_ANGLE = np.radians(1.0)  # between a whole line and its axis
 LINE_LENGTH = 0.02  # of the larger side, of a line that counts
-SECOND_FRAME_SHARE = 0.08  # of the segment length that a second frame must explain
-SECOND_FRAME_PEAK = 3.0  # times what lines of all directions would give
-SECOND_FRAME_WIDTH = np.radians(1.5)  # of the directions that belong to one frame
-LEVEL = np.radians(10.0)  # a plane that holds the upright within this tells no level direction
 
 
 def whole_lines(ends: Float, points: Float, size: float) -> Int:
@@ -68,11 +64,11 @@ def other_camera(best: Fit, fits: list[Fit], segments: int) -> Other | None:
 
 
 def certainty_of(
-    camera: Camera, frame: ManhattanFrame, fit: Fit, lines: Int, raw: Segments, findings: Findings, bend: Bend | None
+    camera: Camera, frames: HorizontalFrames, fit: Fit, lines: Int, findings: Findings, bend: Bend | None
 ) -> tuple[Certainty, list[str]]:
     """The standard errors of `fit` and what they mean, and notes on what else a user should know.
 
-    `lines` (3,) are the whole lines along each axis, `raw` all segments, `bend` is the distortion that was taken out.
+    `lines` (3,) are the whole lines along each axis, `bend` is the distortion that was taken out.
     """
     size = max(camera.width, camera.height)
     is_told = camera.source not in ("vanishing points", "default")
@@ -80,16 +76,15 @@ def certainty_of(
     focal = None if camera.is_given else float(error[FOCAL])
     center = None if camera.is_given else (float(error[CENTER_X] * size), float(error[CENTER_Y] * size))
     half = np.hypot(camera.width, camera.height) / 2
-    second = second_frame(raw, camera, frame)
     fitted = Fitted(
         source=camera.source,
         focal_error=focal,
         turn_error=float(error[TURNS].max()),
         axes_off=fit.turn,
         lines=lines,
-        frame=frame,
+        frame=frames.main,
         bend=bend,
-        second_share=0.0 if second is None else second[1],
+        second_share=max((frame.share for frame in frames.further), default=0.0),
         findings=findings,
     )
     quality, reason = quality_of(fitted)
@@ -101,41 +96,18 @@ def certainty_of(
         quality=quality,
         reason=reason,
     )
-    notes = []
-    if second is not None:
-        turn, share = second
-        notes.append(
-            f"a second Manhattan frame, turned by {np.degrees(turn):.0f} degrees about the upright, explains "
-            f"{share:.0%} of the segment length, the first {frame.explained:.0%}: lines along it are left out"
-        )
-    return certainty, notes
+    return certainty, [_frames_note(frames)] if frames.further else []
 
 
-def second_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> tuple[float, float] | None:
-    """A second frame with the same upright, as its turn, rad in (0, pi / 2), and its share of the segment length.
-
-    A segment that no axis explains and that is level in space has one direction: across the upright, in its plane.
-    Directions a right angle apart are one frame's. None where no turn gathers many.
-    """
-    sines = angles_to(raw.ends, vanishing_points(camera.matrix, frame.rotation))
-    free = (sines > np.sin(2 * SECOND_FRAME_WIDTH)).all(axis=0)
-    normals = plane_normals(raw.ends[free], camera.matrix) @ frame.rotation  # in the world
-    length = raw.length[free]
-    tells = np.hypot(normals[:, 0], normals[:, 1]) > np.sin(LEVEL)
-    direction = np.arctan2(-normals[tells, 0], normals[tells, 1]) % (np.pi / 2)
-    length = length[tells]
-    if length.sum() == 0:
-        return None
-    turns = np.linspace(0, np.pi / 2, 180, endpoint=False)
-    apart = np.abs(turns[:, None] - direction)
-    apart = np.minimum(apart, np.pi / 2 - apart)
-    gathered = np.where(apart < SECOND_FRAME_WIDTH, length, 0.0).sum(axis=1)
-    best = int(gathered.argmax())
-    share = float(gathered[best] / raw.length.sum())
-    by_chance = length.sum() * 2 * SECOND_FRAME_WIDTH / (np.pi / 2)
-    if share < SECOND_FRAME_SHARE or gathered[best] < SECOND_FRAME_PEAK * by_chance:
-        return None
-    return float(turns[best]), share
+def _frames_note(frames: HorizontalFrames) -> str:
+    """Which horizontal frames there are beside the main one."""
+    further = [
+        f"turned by {np.degrees(frame.turn):.1f} ± {np.degrees(frame.error):.1f} degrees about the upright "
+        f"({frame.share:.0%} of the segment length)"
+        for frame in frames.further
+    ]
+    first = f"{frames.frames[0].share:.0%} of the segment length runs level along the first"
+    return f"{len(frames.frames)} horizontal frames: {first}; {', '.join(further)}; lines of the others are left out"
 
 
 def _whole_errors(fit: Fit, lines: Int, is_told: bool, other: Other | None) -> Float:

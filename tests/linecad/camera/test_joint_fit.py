@@ -72,13 +72,13 @@ def test_slopes_are_those_of_small_steps(x, y, z, focal, off, radial, seed):
     ends = anywhere(40, seed)
     for view, free in ((straight, np.arange(RADIAL)), (replace(straight, radial=radial), np.arange(PARAMETERS))):
         sine, _, slope = camerafit._angles(ends, view, WIDTH, HEIGHT, free)
-        towards = camerafit._against(ends, view, WIDTH, HEIGHT)[3]
+        towards = camerafit.angles_against(ends, view, WIDTH, HEIGHT)[3]
         far = np.linalg.norm(towards, axis=-1) > 100 * np.abs((view.axes @ view.matrix.T)[:, None, 2])
         assert slope.shape == (*sine.shape, len(free))
         for parameter in free:
             step = 1e-6 * np.eye(PARAMETERS)[parameter]
             ahead, behind = (
-                camerafit._against(ends, view.moved(sign * step, float(WIDTH)), WIDTH, HEIGHT)[0] for sign in (1, -1)
+                camerafit.angles_against(ends, view.moved(sign * step, float(WIDTH)), WIDTH, HEIGHT)[0] for sign in (1, -1)
             )
             differences = ((ahead - behind) / 2e-6)[far]
             assert np.abs(slope[..., parameter][far] - differences).max(initial=0) < 2e-3

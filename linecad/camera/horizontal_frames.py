@@ -1,0 +1,207 @@
+"""The horizontal frames of a photo: one upright, and any number of pairs of level directions at right angles.
+
+Houses of a street stand upright and are turned against each other. How many frames a photo has is told by what one
+more gains in likelihood against what it costs, where segments of one wall do not count as independent.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.camera.frame_mixture import (
+    GRID,
+    Mixture,
+    Observed,
+    fit_mixture,
+    fixed_mixture,
+    gains_on_grid,
+    level_directions,
+)
+from linecad.camera.joint_fit import USUAL_TURN
+from linecad.camera.vanishing_points import longest, name_frame
+from linecad.line_graph import ManhattanFrame, Segments
+from linecad.lines.segments import label_angle
+from linecad.scene import Camera
+
+TOGETHER = 2.0  # segments that count as one: those of one wall share what is wrong with it
+FRAME_PARAMETERS = 3  # its turn and two shares
+FRAME_COST = 5.0  # nats beyond that: one of about a hundred turns is the best by chance
+APART = 2.0  # standard errors of the difference; frames nearer to each other are one
+LOOKED_APART = np.radians(1.0)  # from a known frame, where a further one is looked for
+SPLIT = np.radians(1.5)  # beside a frame that may lie in the middle of two
+MOST_FRAMES = 8
+QUARTER = np.pi / 2
+
+
+@dataclass(frozen=True)
+class HorizontalFrame:
+    """Two level directions at right angles."""
+
+    turn: float  # rad in (-pi / 4, pi / 4], about the upright against the main frame, from its x towards its y
+    error: float  # rad, standard error of the turn; of the main frame that of its own direction
+    share: float  # of the segment length that runs along its two directions, 0 to 1
+    evidence: float  # nats: by how much less likely the segments are without it
+
+
+@dataclass(frozen=True, eq=False)
+class HorizontalFrames:
+    """All horizontal frames of a photo, the one with the most evidence first: its axes are x and y of the world."""
+
+    main: ManhattanFrame
+    frames: tuple[HorizontalFrame, ...]  # one or more, by falling evidence; the turn of the first is 0
+    shares: Float  # (3 + 2 (K - 1) + 1,) of the segments along each of `directions`, and along none
+
+    @property
+    def further(self) -> tuple[HorizontalFrame, ...]:
+        """All but the main one."""
+        return self.frames[1:]
+
+    @property
+    def directions(self) -> Float:
+        """(3 + 2 (K - 1), 3) unit vectors in the camera frame: x, y, z of the main frame, then two for each further."""
+        turns = np.array([frame.turn for frame in self.further])
+        return np.concatenate([self.main.rotation.T, level_directions(self.main.rotation, turns)])
+
+    def labelled(self, segments: Segments, camera: Camera) -> Int:
+        """(N,) the direction that each segment most likely runs along, as its row in `directions`, or -1 for none."""
+        return _labelled(segments, camera, self.directions, self.shares)
+
+
+def find_horizontal_frames(raw: Segments, camera: Camera, frame: ManhattanFrame) -> HorizontalFrames:
+    """The horizontal frames of segments `raw`, begun at a single Manhattan frame, which comes back where it suffices.
+
+    Where there are more, the main frame is that with the most evidence, fitted together with the others.
+    """
+    seen = _observed(longest(raw), camera)
+    single = fixed_mixture(seen, frame.rotation, np.zeros(1))
+    if _best_beside(seen, single)[1] < _cost(seen) / 2:
+        return only_frame(raw, camera, frame)
+    upright = fixed_mixture(seen, frame.rotation, np.zeros(0))
+    found = fit_mixture(seen, upright.with_frame(_best_beside(seen, upright)[0]))
+    while len(found.turns) < MOST_FRAMES:
+        larger = _one_more(seen, found)
+        if larger is None:
+            break
+        found = larger
+    while len(found.turns) > 1:
+        without, evidence = _without_each(seen, found)
+        least = int(evidence.argmin())
+        if evidence[least] >= _cost(seen):
+            several = _several(raw, camera, found, evidence)
+            return several if several is not None else only_frame(raw, camera, frame)
+        found = without[least]  # what came later explains what it did
+    return only_frame(raw, camera, frame)
+
+
+def _observed(ends: Float, camera: Camera) -> Observed:
+    return Observed(ends, camera.focal, camera.matrix[:2, 2], camera.width, camera.height)
+
+
+def _cost(seen: Observed) -> float:
+    """Nats, of independent segments, that a frame must gain: the criterion of Schwarz, and the choice of its turn."""
+    return FRAME_PARAMETERS / 2 * float(np.log(max(len(seen.ends) / TOGETHER, 1.0))) + FRAME_COST
+
+
+def _best_beside(seen: Observed, mixture: Mixture) -> tuple[float, float]:
+    """The turn of the frame that gains most, away from those that are known, and its gain."""
+    gains = gains_on_grid(seen, mixture) / TOGETHER
+    for turn in mixture.turns:
+        gains = np.where(np.abs(_within(GRID - turn)) < LOOKED_APART, -np.inf, gains)
+    best = int(gains.argmax())
+    return float(GRID[best]), float(gains[best])
+
+
+def _one_more(seen: Observed, found: Mixture) -> Mixture | None:
+    """The best mixture with one frame more than `found`, if it is worth its cost and stands apart."""
+    turn, _ = _best_beside(seen, found)
+    larger = _worth(seen, found, fit_mixture(seen, found.with_frame(turn)))
+    if larger is not None:
+        return larger
+    for number, turn in enumerate(found.turns.tolist()):
+        parted = found.without(number).with_frame(turn - SPLIT).with_frame(turn + SPLIT)
+        larger = _worth(seen, found, fit_mixture(seen, parted))
+        if larger is not None:
+            return larger
+    return None
+
+
+def _worth(seen: Observed, smaller: Mixture, larger: Mixture) -> Mixture | None:
+    """The larger mixture, if it gains more than it costs and the errors tell its frames apart."""
+    if (larger.likelihood - smaller.likelihood) / TOGETHER < _cost(seen):
+        return None
+    errors = _errors(larger)
+    for first in range(len(errors)):
+        for second in range(first):
+            apart = abs(float(_within(larger.turns[first] - larger.turns[second])))
+            if apart < APART * np.hypot(errors[first], errors[second]):
+                return None
+    return larger
+
+
+def _errors(mixture: Mixture) -> Float:
+    """Standard errors (K,) of the turns, rad, with what real walls are off their frame."""
+    errors: Float = np.sqrt(TOGETHER * np.diag(mixture.covariance)[2:] + USUAL_TURN**2)
+    return errors
+
+
+def _within(turn: Float) -> Float:
+    """Turns in (-pi / 4, pi / 4] that mean the same frame."""
+    folded: Float = QUARTER / 2 - (QUARTER / 2 - turn) % QUARTER
+    return folded
+
+
+def only_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> HorizontalFrames:
+    """A single Manhattan frame, as it is, with what the segments say of it."""
+    seen = _observed(longest(raw), camera)
+    fixed = fixed_mixture(seen, frame.rotation, np.zeros(1))
+    error = _errors(fit_mixture(seen, fixed))
+    gain = fixed.likelihood - fixed_mixture(seen, frame.rotation, np.zeros(0)).likelihood
+    return _described(raw, camera, frame, fixed, error, np.array([gain / TOGETHER]))
+
+
+def _without_each(seen: Observed, found: Mixture) -> tuple[list[Mixture], Float]:
+    """The mixtures without one frame each, and by how much, nats, each of them is less likely (K,)."""
+    without = [fit_mixture(seen, found.without(number)) for number in range(len(found.turns))]
+    return without, np.array([found.likelihood - mixture.likelihood for mixture in without]) / TOGETHER
+
+
+def _several(raw: Segments, camera: Camera, found: Mixture, evidence: Float) -> HorizontalFrames | None:
+    """The frames by falling evidence, their turns against the first of them; None where that has another upright."""
+    order = np.argsort(-evidence, kind="stable")
+    axes = np.concatenate([level_directions(found.rotation, found.turns[order[:1]]), found.rotation[:, 2][None]])
+    main = name_frame(raw, camera.matrix, axes)
+    if main.rotation[:, 2] @ found.rotation[:, 2] < np.cos(QUARTER / 2):
+        return None
+    turns = _within(found.turns[order] - found.turns[order[0]])
+    mixture = fixed_mixture(_observed(longest(raw), camera), main.rotation, turns)
+    return _described(raw, camera, main, mixture, _errors(found)[order], evidence[order])
+
+
+def _described(
+    raw: Segments, camera: Camera, main: ManhattanFrame, mixture: Mixture, errors: Float, evidence: Float
+) -> HorizontalFrames:
+    """The frames of a mixture (K,) with their errors, evidence and shares of the segment length."""
+    shares = np.r_[mixture.share[[1, 2, 0]], mixture.share[3:]]
+    label = _labelled(raw, camera, mixture.directions, mixture.share)
+    of_frame = np.where(label > 0, (label - 1) // 2, -1)
+    length = raw.length
+    frames = tuple(
+        HorizontalFrame(turn, error, float(length[of_frame == number].sum() / length.sum()), gain)
+        for number, (turn, error, gain) in enumerate(
+            zip(mixture.turns.tolist(), errors.tolist(), evidence.tolist(), strict=True)
+        )
+    )
+    return HorizontalFrames(main, frames, shares)
+
+
+def _labelled(segments: Segments, camera: Camera, directions: Float, share: Float) -> Int:
+    """(N,) the row of `directions` (M, 3) that each segment most likely runs along, or -1; `share` is (M + 1,)."""
+    seen = _observed(segments.ends, camera)
+    sine = np.abs(seen.against(directions)[0])
+    likely = np.vstack([share[:-1, None] * seen.density(directions), np.full((1, len(segments)), share[-1] / np.pi)])
+    label = likely.argmax(axis=0)
+    is_along = label < len(directions)
+    angle = np.take_along_axis(sine, np.where(is_along, label, 0)[None], axis=0)[0]
+    labels: Int = np.where(is_along & (angle < np.sin(label_angle(camera.width))), label, -1)
+    return labels
