@@ -18,8 +18,9 @@ from linecad.camera.frame_mixture import (
     gains_on_grid,
     level_directions,
 )
-from linecad.camera.joint_fit import USUAL_TURN
+from linecad.camera.joint_fit import USUAL_TURN, View
 from linecad.camera.vanishing_points import longest, name_frame
+from linecad.geometry import plane_normals
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.segments import label_angle
 from linecad.scene import Camera
@@ -30,6 +31,9 @@ FRAME_COST = 5.0  # nats beyond that: one of about a hundred turns is the best b
 APART = 2.0  # standard errors of the difference; frames nearer to each other are one
 LOOKED_APART = np.radians(1.0)  # from a known frame, where a further one is looked for
 SPLIT = np.radians(1.5)  # beside a frame that may lie in the middle of two
+NEAREST = np.radians(1.8)  # the axes of one frame may lie a degree off it each
+WEDGE = np.radians(2.0)  # of planes through one direction
+MOST_OF_WEDGE = 5.0  # nats
 MOST_FRAMES = 8
 QUARTER = np.pi / 2
 
@@ -128,15 +132,35 @@ def _one_more(seen: Observed, found: Mixture) -> Mixture | None:
 
 def _worth(seen: Observed, smaller: Mixture, larger: Mixture) -> Mixture | None:
     """The larger mixture, if it gains more than it costs and the errors tell its frames apart."""
-    if (larger.likelihood - smaller.likelihood) / TOGETHER < _cost(seen):
+    if _evidence(seen, larger, smaller) < _cost(seen):
         return None
     errors = _errors(larger)
     for first in range(len(errors)):
         for second in range(first):
             apart = abs(float(_within(larger.turns[first] - larger.turns[second])))
-            if apart < APART * np.hypot(errors[first], errors[second]):
+            if apart < max(APART * np.hypot(errors[first], errors[second]), NEAREST):
                 return None
     return larger
+
+
+def _evidence(seen: Observed, larger: Mixture, smaller: Mixture) -> float:
+    """By how much, nats, independent segments make one mixture likelier than another.
+
+    Segments of one line of sight about the direction that they run along, such as the courses beside the verge of a
+    gable, hit the horizon in one place whatever their slope: a WEDGE of them counts as MOST_OF_WEDGE at most.
+    """
+    gain = np.log(larger.density / smaller.density) / TOGETHER
+    likely = larger.share[:-1, None] * seen.density(larger.directions)
+    label = likely.argmax(axis=0)
+    own = larger.directions[label]
+    normals = plane_normals(seen.ends, View(own, seen.focal, seen.center).matrix)
+    # Any fixed vector serves to tell one plane through the direction from another.
+    first = np.cross(own, larger.rotation[:, 2] + 0.1 * larger.rotation[:, 0] + 0.2 * larger.rotation[:, 1])
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    second = np.cross(own, first)
+    about = np.arctan2((normals * second).sum(axis=1), (normals * first).sum(axis=1)) % np.pi
+    wedge = np.floor(about / WEDGE).astype(int) + label * int(np.ceil(np.pi / WEDGE))
+    return float(np.minimum(np.bincount(wedge, gain), MOST_OF_WEDGE).sum())
 
 
 def _errors(mixture: Mixture) -> Float:
@@ -163,7 +187,7 @@ def only_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> Horizont
 def _without_each(seen: Observed, found: Mixture) -> tuple[list[Mixture], Float]:
     """The mixtures without one frame each, and by how much, nats, each of them is less likely (K,)."""
     without = [fit_mixture(seen, found.without(number)) for number in range(len(found.turns))]
-    return without, np.array([found.likelihood - mixture.likelihood for mixture in without]) / TOGETHER
+    return without, np.array([_evidence(seen, found, mixture) for mixture in without])
 
 
 def _several(raw: Segments, camera: Camera, found: Mixture, evidence: Float) -> HorizontalFrames | None:
