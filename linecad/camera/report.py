@@ -14,6 +14,7 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.camera.distortion import open_photo
+from linecad.camera.horizontal_frames import HorizontalFrames
 from linecad.camera.intrinsics import Calibration, read_calibration
 from linecad.camera.photo import Photo
 from linecad.camera.refit import find_calibration
@@ -52,10 +53,15 @@ class CameraReport:
     photo: Photo  # in which everything is measured
     camera: Camera
     taken: Calibration  # of the photo as it was taken, distortion and all
-    frame: ManhattanFrame
+    frames: HorizontalFrames  # the main one is the Manhattan frame
     certainty: Certainty
     segments: Segments  # all that were found; axis -1 where they point to no vanishing point
     notes: tuple[str, ...]
+
+    @property
+    def frame(self) -> ManhattanFrame:
+        """The Manhattan frame whose axes are those of the world."""
+        return self.frames.main
 
     @property
     def equivalent(self) -> float:
@@ -153,7 +159,7 @@ def find_camera(
         photo=photo,
         camera=camera,
         taken=taken,
-        frame=calibrated.frame,
+        frames=calibrated.frames,
         certainty=calibrated.certainty,
         segments=_labelled(raw, camera, calibrated.frame),
         notes=calibrated.notes,

@@ -78,7 +78,8 @@ def test_slopes_are_those_of_small_steps(x, y, z, focal, off, radial, seed):
         for parameter in free:
             step = 1e-6 * np.eye(PARAMETERS)[parameter]
             ahead, behind = (
-                camerafit.angles_against(ends, view.moved(sign * step, float(WIDTH)), WIDTH, HEIGHT)[0] for sign in (1, -1)
+                camerafit.angles_against(ends, view.moved(sign * step, float(WIDTH)), WIDTH, HEIGHT)[0]
+                for sign in (1, -1)
             )
             differences = ((ahead - behind) / 2e-6)[far]
             assert np.abs(slope[..., parameter][far] - differences).max(initial=0) < 2e-3

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linecad.camera.horizontal_frames import HorizontalFrame, HorizontalFrames
 from linecad.camera.intrinsics import Calibration
 from linecad.camera.photo import Photo
 from linecad.camera.report import CameraReport, find_camera
@@ -38,7 +39,9 @@ def report(rotation, errors=SURE, camera=None, segments=None):
         photo=Photo("made.jpg", np.zeros((1, 1, 3), np.uint8), camera),
         camera=camera,
         taken=Calibration(camera.width, camera.height, camera.matrix),
-        frame=ManhattanFrame(rotation, 0.001, 0.9),
+        frames=HorizontalFrames(
+            ManhattanFrame(rotation, 0.001, 0.9), (HorizontalFrame(0.0, 0.005, 0.9, 100.0),), np.full(4, 0.25)
+        ),
         certainty=Certainty(np.array(errors), 12.0, None, None, "good", "it is made"),
         segments=Segments(np.zeros((0, 2, 2)), np.zeros(0)) if segments is None else segments,
         notes=(),

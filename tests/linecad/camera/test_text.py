@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from linecad.camera.horizontal_frames import HorizontalFrame, HorizontalFrames
 from linecad.camera.intrinsics import Calibration
 from linecad.camera.photo import Photo
 from linecad.camera.report import Angle, CameraReport
@@ -24,7 +25,9 @@ def report(certainty, source, distortion=(), notes=()):
         photo=Photo("a\nphoto.jpg", np.zeros((1, 1, 3), np.uint8), camera),
         camera=camera,
         taken=Calibration(1600, 1067, MATRIX, distortion),
-        frame=ManhattanFrame(LEVEL, 0.001, 0.9),
+        frames=HorizontalFrames(
+            ManhattanFrame(LEVEL, 0.001, 0.9), (HorizontalFrame(0.0, 0.005, 0.9, 100.0),), np.full(4, 0.25)
+        ),
         certainty=certainty,
         segments=Segments(np.array([[[0, 0], [30, 0]], [[0, 0], [0, 10]]]), np.array([0, -1])),
         notes=notes,
