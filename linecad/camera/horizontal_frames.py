@@ -32,6 +32,7 @@ APART = 2.0  # standard errors of the difference; frames nearer to each other ar
 LOOKED_APART = np.radians(1.0)  # from a known frame, where a further one is looked for
 SPLIT = np.radians(1.5)  # beside a frame that may lie in the middle of two
 NEAREST = np.radians(1.8)  # the axes of one frame may lie a degree off it each
+LARGEST_MOVE = np.radians(3.0)  # of the single frame, a mean of several: so far its lines were gathered
 WEDGE = np.radians(1.0)  # of planes through one direction
 MOST_OF_WEDGE = 5.0  # nats
 MOST_FRAMES = 8
@@ -45,7 +46,7 @@ class HorizontalFrame:
     turn: float  # rad in (-pi / 4, pi / 4], about the upright against the main frame, from its x towards its y
     error: float  # rad, standard error of the turn; of the main frame that of its own direction
     share: float  # of the segment length that runs along its two directions, 0 to 1
-    evidence: float  # nats: by how much less likely the segments are without it
+    evidence: float  # nats: by how much less likely the segments are without it, the others as they are
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +93,7 @@ def find_horizontal_frames(raw: Segments, camera: Camera, frame: ManhattanFrame)
         without, evidence = _without_each(seen, found)
         least = int(evidence.argmin())
         if evidence[least] >= _cost(seen):
-            several = _several(raw, camera, found, evidence)
+            several = _several(raw, camera, seen, found) if _explains(found, frame) else None
             return several if several is not None else only_frame(raw, camera, frame)
         found = without[least]  # what came later explains what it did
     return only_frame(raw, camera, frame)
@@ -184,21 +185,36 @@ def only_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> Horizont
     return _described(raw, camera, frame, fixed, error, np.array([gain / TOGETHER]))
 
 
+def _explains(found: Mixture, frame: ManhattanFrame) -> bool:
+    """Whether one of the frames is nearly the single frame, which may be a mean of several.
+
+    Where none is, two houses were made of the two sides of one whose corner is known badly.
+    """
+    x = frame.rotation[:, 0]
+    turn = np.arctan2(found.rotation[:, 1] @ x, found.rotation[:, 0] @ x)
+    return bool(np.abs(_within(found.turns - turn)).min() < LARGEST_MOVE)
+
+
 def _without_each(seen: Observed, found: Mixture) -> tuple[list[Mixture], Float]:
     """The mixtures without one frame each, and by how much, nats, each of them is less likely (K,)."""
     without = [fit_mixture(seen, found.without(number)) for number in range(len(found.turns))]
     return without, np.array([_evidence(seen, found, mixture) for mixture in without])
 
 
-def _several(raw: Segments, camera: Camera, found: Mixture, evidence: Float) -> HorizontalFrames | None:
+def _several(raw: Segments, camera: Camera, seen: Observed, found: Mixture) -> HorizontalFrames | None:
     """The frames by falling evidence, their turns against the first of them; None where that has another upright."""
+    fixed = [
+        fixed_mixture(seen, found.rotation, np.delete(found.turns, number)).likelihood
+        for number in range(len(found.turns))
+    ]
+    evidence = (found.likelihood - np.array(fixed)) / TOGETHER
     order = np.argsort(-evidence, kind="stable")
     axes = np.concatenate([level_directions(found.rotation, found.turns[order[:1]]), found.rotation[:, 2][None]])
     main = name_frame(raw, camera.matrix, axes)
     if main.rotation[:, 2] @ found.rotation[:, 2] < np.cos(QUARTER / 2):
         return None
     turns = _within(found.turns[order] - found.turns[order[0]])
-    mixture = fixed_mixture(_observed(longest(raw), camera), main.rotation, turns)
+    mixture = fixed_mixture(seen, main.rotation, turns)
     return _described(raw, camera, main, mixture, _errors(found)[order], evidence[order])
 
 
