@@ -14,6 +14,7 @@ from linecad.line_graph import LineGraph, ManhattanFrame, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
 from linecad.model.clean.clean import clean_lines
+from linecad.model.clean.joining import by_size
 from linecad.model.clean.roles import with_roles
 from linecad.model.clean.settling import settled
 from linecad.model.clean.sight import Sight
@@ -116,7 +117,7 @@ def build_scene(
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     cleaned = clean_lines(lines, _intersections(graph, decision, found, new_id), sight)
-    lines = _by_size(cleaned.lines)
+    lines = by_size(cleaned.lines)
     planes = find_planes(lines.ends[:, 0], cleaned.shared, lines.id)
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
@@ -145,7 +146,7 @@ def build_scene(
         depth_map=depth_map,
         openings=openings,
     )  # fmt: skip
-    return without_ticks(scene, sight)
+    return without_ticks(scene, sight, MIN_COMPONENT)
 
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:
@@ -163,14 +164,6 @@ def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Comp
         component=found.component[kept],
         confidence=confidence[kept],
     )
-
-
-def _by_size(lines: Lines) -> Lines:
-    """The lines with the components behind component 0 numbered by their size, which joining lines changed."""
-    count = np.bincount(lines.component)
-    number = np.zeros(len(count), np.int64)
-    number[1 + np.argsort(-count[1:], kind="stable")] = np.arange(1, len(count))
-    return replace(lines, component=number[lines.component])
 
 
 def _intersections(graph: LineGraph, decision: Decision, found: Components, new_id: Int) -> Intersections:

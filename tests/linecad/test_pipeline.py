@@ -134,7 +134,7 @@ def test_lines_run_along_their_axes(any_scene):
 
 def test_real_crossings_coincide(any_scene):
     lines, real = any_scene.lines, any_scene.intersections.real
-    i, j = any_scene.intersections.lines[real].T  # ids are positions in a fresh scene
+    i, j = np.searchsorted(lines.id, any_scene.intersections.lines[real]).T
     size = np.ptp(lines.ends.reshape(-1, 3), axis=0).max()
     for axis in range(3):
         # Lines of two axes agree in the third coordinate; pieces of one line agree in both that are not its own.
@@ -148,9 +148,9 @@ def test_lines_lie_in_their_planes(any_scene):
     lines = any_scene.lines
     assert any_scene.planes
     for plane in any_scene.planes:
-        own = list(plane.lines)
+        own = np.isin(lines.id, plane.lines)
         assert (lines.ends[own, :, plane.axis] == plane.offset).all()
-        if own:
+        if own.any():
             assert len(set(lines.component[own].tolist())) == 1
         else:
             assert {face.kind for face in plane.faces} in ({"ground"}, {"ceiling"})
@@ -193,14 +193,15 @@ def test_confidence_says_what_the_documentation_promises(any_scene):
     assert ((lines.confidence == "weak") == (lines.component != 0)).all()
     net = nx.Graph()
     net.add_edges_from(crossings.lines[crossings.real].tolist())
+    word = dict(zip(lines.id.tolist(), lines.confidence.tolist(), strict=True))
     for line in lines.id[lines.component == 0].tolist():
         # A line closes cycles when it lies on one, that is, when some neighbour is reached without their own crossing.
         in_cycle = any(
             nx.has_path(nx.restricted_view(net, [], [(line, other)]), line, other) for other in list(net[line])
         )
-        assert (lines.confidence[line] == "proven") <= in_cycle
+        assert (word[line] == "proven") <= in_cycle
         if net.degree(line) == 1:
-            assert lines.confidence[line] == "supported"
+            assert word[line] == "supported"
 
 
 def test_without_a_proof_nothing_is_called_proven(drawn):

@@ -110,3 +110,11 @@ def joined_crossings(crossings: Intersections, ids: Int, row: Int, count: int) -
         weight=crossings.weight[kept],
         reason=np.asarray(crossings.reason)[kept],
     )
+
+
+def by_size(lines: Lines) -> Lines:
+    """The lines with the components behind component 0 numbered by their size, which joining lines changed."""
+    count = np.bincount(lines.component)
+    number = np.zeros(len(count), np.int64)
+    number[1 + np.argsort(-count[1:], kind="stable")] = np.arange(1, len(count))
+    return replace(lines, component=number[lines.component])

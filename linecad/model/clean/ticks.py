@@ -8,10 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.arrays import Bool, Float
+from linecad.arrays import Bool, Float, Int
 from linecad.confidence import with_lines
+from linecad.graph.connectivity import spanning_forest
 from linecad.model.clean.ends import NEAR, close_ends, ends_that_meet, nearest_crossings
-from linecad.model.clean.joining import with_ends
+from linecad.model.clean.joining import by_size, with_ends
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import Strokes, strokes_of
@@ -21,16 +22,17 @@ LONGEST = 2 * NEAR  # of the depth; whatever its one end meets, the other end of
 MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by then
 
 
-def without_ticks(scene: Scene, sight: Sight) -> Scene:
+def without_ticks(scene: Scene, sight: Sight, least: int = 1) -> Scene:
     """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
 
-    Lines stay that a person said something about. Planes go that only ticks showed; a note counts the ticks.
+    Lines stay that a person said something about, that alone connect others, and all of components that would have
+    fewer than `least` lines. Planes go that only ticks showed; a note counts the ticks.
     """
     outlines = outlines_of(scene.planes)
     found = scene
     for _ in range(MOST_ROUNDS):
         strokes = strokes_of(found.lines, sight.forward)
-        ticks = _ticks(found, strokes, outlines, sight)
+        ticks = _spare(found, _ticks(found, strokes, outlines, sight), least)
         if not ticks.any():
             break
         found = with_lines(found, ~ticks)
@@ -40,8 +42,31 @@ def without_ticks(scene: Scene, sight: Sight) -> Scene:
         return scene
     shown = {plane.id for plane in scene.planes if not plane.lines}
     planes = tuple(plane for plane in found.planes if plane.lines or plane.faces or plane.id in shown)
+    crossings = replace(found.intersections, in_tree=_spanning(found, ~found.intersections.in_tree))
     note = f"{gone} stubs shorter than {LONGEST:.1%} of their depth end nowhere and are left out"
-    return replace(found, planes=planes, notes=(*scene.notes, note))
+    return replace(
+        found, lines=by_size(found.lines), intersections=crossings, planes=planes, notes=(*scene.notes, note)
+    )
+
+
+def _spare(scene: Scene, ticks: Bool, least: int) -> Bool:
+    """Of `ticks` (N,) those without which all others are connected as before, in components of `least` lines."""
+    row = np.searchsorted(scene.lines.id, scene.intersections.lines)
+    hang = _spanning(scene, ticks[row].sum(axis=1))
+    spare = ticks & (np.bincount(row[hang].ravel(), minlength=len(ticks)) <= 1)
+    left = np.bincount(scene.lines.component[~spare], minlength=scene.lines.component.max(initial=0) + 1)
+    return np.asarray(spare & (left[scene.lines.component] >= least))
+
+
+def _spanning(scene: Scene, cost: Int) -> Bool:
+    """Which crossings (E,) span all that real ones connect, those of the least `cost` (E,) first."""
+    crossings = scene.intersections
+    real = np.flatnonzero(crossings.real)
+    real = real[np.argsort(cost[real], kind="stable")]
+    row = np.searchsorted(scene.lines.id, crossings.lines[real])
+    tree = np.zeros(len(crossings), bool)
+    tree[real[spanning_forest(len(scene.lines), row)]] = True
+    return tree
 
 
 def _ticks(scene: Scene, strokes: Strokes, outlines: Float, sight: Sight) -> Bool:

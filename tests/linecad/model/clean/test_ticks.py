@@ -89,3 +89,21 @@ def test_a_plane_that_only_ticks_showed_goes_and_one_without_lines_stays(drawn):
     planes = (Plane(0, Y, DEPTH, (0, 1, 2), ()), Plane(1, X, 0.0, (2,), ()), Plane(2, Z, -3.0, (), ()))
     _, found = drawn([tick(0.07)], planes)
     assert [plane.id for plane in found.planes] == [0, 2]
+
+
+def test_a_tick_that_alone_connects_another_line_stays(drawn, crossings, camera, rotation):
+    scene, _ = drawn([tick(0.07), (X, (0, DEPTH, 0.03), (1, DEPTH, 0.03))])
+    hangs = replace(scene, intersections=crossings([(0, 1), (0, 2), (2, 3)]))
+    sight = Sight.of(camera, rotation, None)
+    assert without_ticks(hangs, sight) is hangs
+    stands = replace(scene, intersections=crossings([(0, 1), (0, 2), (2, 3), (0, 3)]))
+    found = without_ticks(stands, sight)
+    assert found.lines.id.tolist() == [0, 1, 3]
+    assert found.intersections.in_tree.tolist() == [True, True]
+    assert found.intersections.lines.tolist() == [[0, 1], [0, 3]]
+
+
+@pytest.mark.parametrize(("least", "left"), [(4, 4), (3, 3)])
+def test_a_component_keeps_as_many_lines_as_it_must_have(drawn, camera, rotation, least, left):
+    scene, _ = drawn([tick(0.07), tick(0.3, 1)])
+    assert len(without_ticks(scene, Sight.of(camera, rotation, None), least).lines) == left
