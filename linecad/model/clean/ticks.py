@@ -58,7 +58,7 @@ def _spare(scene: Scene, ticks: Bool, least: int) -> Bool:
     return np.asarray(spare & (left[scene.lines.component] >= least))
 
 
-def _spanning(scene: Scene, cost: Int) -> Bool:
+def _spanning(scene: Scene, cost: Bool | Int) -> Bool:
     """Which crossings (E,) span all that real ones connect, those of the least `cost` (E,) first."""
     crossings = scene.intersections
     real = np.flatnonzero(crossings.real)
