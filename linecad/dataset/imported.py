@@ -13,7 +13,7 @@ import shapely
 from numpy.random import Generator
 
 from linecad.arrays import Bool, Float
-from linecad.dataset.facades import DOORS, FRAMES, GLASS, IRON, TRIMS, WALLS
+from linecad.dataset.facades import DOORS, FRAMES, GLASS, IRON, TILES, TRIMS, WALLS
 from linecad.dataset.modelling import UP, Material, Model
 from linecad.dataset.polygons import Building, Polygon
 
@@ -29,7 +29,6 @@ FLAT_FOOT = 0.3  # m between the ends of a wall's foot
 GROUND = 400.0  # m, the side of the ground
 PAVING = Material("slabs", (0.55, 0.54, 0.52))
 FLAT_ROOF = Material("plain", (0.42, 0.41, 0.40))
-TILES = ((0.50, 0.25, 0.19), (0.42, 0.24, 0.20), (0.36, 0.33, 0.32), (0.55, 0.32, 0.23))
 
 Key = tuple[tuple[int, ...], tuple[int, ...]]  # both ends of a side, in units of ROUNDING
 

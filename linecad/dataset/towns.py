@@ -10,7 +10,7 @@ import numpy as np
 from numpy.random import Generator
 
 from linecad.arrays import Float
-from linecad.dataset.facades import Style, build_facade, draw_style
+from linecad.dataset.facades import TILES, Style, build_facade, draw_style
 from linecad.dataset.furniture import add_lamp, add_tree
 from linecad.dataset.modelling import UP, Material, Model, Wall
 
@@ -28,7 +28,6 @@ FLAT, GABLE_TO_STREET = 0.15, 0.2  # shares of the houses; the ridges of the oth
 ASPHALT = Material("asphalt", (0.36, 0.36, 0.37))
 SLABS = Material("slabs", (0.62, 0.60, 0.57))
 FLAT_ROOF = Material("plain", (0.40, 0.33, 0.30))
-TILES = ((0.50, 0.25, 0.19), (0.42, 0.24, 0.20), (0.36, 0.33, 0.32), (0.55, 0.32, 0.23))
 
 RoofKind = Literal["flat", "eaves", "gable"]
 

@@ -38,9 +38,8 @@ class Sizes:
     """How often each size occurs in one body."""
 
     middle: float  # log of the body's median depth, which sizes are counted from
-    spectra: tuple[
-        Spectrum | None, Spectrum | None
-    ]  # of distances of level lines, of uprights; None where there are too few
+    # Of the frequencies of distances of level lines and of uprights; None where these are too few to tell.
+    spectra: tuple[Spectrum | None, Spectrum | None]
 
     @classmethod
     def of(cls, level: Float, upright: Float, middle: float) -> Self:

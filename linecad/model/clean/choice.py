@@ -6,9 +6,7 @@ from typing import Literal, get_args
 import numpy as np
 
 from linecad.confidence import with_lines
-from linecad.model.clean.ends import close_ends
-from linecad.model.clean.joining import with_ends
-from linecad.model.clean.strokes import strokes_of
+from linecad.model.clean.joining import with_closed_ends
 from linecad.scene import DETAIL, OPENING, OUTLINE, Scene
 
 Detail = Literal["none", "openings", "all"]
@@ -30,7 +28,7 @@ def keep_drawn(scene: Scene, detail: Detail) -> Scene:
     if kept.all():
         return scene
     rest = with_lines(scene, kept)
-    rest = replace(rest, lines=with_ends(rest.lines, close_ends(strokes_of(rest.lines, scene.rotation[2]))[0]))
+    rest = replace(rest, lines=with_closed_ends(rest.lines, scene.rotation[2]))
     what = "detail" if detail == "openings" else "openings and detail"
     note = f"{len(scene.lines) - len(rest.lines)} of {len(scene.lines)} lines are left out: they are {what}"
     return replace(rest, notes=(*scene.notes, note))

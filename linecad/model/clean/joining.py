@@ -7,7 +7,8 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.geometry import segment_coordinates
 from linecad.graph.connectivity import spanning_forest
-from linecad.model.clean.strokes import Strokes
+from linecad.model.clean.ends import close_ends
+from linecad.model.clean.strokes import Strokes, strokes_of
 from linecad.scene import Intersections, Lines
 
 
@@ -62,6 +63,11 @@ def joined_lines(lines: Lines, strokes: Strokes, row: Int) -> Lines:
 def with_ends(lines: Lines, strokes: Strokes) -> Lines:
     """The lines with the ends of their strokes."""
     return replace(lines, ends=_ends(lines, strokes.rows, strokes))
+
+
+def with_closed_ends(lines: Lines, forward: Float) -> Lines:
+    """The lines with ends that nearly meet others moved to these; `forward` (3,) is where the camera looks."""
+    return with_ends(lines, close_ends(strokes_of(lines, forward))[0])
 
 
 def _ends(lines: Lines, rows: Int, strokes: Strokes) -> Float:

@@ -11,8 +11,8 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.confidence import with_lines
 from linecad.graph.connectivity import spanning_forest
-from linecad.model.clean.ends import NEAR, close_ends, ends_that_meet, nearest_crossings
-from linecad.model.clean.joining import by_size, with_ends
+from linecad.model.clean.ends import NEAR, ends_that_meet, nearest_crossings
+from linecad.model.clean.joining import by_size, with_closed_ends
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import Strokes, strokes_of
@@ -36,7 +36,7 @@ def without_ticks(scene: Scene, sight: Sight, least: int = 1) -> Scene:
         if not ticks.any():
             break
         found = with_lines(found, ~ticks)
-        found = replace(found, lines=with_ends(found.lines, close_ends(strokes_of(found.lines, sight.forward))[0]))
+        found = replace(found, lines=with_closed_ends(found.lines, sight.forward))
     gone = len(scene.lines) - len(found.lines)
     if gone == 0:
         return scene

@@ -14,6 +14,8 @@ SHARED = 0.1  # of the smaller of two openings, from which they overlap in the p
 MOST_NODES = 10_000  # of a search; the largest of 50 photos were solved at the first
 OPTIMAL = 0  # the status of milp where nothing is better
 
+Shapes = np.ndarray[tuple[int], np.dtype[np.object_]]  # polygons
+
 
 @dataclass(frozen=True, eq=False)
 class Choice:
@@ -54,13 +56,11 @@ def choose(shapes: list[shapely.Polygon], odds: Float) -> Choice:
     return Choice(np.flatnonzero(taken), more / float(value[taken].sum()) if more > 0 else 0.0)
 
 
-def overlapping(shapes: np.ndarray[tuple[int], np.dtype[np.object_]]) -> Int:
+def overlapping(shapes: Shapes) -> Int:
     """The pairs (P, 2), the lower place first, of shapes (N,) of which only one can be taken."""
     first, second = shapely.STRtree(shapes).query(shapes)
     first, second = first[first < second], second[first < second]
-    area = shapely.area(shapes)
-    shared = shapely.area(shapely.intersection(shapes[first], shapes[second]))
-    found: Int = np.column_stack([first, second])[shared > SHARED * np.minimum(area[first], area[second])]
+    found: Int = np.column_stack([first, second])[_share(shapes[first], shapes[second])]
     return found
 
 
@@ -68,10 +68,15 @@ def not_overlapping(shapes: list[shapely.Polygon], others: list[shapely.Polygon]
     """Which shapes (N,) overlap none of the others in the photo."""
     one, other = np.array(shapes, object), np.array(others, object)
     first, second = shapely.STRtree(other).query(one).reshape(2, -1) if len(one) else np.zeros((2, 0), np.int64)
-    shared = shapely.area(shapely.intersection(one[first], other[second]))
     free = np.ones(len(one), bool)
-    free[first[shared > SHARED * np.minimum(shapely.area(one[first]), shapely.area(other[second]))]] = False
+    free[first[_share(one[first], other[second])]] = False
     return free
+
+
+def _share(one: Shapes, other: Shapes) -> Bool:
+    """Which pairs of shapes (P,) overlap by so much that only one of them can be taken."""
+    shared = shapely.area(shapely.intersection(one, other))
+    return np.asarray(shared > SHARED * np.minimum(shapely.area(one), shapely.area(other)))
 
 
 def heaviest_set(value: Float, pairs: Int) -> tuple[Bool, float]:
