@@ -72,9 +72,8 @@ class FoundLines:
         if self.known_inconsistency is not None:
             return self.known_inconsistency
         graph = self.widest_graph
-        fit = RobustFit(graph)
-        fits = resample(graph, lambda present: fit.depths(present=present), fits=FITS_FOR_INCONSISTENCY)
-        return inconsistency_of(graph, fit.depths(), fits, self.camera.width)
+        fits = resample(graph, fits=FITS_FOR_INCONSISTENCY)
+        return inconsistency_of(graph, RobustFit(graph).depths(), fits, self.camera.width)
 
     @property
     def is_inconsistent(self) -> bool:

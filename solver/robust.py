@@ -29,14 +29,13 @@ ANCHOR = 1e-9  # of the crossings of a line; keeps what nothing connects where i
 
 
 class RobustFit:
-    """Fits depths to one graph, as often as asked with other weights or some lines left out."""
+    """Fits depths to one graph, as often as asked with other weights."""
 
     def __init__(self, graph: LineGraph) -> None:
         self.count = len(graph.segments)
         self.used = np.flatnonzero(graph.informative & graph.possible)
         i, j = graph.edges[self.used].T
         self.ratio, self.tolerance = graph.log_ratio[self.used], graph.tolerance[self.used]
-        self.lines = graph.edges[self.used]
         self.weight = graph.weight[self.used]
         order = _elimination_order(self.count, i, j)
         self.place = np.empty(self.count, np.int64)  # of each line in the linear system
@@ -51,23 +50,20 @@ class RobustFit:
         self.rows = (cells % max(1, self.count)).astype(np.int32)
         self.starts = np.searchsorted(cells // max(1, self.count), np.arange(self.count + 1)).astype(np.int32)
 
-    def depths(self, weight: Float | None = None, present: Bool | None = None) -> Float:
-        """(N,) log depths, by `weight` (E,) if given else the graph's; lines that are not `present` (N,) do not count.
+    def depths(self, weight: Float | None = None) -> Float:
+        """(N,) log depths, by `weight` (E,) if given else the graph's.
 
         Groups of lines that no crossing connects have unrelated scales.
         """
         own = self.weight if weight is None else weight[self.used]
-        if present is not None:
-            own = own * present[self.lines].all(axis=1)
         if not (own > 0).any() and not len(self.told.line):
             return np.zeros(self.count)
         width = np.maximum(self.tolerance, WIDTH)
         # One unit of log-odds a depth that is told: what crossings contradict is given up as one crossing would be.
-        told = np.ones(len(self.told.line)) if present is None else present[self.told.line].astype(np.float64)
+        told = np.ones(len(self.told.line))
         depth = self._step(own / width**2, told / self.told.sigma**2, np.zeros(self.count))
         far = float((self._residual(depth, width) ** 2)[own > 0].max(initial=0.0))
-        outside = (told > 0) & self.told.may_be_outlier
-        far = max(far, float((self._told_residual(depth) ** 2)[outside].max(initial=0.0)))
+        far = max(far, float((self._told_residual(depth) ** 2)[self.told.may_be_outlier].max(initial=0.0)))
         widening = max(1.0, 2 * far)  # of the squared width, at which the cost is convex where the residuals are
         while widening > 1:
             depth = self._narrowed(depth, own, told, width, widening)

@@ -25,7 +25,6 @@ from linecad.line_graph import LineGraph, Solution
 from linecad.options import MIN_COMPONENT, Options
 from solver.choice import boundaries, planar_pairs
 from solver.families import find_families
-from solver.robust import RobustFit
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,8 +107,7 @@ def _joins(
     if inconsistency is None:
         raise ValueError("stable joins need the inconsistency of the photo")
     is_inconsistent = inconsistency > MOST_INCONSISTENT
-    fit = RobustFit(graph)
-    fits = resample(graph, lambda present: fit.depths(present=present), options.solve.seed)
+    fits = resample(graph, options.solve.seed)
     stable = find_stable_bodies(graph, agrees, solution.log_depth, fits, is_inconsistent)
     merged = stable.bodies.merged(sure)
     reason = np.where(merged.joins(graph), may, "unstable")

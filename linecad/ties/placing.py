@@ -145,9 +145,8 @@ def _setting(graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, 
     believed = replace(
         graph, weight=np.where(real, CERTAIN, graph.weight), informative=graph.informative & ~fake
     )  # fmt: skip
-    fit = RobustFit(believed)
-    log_depth = fit.depths()
-    fits = resample(believed, lambda present: fit.depths(present=present), options.seed, FITS)
+    log_depth = RobustFit(believed).depths()
+    fits = resample(believed, options.seed, FITS)
     bodies = find_rigid_bodies(believed, log_depth, fits)
     return Setting(believed, log_depth, bodies, fits, sight)
 

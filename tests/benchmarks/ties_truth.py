@@ -85,9 +85,8 @@ def look_at(case: Case) -> Seen | None:
     except LinecadError as error:
         print(f"{case.name}: {error}", flush=True)
         return None
-    fit = RobustFit(graph)
-    log_depth = fit.depths()
-    fits = resample(graph, lambda present: fit.depths(present=present), 0, FITS)
+    log_depth = RobustFit(graph).depths()
+    fits = resample(graph, 0, FITS)
     bodies = find_rigid_bodies(graph, log_depth, fits)
     sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels)
     setting = Setting(graph, log_depth, bodies, fits, sight)

@@ -15,7 +15,6 @@ from linecad.options import Options
 from linecad.scene import REASONS
 from solver.choice import boundaries, planar_pairs
 from solver.families import find_families
-from solver.robust import RobustFit
 
 GRID = 12  # lines of each direction of a wall
 ALL, LOOSE, STABLE = Options(joins="all"), Options(joins="biconnected"), Options(joins="stable")
@@ -229,8 +228,7 @@ def test_in_an_inconsistent_photo_stable_bodies_that_one_line_joins_are_loose():
 
 def test_in_a_consistent_photo_a_rigid_line_that_is_not_firm_is_not_as_sure_as_the_solution():
     graph, _ = contradicting(walls(MANY_BARS))
-    fit = RobustFit(graph)
-    fits = resample(graph, lambda present: fit.depths(present=present), STABLE.solve.seed)
+    fits = resample(graph, STABLE.solve.seed)
     solution = solution_of(graph, graph.log_ratio == 0)
     stable = find_stable_bodies(
         graph, agreeing(graph, solution.connected, solution.log_depth), solution.log_depth, fits, False

@@ -11,9 +11,8 @@ TEN = 10  # fits that are made by hand
 
 
 def found_in(seen):
-    fit = RobustFit(seen.graph)
-    depth = fit.depths()
-    fits = resample(seen.graph, lambda present: fit.depths(present=present), 0, 21)
+    depth = RobustFit(seen.graph).depths()
+    fits = resample(seen.graph, 0, 21)
     return find_rigid_bodies(seen.graph, depth, fits)
 
 
