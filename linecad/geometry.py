@@ -76,23 +76,34 @@ def vanishing_points(K: Float, R: Float) -> Float:
     return points
 
 
+def lengths(vectors: Float) -> Float:
+    """Lengths (...) of vectors (..., 2)."""
+    # x and y apart, here and below: sums over pairs of numbers would take NumPy several times as long.
+    x, y = vectors[..., 0], vectors[..., 1]
+    found: Float = np.sqrt(x * x + y * y)
+    return found
+
+
+def middles(ends: Float) -> Float:
+    """Middles (N, 2) of segments (N, 2, 2)."""
+    found: Float = (ends[:, 0] + ends[:, 1]) / 2
+    return found
+
+
 def directions_to(points: Float, vanishing: Float) -> Float:
     """Unit image directions (..., 2) from points (..., 2) px towards homogeneous vanishing points (..., 3).
 
     Written so that a vanishing point at infinity needs no special case. The sign is that of the homogeneous point.
     """
     towards = vanishing[..., :2] - points * vanishing[..., 2:]
-    length = np.linalg.norm(towards, axis=-1, keepdims=True)
-    directions: Float = towards / np.maximum(length, np.finfo(float).tiny)
+    directions: Float = towards / np.maximum(lengths(towards), np.finfo(float).tiny)[..., None]
     return directions
 
 
 def angles_to(ends: Float, vanishing: Float) -> Float:
     """Sine of the angle (V, N) between segments (N, 2, 2) and the lines from their middles to points (V, 3)."""
-    middle = ends.mean(axis=1)
-    along = ends[:, 1] - ends[:, 0]
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
-    # As by `directions_to`, x and y apart: pairs of numbers would take NumPy three times as long.
+    middle, along = middles(ends), ends[:, 1] - ends[:, 0]
+    along = along / lengths(along)[:, None]
     x = vanishing[:, :1] - middle[:, 0] * vanishing[:, 2:]
     y = vanishing[:, 1:2] - middle[:, 1] * vanishing[:, 2:]
     length = np.maximum(np.sqrt(x * x + y * y), np.finfo(float).tiny)

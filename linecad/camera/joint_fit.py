@@ -15,7 +15,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.geometry import rotation_about
+from linecad.geometry import lengths, middles, rotation_about
 
 FREEDOM = 1.0  # degrees of freedom of Student's t: few, as detectors err far more often than by their usual error
 ANGLE_NOISE = 0.3  # px rad: the angle of a segment of L px is off by this over L ..
@@ -216,9 +216,9 @@ def slope_by(change: Float, cosine: Float, towards: Float, middle: Float) -> Flo
 
     The other arguments are what `angles_against` gives.
     """
-    moved = change[:, None, :2] - middle * change[:, None, 2:]
-    across = towards[..., 0] * moved[..., 1] - towards[..., 1] * moved[..., 0]
-    slope: Float = cosine * across / (towards**2).sum(axis=-1)
+    moved_x, moved_y = (change[:, None, at] - middle[:, at] * change[:, None, 2] for at in range(2))
+    x, y = towards[..., 0], towards[..., 1]
+    slope: Float = cosine * (x * moved_y - y * moved_x) / (x * x + y * y)
     return slope
 
 
@@ -228,14 +228,14 @@ def angles_against(ends: Float, view: View, width: int, height: int) -> tuple[Fl
     The view may have any number M of axes, in rows.
     """
     ends = undistorted(ends, view.radial, view.center, width, height)
-    middle, along = ends.mean(axis=1), ends[:, 1] - ends[:, 0]
-    length = np.linalg.norm(along, axis=1)
+    middle, along = middles(ends), ends[:, 1] - ends[:, 0]
+    length = lengths(along)
     along = along / length[:, None]
     points = view.axes @ view.matrix.T
     towards = points[:, None, :2] - middle * points[:, None, 2:]
-    distance = np.maximum(np.linalg.norm(towards, axis=-1), np.finfo(float).tiny)
+    distance = np.maximum(lengths(towards), np.finfo(float).tiny)
     sine = (towards[..., 1] * along[:, 0] - towards[..., 0] * along[:, 1]) / distance
-    cosine = (towards * along).sum(axis=-1) / distance
+    cosine = (towards[..., 0] * along[:, 0] + towards[..., 1] * along[:, 1]) / distance
     near = PLACE_NOISE * np.abs(points[:, None, 2]) / distance
     scale = np.sqrt(ANGLE_FLOOR**2 + (ANGLE_NOISE / length) ** 2 + near**2)
     return sine, scale, cosine, towards, middle

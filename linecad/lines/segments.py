@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.geometry import PhotoLength, angles_to, directions_to, vanishing_points
+from linecad.geometry import PhotoLength, angles_to, directions_to, lengths, middles, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.options import SHORT_REACH
 from linecad.scene import Camera
@@ -103,12 +103,13 @@ def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> lis
     """The fragments of each line, as indices of fragments (N, 2, 2) of one axis, the longest leader first."""
     order = np.argsort(-_length(ends), kind="stable")
     free = np.ones(len(ends), bool)
+    direction = directions_to(middles(ends), vanishing)
     lines: list[Int] = []
     rows = max(1, PAIRS // max(1, len(ends)))
     for first in range(0, len(order), rows):
         leaders = order[first : first + rows]
         leaders = leaders[free[leaders]]
-        pairs = _near(ends, directions_to(ends.mean(axis=1), vanishing), leaders, across)
+        pairs = _near(ends, direction, leaders, across)
         for leader, start, end in zip(leaders.tolist(), pairs.start[:-1], pairs.start[1:], strict=True):
             if not free[leader]:
                 continue
@@ -125,51 +126,51 @@ class _Pairs:
     """Leaders with the fragments that are on their image lines, P pairs in the order of the L leaders."""
 
     start: list[int]  # L + 1, the first pair of each leader, and P
-    other: Int  # (P,) the fragment, in ascending order for each leader; the leader itself is among them
+    other: Int  # (P,) the fragment, as they begin along the line of each leader, which is among them
     low: Float  # (P,) px, where it begins along the line
     high: Float  # (P,) px, where it ends
 
 
 def _near(ends: Float, direction: Float, leaders: Int, across: float) -> _Pairs:
     """The fragments (N, 2, 2) with directions (N, 2) to their vanishing point that are near the leaders' lines."""
-    middle = ends.mean(axis=1)
+    middle = middles(ends)
     normal = direction[leaders] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
     off = np.abs(normal @ middle.T - (normal * middle[leaders]).sum(axis=1, keepdims=True))
     # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
     one_side = direction[leaders] @ direction.T > 0
     row, other = np.nonzero(one_side & (off < across))
     leader = leaders[row]
-    reach = ((ends[other] - middle[leader, None]) * direction[leader, None]).sum(axis=2)
+    from_leader, along = ends[other] - middle[leader, None], direction[leader]
+    reach = from_leader[..., 0] * along[:, None, 0] + from_leader[..., 1] * along[:, None, 1]
+    low, high = np.minimum(*reach.T), np.maximum(*reach.T)
+    order = np.lexsort((low, row))
     start = np.searchsorted(row, np.arange(len(leaders) + 1)).tolist()
-    return _Pairs(start, other, reach.min(axis=1), reach.max(axis=1))
+    return _Pairs(start, other[order], low[order], high[order])
 
 
-def _touching(low: Float, high: Float, gap: float, leader: int) -> Int:
-    """Indices of the intervals that hang together with the leader's over gaps of at most `gap`."""
-    order = np.argsort(low, kind="stable")
-    furthest = np.maximum.accumulate(high[order])
-    new_run = np.r_[False, low[order][1:] > furthest[:-1] + gap]
-    run = np.cumsum(new_run)
-    together: Int = order[run == run[np.flatnonzero(order == leader)[0]]]
-    return together
+def _touching(low: Float, high: Float, gap: float, leader: int) -> slice:
+    """Which intervals, in ascending order of `low`, hang together with the leader's over gaps of at most `gap`."""
+    furthest = np.maximum.accumulate(high)
+    breaks = np.flatnonzero(low[1:] > furthest[:-1] + gap) + 1
+    run = np.searchsorted(breaks, leader, side="right")
+    return slice(int(breaks[run - 1]) if run > 0 else 0, int(breaks[run]) if run < len(breaks) else len(low))
 
 
 def _length(ends: Float) -> Float:
     """Lengths (N,) px of fragments (N, 2, 2)."""
-    length: Float = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    return length
+    return lengths(ends[:, 1] - ends[:, 0])
 
 
 def _centres(ends: Float, lines: list[Int]) -> Float:
     """The mean (G, 2) of the middles of the fragments of each line, by their length."""
     length = _length(ends)
-    weighted = ends.mean(axis=1) * length[:, None]
+    weighted = middles(ends) * length[:, None]
     return np.array([weighted[own].sum(axis=0) / length[own].sum() for own in lines]).reshape(-1, 2)
 
 
 def _fitted_directions(ends: Float, lines: list[Int], centre: Float) -> Float:
     """The direction (G, 2) of each line that has the least squares of distance along all of its fragments."""
-    along, middle, length = ends[:, 1] - ends[:, 0], ends.mean(axis=1), _length(ends)[:, None]
+    along, middle, length = ends[:, 1] - ends[:, 0], middles(ends), _length(ends)[:, None]
     spread = []
     for own, at in zip(lines, centre, strict=True):
         off = middle[own] - at
