@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tomllib
 from collections.abc import Callable, Iterator
+from functools import cache
 from graphlib import TopologicalSorter
 from pathlib import Path
 
@@ -140,7 +141,10 @@ def imported(module: str, walk: Callable[[ast.AST], Iterator[ast.AST]]) -> Itera
             yield from (name if name in MODULES else base for name in names)
 
 
-IMPORTS = {module: {name for name in imported(module, ast.walk) if name in MODULES} for module in MODULES}
+@cache
+def imports_of(module: str) -> set[str]:
+    """The modules of the project that a module imports anywhere."""
+    return {name for name in imported(module, ast.walk) if name in MODULES}
 
 
 def package_of(module: str) -> str:
@@ -158,7 +162,7 @@ def test_every_package_of_linecad_has_a_row() -> None:
 @pytest.mark.parametrize("module", sorted(name for name in MODULES if name.startswith("linecad.")))
 def test_imports_of_linecad_go_downwards(module: str) -> None:
     own = package_of(module)
-    others = {package_of(name) for name in IMPORTS[module]} - {own, "linecad"}
+    others = {package_of(name) for name in imports_of(module)} - {own, "linecad"}
     row = {name: ROW.get(name, ROW[FIRST_THAT_KNOWS_THE_PACKAGES] - 1) for name in others}
     assert {name for name in others if row[name] >= ROW[own] and (own, name) not in EXCEPTIONS} == set()
 
@@ -166,7 +170,7 @@ def test_imports_of_linecad_go_downwards(module: str) -> None:
 @pytest.mark.parametrize("module", sorted(name for name in MODULES if name.split(".")[0] != "linecad"))
 def test_solver_and_exporters_know_only_records_and_errors(module: str) -> None:
     package = module.split(".")[0]
-    assert {name for name in IMPORTS[module] if name.split(".")[0] != package} <= KNOWN_TO_THE_PACKAGES
+    assert {name for name in imports_of(module) if name.split(".")[0] != package} <= KNOWN_TO_THE_PACKAGES
 
 
 def in_rooms(module: str) -> str:
@@ -180,7 +184,8 @@ def in_rooms(module: str) -> str:
 def test_nothing_imports_itself_by_a_detour(of: Callable[[str], str]) -> None:
     # Imports within functions count too; only the front door may look up.
     arrows: dict[str, set[str]] = {}
-    for module, names in IMPORTS.items():
+    for module in MODULES:
+        names = imports_of(module)
         if module != "linecad":
             arrows.setdefault(of(module), set()).update(of(name) for name in names - {"linecad"})
     TopologicalSorter({one: others - {one} for one, others in arrows.items()}).prepare()  # raises CycleError

@@ -15,6 +15,7 @@ SAMPLE = 1.0  # px between the points of an edge that are tested
 IN_PLANE = 1e-6  # m, between a point of an edge and a plane that it lies in
 GAP = 3.0  # px; a shorter interruption of an edge, as by a thing thinner than a pixel, does not part it
 SHORTEST = 2.0  # px; shorter pieces are not told
+ROUNDING = 1e-6  # px, far more than the place of a corner may be off
 CHUNK = 400_000  # points tested at a time, which bounds the memory
 
 
@@ -27,8 +28,9 @@ def rasterise(quads: Float, matrix: Float, rotation: Float, width: int, height: 
     inverse_depth = np.zeros((height, width))
     ids = np.full((height, width), NOTHING, np.int64)
     from_pixel = np.linalg.inv(matrix)
+    normals = np.cross(camera[:, 1] - camera[:, 0], camera[:, 3] - camera[:, 0])
     for index in _in_view(camera, matrix, width, height):
-        normal = np.cross(camera[index, 1] - camera[index, 0], camera[index, 3] - camera[index, 0])
+        normal = normals[index]
         offset = normal @ camera[index, 0]
         if abs(offset) <= 1e-12 * np.abs(normal).sum():
             continue  # seen edge on
@@ -42,12 +44,20 @@ def rasterise(quads: Float, matrix: Float, rotation: Float, width: int, height: 
 
 
 def _in_view(camera: Float, matrix: Float, width: int, height: int) -> Int:
-    """The quads whose corners do not all lie beyond one side of what the camera sees."""
+    """The quads that may cover the centre of a pixel.
+
+    Not those whose corners all lie beyond one side of what the camera sees, nor those that fit between two rows or
+    columns of centres: most of a street in a small photo.
+    """
     image = camera @ matrix.T
     x, y, z = image[..., 0], image[..., 1], image[..., 2]
     outside = (z < NEAR).all(axis=1)
     for beyond in (x < 0, x > (width - 1) * z, y < 0, y > (height - 1) * z):
         outside |= (beyond & (z > 0)).all(axis=1)
+    before = (z >= NEAR).all(axis=1)
+    for along in (x, y):
+        place = along / np.where(before[:, None], z, 1.0)
+        outside |= before & (np.ceil(place.min(axis=1) - ROUNDING) > np.floor(place.max(axis=1) + ROUNDING))
     inside: Int = np.flatnonzero(~outside)
     return inside
 
@@ -76,12 +86,11 @@ def _draw(image: Float, plane: Float, index: int, inverse_depth: Float, ids: Int
         return
     x = np.arange(low[0], high[0] + 1, dtype=np.float64)
     y = np.arange(low[1], high[1] + 1, dtype=np.float64)[:, None]
-    following = np.roll(image, -1, axis=0)
+    following = np.concatenate([image[1:], image[:1]])
     turn = np.sign((image[:, 0] * following[:, 1] - following[:, 0] * image[:, 1]).sum())
     inside: Bool = np.ones((len(y), len(x)), bool)
-    for start, end in zip(image, following, strict=True):
-        side = turn * (end - start)
-        inside &= side[0] * (y - start[1]) >= side[1] * (x - start[0])
+    for (from_x, from_y), (side_x, side_y) in zip(image.tolist(), (turn * (following - image)).tolist(), strict=True):
+        inside &= side_x * (y - from_y) >= side_y * (x - from_x)
     window = np.s_[low[1] : high[1] + 1, low[0] : high[0] + 1]
     depth = plane[0] * x + (plane[1] * y + plane[2])
     inside &= depth > inverse_depth[window]
