@@ -13,6 +13,9 @@ DATASETS := data/test data/test4k
 WORKERS := 2
 SECONDS := 10
 
+# Tests start linecad in many processes, and without kept bytecode each of these compiles all of it again.
+unexport PYTHONDONTWRITEBYTECODE
+
 .DEFAULT_GOAL := help
 .PHONY: help demo test test-all lint check results clean
 

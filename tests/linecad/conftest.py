@@ -1,11 +1,13 @@
 """A made scene: two boxes with a grid of edges on two faces each, seen by a known camera."""
 
+import zlib
 from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 import pytest
 
+import linecad.camera.distortion
 from linecad.arrays import Float, Int
 from linecad.geometry import project
 from linecad.graph.build import build_line_graph
@@ -23,6 +25,22 @@ BOXES = [
     [(1, 9.0, [-5.4, -4.4, -3.2, -2.2], HIGH), (0, -2.2, [9.0, 10.4, 12.5, 16.0], HIGH)],
     [(1, 7.0, [2.6, 3.5, 4.4, 5.6], LOW), (0, 2.6, [7.0, 8.6, 11.0], LOW)],
 ]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def bends_found_once():
+    """The bend of one photo is looked for once for all tests of a process: most of them open the same samples."""
+    find_bend, known = linecad.camera.distortion.find_bend, {}
+
+    def remember(photo):
+        key = (zlib.crc32(photo.pixels), repr(photo))
+        if key not in known:
+            known[key] = find_bend(photo)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(linecad.camera.distortion, "find_bend", remember)
+        yield
 
 
 @dataclass(frozen=True)
