@@ -131,16 +131,20 @@ def _pure(known: Bool, blurred: float) -> Bool:
 
 def _continued(colours: Pixels, known: Bool, reach: float) -> Pixels:
     """The colours where they are known, those of the nearest known texel up to `reach` texels away, else PLAIN."""
+    if known.all():
+        return colours
     painted = np.full_like(colours, PLAIN)
-    if not known.any():
+    places = np.flatnonzero(known)
+    if len(places) == 0:
         return painted
     distance, label = cv2.distanceTransformWithLabels(
         _bytes(~known), cv2.DIST_L2, cv2.DIST_MASK_5, labelType=cv2.DIST_LABEL_PIXEL
     )
     source = np.zeros(int(label.max()) + 1, np.int64)
-    source[label[known]] = np.flatnonzero(known)
-    near = distance <= reach
-    painted[near] = colours.reshape(-1, 3)[source[label[near]]]
+    source[label.ravel()[places]] = places
+    cv2.copyTo(colours, _bytes(known), painted)
+    beside = np.flatnonzero((distance <= reach) & ~known)
+    painted.reshape(-1, 3)[beside] = colours.reshape(-1, 3)[source[label.ravel()[beside]]]
     return painted
 
 
