@@ -54,7 +54,7 @@ def _in_view(camera: Float, matrix: Float, width: int, height: int) -> Int:
     outside = (z < NEAR).all(axis=1)
     for beyond in (x < 0, x > (width - 1) * z, y < 0, y > (height - 1) * z):
         outside |= (beyond & (z > 0)).all(axis=1)
-    before = (z >= NEAR).all(axis=1)
+    before: Bool = np.asarray((z >= NEAR).all(axis=1))
     for along in (x, y):
         place = along / np.where(before[:, None], z, 1.0)
         outside |= before & (np.ceil(place.min(axis=1) - ROUNDING) > np.floor(place.max(axis=1) + ROUNDING))

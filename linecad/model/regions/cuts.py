@@ -56,12 +56,13 @@ def _takes(costs: Int, borders: Borders, label: Int, number: int) -> Bool:
     was = cost * (label[one] != label[other])
     rise = costs[:, number] - costs[np.arange(count), label]
     # What either cell of a border saves there by taking the label while the other stays as it is; all if both take it.
-    first, second = was - cost * (label[other] != number), was - cost * (label[one] != number)
+    here, there = np.concatenate([one, other]), np.concatenate([other, one])
+    both_take = np.concatenate([cost, cost])
+    takes_alone = np.concatenate([was, was]) - both_take * (label[there] != number)
 
     def saved(takes: Bool) -> Int:
         """By each cell (C,) where others take the label."""
-        of_one, of_other = np.where(takes[other], cost, first), np.where(takes[one], cost, second)
-        return _sums(one, of_one, count) + _sums(other, of_other, count)
+        return _sums(here, np.where(takes[there], both_take, takes_alone), count)
 
     takes, is_open = np.zeros(count, bool), label != number
     if not (is_open & (rise < saved(is_open))).any():

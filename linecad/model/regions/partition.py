@@ -30,18 +30,16 @@ def extended(segments: Float, width: int, height: int, step: float, meets: int =
     corners = np.array([[0, 0], [width, 0], [width, height], [0, height]]) - 0.5
     lines, own = np.empty((MOST_LINES + 4, 2, 2)), np.empty((MOST_LINES + 4, 2, 2))
     lines[:4] = own[:4] = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    reach = np.zeros(MOST_LINES + 4)  # px beside each of `own`, in which a weaker line cuts nothing off
     rows = np.full(MOST_LINES + 4, -1)
     count = 4
     for row, segment in enumerate(segments):
         if count == len(lines):
             break
-        middle, along = segment.mean(axis=0), segment[1] - segment[0]
+        middle, along = (segment[0] + segment[1]) / 2, segment[1] - segment[0]
         half = float(np.linalg.norm(along)) / 2
         along = along / (2 * half)
-        if row >= meets and (
-            _is_beside(own[4:count], middle, along, half, BESIDE * step)
-            or _is_beside(own[4 : 4 + (rows[4:count] < meets).sum()], middle, along, half, BESIDE_MEET * step)
-        ):
+        if row >= meets and _is_beside(own[4:count], reach[4:count], middle, along, half):
             continue
         place = _crossings(lines[:count], middle, along)
         after, before = place[place >= half - OVERSHOT * step], place[place <= OVERSHOT * step - half]
@@ -49,6 +47,7 @@ def extended(segments: Float, width: int, height: int, step: float, meets: int =
             continue  # it lies outside the photo
         lines[count] = middle + along * np.array([[before.max()], [after.min()]])
         own[count], rows[count] = segment, row
+        reach[count] = (BESIDE_MEET if row < meets else BESIDE) * step
         count += 1
     return lines[:count], rows[:count]
 
@@ -74,17 +73,19 @@ def draw(cells: list[shapely.Polygon], shape: tuple[int, int], step: float) -> I
     return drawn
 
 
-def _is_beside(own: Float, middle: Float, along: Float, half: float, reach: float) -> bool:
-    """Whether a segment runs within `reach` px beside one of those before it (M, 2, 2)."""
+def _is_beside(own: Float, reach: Float, middle: Float, along: Float, half: float) -> bool:
+    """Whether a segment runs beside one of those before it (M, 2, 2), within the `reach` (M,) px of that."""
     if len(own) == 0:
         return False
     across = np.array([-along[1], along[0]])
     direction = own[:, 1] - own[:, 0]
     is_parallel = np.abs(direction @ across) < PARALLEL * np.hypot(direction[:, 0], direction[:, 1])
     own = own[is_parallel] - middle
-    near = np.abs((own[:, 0] + own[:, 1]) @ across) < 2 * reach
-    place = own[near] @ along
-    overlap = np.minimum(place.max(axis=1), half) - np.maximum(place.min(axis=1), -half)
+    near = np.abs((own[:, 0] + own[:, 1]) @ across) < 2 * reach[is_parallel]
+    if not near.any():
+        return False
+    start, end = (own[near] @ along).T
+    overlap = np.minimum(np.maximum(start, end), half) - np.maximum(np.minimum(start, end), -half)
     return bool((overlap > half).any())
 
 
