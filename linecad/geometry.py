@@ -11,6 +11,7 @@ from itertools import permutations
 import numpy as np
 
 from linecad.arrays import Float, Int
+from linecad.directions import Turns, across, components
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
 DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
@@ -52,13 +53,14 @@ def world_rays(pixels: Float, K: Float, R: Float) -> Float:
     return rays
 
 
-def depths_beside(rays: Float, points: Float, axis: Int) -> Float:
+def depths_beside(rays: Float, points: Float, axis: Int, turns: Turns = ()) -> Float:
     """Camera depths (M,) at which rays pass nearest to lines, measured across these.
 
-    The world rays (M, 3) have camera depth 1; the lines run along `axis` (M,) through points (M, 3).
+    The world rays (M, 3) have camera depth 1; the lines run along `axis` (M,) through points (M, 3), where `turns` are
+    those of further frames.
     """
-    across = np.stack([(axis + 1) % 3, (axis + 2) % 3], axis=1)
-    ray, fixed = (np.take_along_axis(places, across, axis=1) for places in (rays, points))
+    sides = across(axis)
+    ray, fixed = (np.take_along_axis(components(places, turns), sides, axis=1) for places in (rays, points))
     depths: Float = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
     return depths
 
@@ -71,7 +73,7 @@ def project(points: Float, K: Float, R: Float) -> Float:
 
 
 def vanishing_points(K: Float, R: Float) -> Float:
-    """Homogeneous vanishing points (3, 3) of the axes x, y, z, one a row."""
+    """Homogeneous vanishing points (M, 3) of the axes in the columns of R (3, M), one a row."""
     points: Float = (K @ R).T
     return points
 

@@ -1,17 +1,20 @@
 """The records of the line graph: segments with their axes, the graph that goes into a solver, what comes out.
 
 Words: a *segment* is in the image, a *line* is in space, an *edge* joins two nodes of the line graph, a *crossing* is
-where two segments meet in the image, an *axis* is 0, 1 or 2 (x, y, z), a *depth* is the camera z of a point. Frames of
+where two segments meet in the image, an *axis* is the number of a direction (`linecad.directions`): 0, 1, 2 for x, y, z,
+3 and more for the level axes of further frames. A *depth* is the camera z of a point. Frames of
 reference are those of `linecad.scene`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, get_args
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int, Text, check_lengths, check_not_negative, check_words, freeze
+from linecad.directions import UP, Turns, common_frame, components, directions_of, frame_of
 
 EdgeKind = Literal["L", "T", "X", "collinear"]
 Formulation = Literal["gain", "paper"]  # the programs over all crossings
@@ -29,14 +32,14 @@ class Segments:
     """Straight pieces of image, labelled by the axis of the line that they show."""
 
     ends: Float  # (N, 2, 2) px, both ends, x and y
-    axis: Int  # (N,) 0, 1, 2 or -1 where it is not known
+    axis: Int  # (N,) or -1 where it is not known
 
     def __post_init__(self) -> None:
         freeze(self, "ends", np.float64, (None, 2, 2))
         freeze(self, "axis", np.int64, (None,))
         check_lengths(self, len(self.ends), ["axis"])
-        if len(self.axis) and not (self.axis.min() >= -1 and self.axis.max() <= 2):
-            raise ValueError("Segments.axis holds a number outside -1, 0, 1, 2")
+        if len(self.axis) and self.axis.min() < -1:
+            raise ValueError(f"Segments.axis holds {self.axis.min()}, expected -1 or the number of a direction")
 
     def __len__(self) -> int:
         return len(self.ends)
@@ -63,12 +66,18 @@ class ManhattanFrame:
     rotation: Float  # (3, 3) world to camera; columns are the axes x, y, z in the camera frame, det +1
     residual: float  # root mean square angle between the segments and their vanishing points, rad
     explained: float  # share of the segment length that points to one of the three vanishing points, 0 to 1
+    turns: Turns = ()  # of the further frames that lines may run along, against this one
 
     def __post_init__(self) -> None:
         freeze(self, "rotation", np.float64, (3, 3))
         off = np.abs(self.rotation @ self.rotation.T - np.eye(3)).max()
         if off > 1e-6 or np.linalg.det(self.rotation) < 0:
             raise ValueError(f"ManhattanFrame.rotation is not a rotation (off by {off:.3g})")
+
+    @property
+    def axes(self) -> Float:
+        """(3, K) every direction in the camera frame, one a column: the rotation, then those of further frames."""
+        return self.rotation if not self.turns else self.rotation @ directions_of(self.turns).T
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,8 +125,9 @@ class LineGraph:
     """The paper's line graph: nodes are segments, edges are crossings that may be real.
 
     A line of known axis through a known segment has one unknown, the depth s_i of the segment's middle. Lines i and j
-    of different axes meet in space exactly when they agree in the third coordinate, s_i d_i = s_j d_j with d the ray's
-    component in that coordinate: log s_i - log s_j = log_ratio, within `tolerance` (design: one depth per line).
+    of different axes meet in space exactly when they agree in the component along the normal of the plane that they
+    span, s_i d_i = s_j d_j with d that component of the ray: log s_i - log s_j = log_ratio, within `tolerance` (design:
+    one depth per line). In one frame that is the third coordinate.
     """
 
     segments: Segments  # N; each passes exactly through the vanishing point of its axis
@@ -129,12 +139,13 @@ class LineGraph:
     kind: Text  # (E,) L, T, X, collinear
     corner: Bool  # (E,) a line of the third axis passes too (a Y or W junction)
     weight: Float  # (E,) the paper's w_ij, positive
-    coordinate: Int  # (E,) axis in which the two lines must agree, the paper's alpha
+    coordinate: Int  # (E,) axis along which the two lines must agree, the paper's alpha
     log_ratio: Float  # (E,) c_ij: log s_i - log s_j of two lines that meet; 0 where not possible
     tolerance: Float  # (E,) half width of the interval about log_ratio that pixel noise explains
     possible: Bool  # (E,) False where the two lines lie on opposite sides of the camera in `coordinate`
     informative: Bool  # (E,) False where the tolerance is so wide that the crossing says nothing about depth
     depths: LineDepths | None = None  # what unary cues tell
+    turns: Turns = ()  # of further frames
 
     def __post_init__(self) -> None:
         freeze(self, "rays", np.float64, (None, 3))
@@ -164,6 +175,34 @@ class LineGraph:
         """(N,) axis of each line."""
         return self.segments.axis
 
+    @cached_property
+    def components(self) -> Float:
+        """(N, K) of `rays` along every direction."""
+        return components(self.rays, self.turns)
+
+    @cached_property
+    def end_components(self) -> Float:
+        """(N, 2, K) of `end_rays` along every direction."""
+        return components(self.end_rays, self.turns)
+
+    @cached_property
+    def in_one_frame(self) -> Bool:
+        """(E,) whether both lines of a crossing are of one frame, so that what is known of three axes holds for it.
+
+        An upright line is of the frame that most of its crossings are in, the first of equals.
+        """
+        if not self.turns:
+            return np.ones(len(self.edges), bool)
+        axis = self.axis[self.edges]
+        frame = common_frame(*axis.T)
+        count = np.zeros((len(self.segments), len(self.turns) + 1), np.int64)
+        crosses = (frame >= 0) & (axis[:, 0] != axis[:, 1])
+        for side in range(2):
+            np.add.at(count, (self.edges[crosses, side], frame[crosses]), 1)
+        home = np.where(self.axis == UP, count.argmax(axis=1), frame_of(self.axis))
+        own = home[self.edges]
+        return np.asarray(own[:, 0] == own[:, 1])
+
     def misfit(self, log_depth: Float) -> Float:
         """By how much log depths (N,) miss the ratio that each crossing asks for (E,): |log s_i - log s_j - c_ij|."""
         first, second = self.edges.T
@@ -182,6 +221,7 @@ class LineGraph:
             end_rays=self.end_rays[keep],
             edges=new[self.edges[inside]],
             depths=None if self.depths is None else self.depths.subset(new),
+            turns=self.turns,
             **fields,
         )
 

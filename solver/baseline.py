@@ -45,7 +45,7 @@ def solve_baseline(graph: LineGraph, time_limit_s: float) -> Baseline:
     near = 1.0 / end_ratios(graph).min(axis=1)  # depth of the middle when the near end has depth 1
     rows = np.arange(edges)
     i, j = graph.edges.T
-    own, other = graph.rays[i, graph.coordinate], graph.rays[j, graph.coordinate]
+    own, other = graph.components[i, graph.coordinate], graph.components[j, graph.coordinate]
     # s_i d_i - s_j d_j <= slack and the same with the other sign; columns are the depths, then the slacks.
     columns = np.concatenate([i, j, lines + rows])
     minus = -np.ones(edges)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from linecad.directions import across, count_of, third
 from linecad.line_graph import LineGraph
 
 
@@ -10,15 +11,15 @@ def check_graph(graph: LineGraph) -> None:
     axis = graph.axis
     if (axis < 0).any():
         raise ValueError(f"segment {int(np.argmin(axis))} of the line graph has no axis")
+    if (axis >= count_of(graph.turns)).any():
+        raise ValueError(f"segment {int(np.argmax(axis))} of the line graph has axis {axis.max()}, which is no direction")
     if len(graph.edges) == 0:
         return
     i, j = graph.edges.T
     collinear = graph.kind == "collinear"
     same = axis[i] == axis[j]
-    fits = np.where(
-        collinear, same & (graph.coordinate != axis[i]), ~same & (graph.coordinate == 3 - axis[i] - axis[j])
-    )
-    fits &= (graph.coordinate >= 0) & (graph.coordinate <= 2)
+    one_of = (graph.coordinate[:, None] == across(axis[i])).any(axis=1)
+    fits = np.where(collinear, same & one_of, ~same & (graph.coordinate == third(axis[i], axis[j])))
     if not fits.all():
         k = int(np.argmin(fits))
         raise ValueError(

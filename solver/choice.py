@@ -6,6 +6,7 @@ from typing import NoReturn
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import count_of
 from linecad.errors import SolverError
 from linecad.line_graph import LineGraph
 from solver.depths import end_ratios
@@ -29,9 +30,12 @@ class Choice:
 
 
 def boundaries(graph: LineGraph, connected: Bool) -> Bool:
-    """(N,) the lines that meet lines of both other axes: the smallest B that (19) allows for these crossings."""
-    i, j = graph.edges[connected & (graph.kind != "collinear")].T
-    met = np.zeros((len(graph.segments), 3), bool)
+    """(N,) the lines that meet lines of both other axes of their frame.
+
+    The smallest B that (19) allows for these crossings.
+    """
+    i, j = graph.edges[connected & (graph.kind != "collinear") & graph.in_one_frame].T
+    met = np.zeros((len(graph.segments), count_of(graph.turns)), bool)
     met[i, graph.axis[j]] = True
     met[j, graph.axis[i]] = True
     found: Bool = met.sum(axis=1) == 2

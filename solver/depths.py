@@ -8,6 +8,7 @@ to 1 .. depth_range, so every line fits, however far it runs away from the camer
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.directions import across
 from linecad.line_graph import LineGraph
 
 VANISHING_TOLERANCE = 1e-6  # of the middle ray's length: how far a segment may miss the vanishing point of its axis
@@ -17,13 +18,13 @@ def end_ratios(graph: LineGraph) -> Float:
     """(N, 2) depth of each end over the depth of the segment's middle, positive.
 
     From the paper's (5): along the line only the coordinate of its axis changes, so s d_beta = lambda_a d_a,beta for
-    the two other coordinates beta, solved by least squares. Raises ValueError where a segment does not pass through the
+    the two components beta across it, solved by least squares. Raises ValueError where a segment does not pass through the
     vanishing point of its axis (the two coordinates disagree) or ends in it.
     """
     lines = np.arange(len(graph.segments))
-    across = np.stack([np.where(graph.axis == 0, 1, 0), np.where(graph.axis == 2, 1, 2)], axis=1)  # the other axes
-    middle = graph.rays[lines[:, None], across]
-    ends = graph.end_rays[lines[:, None, None], [[0], [1]], across[:, None, :]]
+    sides = across(graph.axis)
+    middle = graph.components[lines[:, None], sides]
+    ends = graph.end_components[lines[:, None, None], [[0], [1]], sides[:, None, :]]
     scale = np.linalg.norm(middle, axis=1)
     lengths = (ends**2).sum(axis=2)
     ends_there = (scale == 0) | (lengths == 0).any(axis=1)

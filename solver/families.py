@@ -1,7 +1,8 @@
 """The sub-graphs that the paper's families of constraints speak about: short cycles, parallel pairs, sides of a line.
 
 Edges and lines are given by their indices in the LineGraph. Collinear edges stand in none of these sub-graphs, since
-the families speak about lines of different axes that meet. All are found by sorting half edges, an edge as seen from
+the families speak about lines of different axes that meet, nor do edges between level lines of two frames: each
+sub-graph is one of the lines of a single frame (`LineGraph.in_one_frame`). All are found by sorting half edges, an edge as seen from
 one of its lines, so that graphs of thousands of lines take a fraction of a second.
 """
 
@@ -11,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Int
+from linecad.directions import UP, partner
 from linecad.line_graph import LineGraph
 from solver.options import Family
 
@@ -176,7 +178,7 @@ def find_two_sides(graph: LineGraph) -> tuple[TwoSides, ...]:
 
 def _half_edges(graph: LineGraph, use: Bool) -> tuple[Int, Int, Int]:
     """(line, other line, edge) of both directions of the edges to use, by line, then axis and number of the other."""
-    edge = np.flatnonzero(use)
+    edge = np.flatnonzero(use & graph.in_one_frame)
     i, j = graph.edges[edge].T
     line, other, edge = np.concatenate([i, j]), np.concatenate([j, i]), np.concatenate([edge, edge])
     order = np.lexsort([other, graph.axis[other], line])
@@ -211,10 +213,9 @@ def _pairs(graph: LineGraph, use: Bool) -> ParallelPairs:
     one, two = one[order], two[order]
     start = _group_starts(other[one], other[two])
     lines = np.column_stack([other[one[start]], other[two[start]]])
-    axis = graph.axis[lines[:, 0]]
     return ParallelPairs(
         lines=lines,
-        axes=np.column_stack([np.where(axis == 0, 1, 0), np.where(axis == 2, 1, 2)]),
+        axes=_other_axes(graph.axis[lines[:, 0]], graph.axis[line[one[start]]]),
         start=np.append(start, len(one)),
         neighbour_axis=graph.axis[line[one]],
         first=edge[one],
@@ -222,10 +223,16 @@ def _pairs(graph: LineGraph, use: Bool) -> ParallelPairs:
     )
 
 
+def _other_axes(axis: Int, neighbour: Int) -> Int:
+    """(P, 2) the two other axes, ascending, of the frame that lines of an axis have with neighbours of another (P,)."""
+    second = np.where(axis == UP, partner(neighbour), np.where(neighbour == UP, partner(axis), UP))
+    return np.sort(np.column_stack([neighbour, second]), axis=1)
+
+
 def _neighbours(graph: LineGraph) -> list[dict[int, int]]:
     """For each line its neighbours by a crossing that says something, with the edge that leads there."""
     neighbours: list[dict[int, int]] = [{} for _ in range(len(graph.segments))]
-    use = (graph.kind != "collinear") & graph.informative & graph.possible
+    use = (graph.kind != "collinear") & graph.informative & graph.possible & graph.in_one_frame
     for edge in use.nonzero()[0].tolist():
         i, j = graph.edges[edge].tolist()
         neighbours[i][j] = neighbours[j][i] = edge

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import count_of
 from linecad.line_graph import LineGraph
 from solver.families import Families
 from solver.options import SolveOptions
@@ -164,10 +165,12 @@ class LocalSearch:
 
     def _find_removals(self, graph: LineGraph, families: Families) -> _Removals:
         """Also sets `opposite`, the side of an edge at its other line, -1 where that line has not two sides."""
-        side_at = np.full((len(graph.segments), 3), -1, np.int64)  # of each line, by the axis of the lines it meets
+        side_at = np.full((len(graph.segments), count_of(graph.turns)), -1, np.int64)  # by the axis of the lines met
         lines = np.array([two.line for two in families.two_sides], np.int64)
-        side_at[lines, np.where(graph.axis[lines] == 0, 1, 0)] = 2 * np.arange(len(lines))
-        side_at[lines, np.where(graph.axis[lines] == 2, 1, 2)] = 2 * np.arange(len(lines)) + 1
+        for number in range(2):
+            met = np.array([two.sides[number][0] for two in families.two_sides], np.int64)
+            axis = graph.axis[graph.edges[met].sum(axis=1) - lines]
+            side_at[lines, axis] = 2 * np.arange(len(lines)) + number
         owner = np.repeat(lines, 2)[self.side]
         other = graph.edges[self.side_edge].sum(axis=1) - owner
         self.opposite = side_at[other, graph.axis[owner]]

@@ -22,6 +22,7 @@ PACKAGES = ("linecad", "exporters", "solver")
 # A package imports only what stands in rows above its own; packages of one row do not know each other.
 LAYERS = (
     ("linecad", "linecad.errors", "linecad.arrays", "linecad.progress", "linecad.threads"),
+    ("linecad.directions",),
     ("linecad.line_graph",),
     ("linecad.scene",),
     ("linecad.geometry", "linecad.io", "linecad.confidence"),
@@ -43,7 +44,8 @@ LAYERS = (
 EXCEPTIONS = {("linecad.evaluation", "linecad.dataset")}
 # All that solver and exporters know of linecad; linecad calls them from its options upwards.
 KNOWN_TO_THE_PACKAGES = {
-    "linecad.errors", "linecad.arrays", "linecad.line_graph", "linecad.scene", "linecad.io.files", "linecad.io.locks",
+    "linecad.errors", "linecad.arrays", "linecad.directions", "linecad.line_graph", "linecad.scene", "linecad.io.files",
+    "linecad.io.locks",
 }  # fmt: skip
 FIRST_THAT_KNOWS_THE_PACKAGES = "linecad.options"
 

@@ -1,7 +1,7 @@
 """Labelled segments to the paper's line graph: which lines may meet, with what evidence, and what it would mean.
 
 Every crossing of two segments of different axes, each extended by `extension`, is an edge. Two lines that meet agree
-in the third coordinate alpha: s_i d_i = s_j d_j, an equation between the logs of their depths. Its tolerance is not a
+along the normal alpha of their plane: s_i d_i = s_j d_j, an equation between the logs of their depths. Its tolerance is not a
 free parameter: it is how far the equation moves when the segments move by their pixel noise.
 """
 
@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, Text
+from linecad.directions import across, third
 from linecad.geometry import PhotoLength, directions_to, vanishing_points, world_rays
 from linecad.graph.cues import Known, weigh
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
@@ -63,8 +64,8 @@ def build_line_graph(
     found = _find_crossings(segments, PhotoLength(reach.extension, EXTENSION_FLOOR).px(width))
     kind = _junction_kinds(found, END_ZONE.px(width))
     corner = _corners(found, segments.axis, CORNER_REACH.px(width))
-    rays = world_rays(segments.ends.mean(axis=1), camera.matrix, frame.rotation)
-    coordinate = 3 - segments.axis[found.edges].sum(axis=1)
+    rays = world_rays(segments.ends.mean(axis=1), camera.matrix, frame.axes)
+    coordinate = third(*segments.axis[found.edges].T)
     if collinear:
         pieces = _find_collinear(segments, _directions(segments, camera, frame), width)
         found = _joined(found, pieces)
@@ -76,7 +77,7 @@ def build_line_graph(
     tolerance = np.maximum(equation.tolerance, reach.least_tolerance)
     graph = LineGraph(
         segments=segments,
-        rays=rays,
+        rays=rays[:, :3],
         end_rays=world_rays(segments.ends, camera.matrix, frame.rotation),
         edges=found.edges,
         crossing=found.point,
@@ -89,6 +90,7 @@ def build_line_graph(
         tolerance=tolerance,
         possible=equation.possible,
         informative=equation.possible & (tolerance <= MAX_TOLERANCE),
+        turns=frame.turns,
     )
     return weigh(Known(graph, camera, frame, pixels), weights)
 
@@ -103,7 +105,7 @@ class _Equations:
 
 
 def _equations(rays: Float, spread: Float, edges: Int, coordinate: Int) -> _Equations:
-    """The equation of each edge (E, 2) in its coordinate (E,), from rays (N, 3) and how far noise moves them (N, 3)."""
+    """The equation of each edge (E, 2) in its coordinate (E,), from rays (N, K) and how far noise moves them (N, K)."""
     i, j = edges.T
     component = np.stack([rays[i, coordinate], rays[j, coordinate]], axis=1)
     noise = np.abs(np.stack([spread[i, coordinate], spread[j, coordinate]], axis=1))
@@ -188,8 +190,7 @@ def _joined(first: _Crossings, second: _Crossings) -> _Crossings:
 
 def _telling_coordinates(rays: Float, axis: Int, edges: Int) -> Int:
     """Of the two coordinates (E,) in which collinear lines agree, the one that is further from the camera's zero."""
-    first = (axis[edges[:, 0]] + 1) % 3
-    second = (axis[edges[:, 0]] + 2) % 3
+    first, second = across(axis[edges[:, 0]]).T
     size = np.abs(rays)
     by_first = np.minimum(size[edges[:, 0], first], size[edges[:, 1], first])
     by_second = np.minimum(size[edges[:, 0], second], size[edges[:, 1], second])
@@ -208,28 +209,28 @@ def _corners(found: _Crossings, axis: Int, reach: float) -> Bool:
     for edge, (i, j) in enumerate(found.edges.tolist()):
         at_node[i].append(edge)
         at_node[j].append(edge)
-    third = 3 - axis[found.edges].sum(axis=1)
+    normal = third(*axis[found.edges].T)
     is_corner = np.zeros(len(found.edges), bool)
     for own in at_node:
         mine = np.array(own, np.int64)
         if len(mine) < 2:
             continue
         near = np.linalg.norm(found.point[mine, None] - found.point[None, mine], axis=2) <= reach
-        is_corner[mine] |= (near & (third[mine, None] != third[None, mine])).any(axis=1)
+        is_corner[mine] |= (near & (normal[mine, None] != normal[None, mine])).any(axis=1)
     return is_corner
 
 
 def _directions(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Float:
     """(N, 2) unit vector in the photo from the middle of each segment to its vanishing point."""
-    points = vanishing_points(camera.matrix, frame.rotation)[segments.axis]
+    points = vanishing_points(camera.matrix, frame.axes)[segments.axis]
     return directions_to(segments.ends.mean(axis=1), points)
 
 
 def _ray_spread(segments: Segments, camera: Camera, frame: ManhattanFrame, noise: float) -> Float:
-    """How far the world rays (N, 3) of the middles move when the segments move across by `noise` px."""
+    """How far the rays (N, K) of the middles move when the segments move across by `noise` px."""
     middle, towards = segments.ends.mean(axis=1), _directions(segments, camera, frame)
-    across = np.stack([-towards[:, 1], towards[:, 0]], axis=1) * noise
-    spread: Float = world_rays(middle + across, camera.matrix, frame.rotation) - world_rays(
-        middle, camera.matrix, frame.rotation
+    beside = np.stack([-towards[:, 1], towards[:, 0]], axis=1) * noise
+    spread: Float = world_rays(middle + beside, camera.matrix, frame.axes) - world_rays(
+        middle, camera.matrix, frame.axes
     )
     return spread

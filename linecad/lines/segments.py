@@ -72,10 +72,10 @@ def group_segments(
     the length-weighted mean.
     """
     across, along = _reach(camera.width, largest_gap)
-    points = vanishing_points(camera.matrix, frame.rotation)
+    points = vanishing_points(camera.matrix, frame.axes)
     ends: list[Float] = []
     axes: list[int] = []
-    for axis in range(3):
+    for axis in range(len(points)):
         own = segments.ends[segments.axis == axis]
         lines = _gathered(own, points[axis], across, along)
         centre = _centres(own, lines)

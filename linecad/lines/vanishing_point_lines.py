@@ -70,13 +70,13 @@ def find_vanishing_point_lines(grey: NDArray[np.uint8], camera: Camera, frame: M
     least = least_evidence(grey.shape[1])
     if np.isinf(least):
         return Segments(np.zeros((0, 2, 2)), np.zeros(0, np.int64))
-    points = vanishing_points(camera.matrix, frame.rotation)
+    points = vanishing_points(camera.matrix, frame.axes)
     smooth = np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), BLUR), np.float32)
     gradient = _derivative(smooth, 1, 0), _derivative(smooth, 0, 1)
     size = np.minimum(np.hypot(*gradient), np.float32(GRADIENT_CUT))
     noise = np.maximum(cv2.boxFilter(size, -1, (SURROUNDINGS, SURROUNDINGS)), np.float32(LEAST_NOISE))
     ends, axes = [np.zeros((0, 2, 2))], [np.zeros(0, np.int64)]
-    for axis in range(3):
+    for axis in range(len(points)):
         grid = _grid_about(points[axis], grey.shape[1], grey.shape[0])
         for first in range(0, len(grid.angle), ROWS):
             rows = np.arange(first, min(first + ROWS, len(grid.angle)))

@@ -36,9 +36,9 @@ import numpy as np
 from pyscipopt import Model, Variable, quicksum
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import axis_name
 from linecad.errors import SolverError
 from linecad.line_graph import LineGraph
-from linecad.scene import AXES
 from solver.annotations import read_annotations
 from solver.choice import Choice, boundaries, objective_of
 from solver.depths import near_log_ratio
@@ -94,7 +94,7 @@ def _add_variables(graph: LineGraph, families: Families, options: SolveOptions, 
         )
     ]
     planar = {
-        (*pair.lines, axis): model.addVar(f"pi_{pair.lines[0]}_{pair.lines[1]}_{AXES[axis]}", vtype="B")
+        (*pair.lines, axis): model.addVar(f"pi_{pair.lines[0]}_{pair.lines[1]}_{axis_name(axis)}", vtype="B")
         for pair in families.pairs
         for axis in pair.axes
     }

@@ -34,7 +34,7 @@ def _log_odds(graph: LineGraph, which: Int, camera: Camera, frame: ManhattanFram
     """(M,) of the collinear edges `which` (M,) of a graph."""
     scale, segments = REFERENCE_WIDTH / camera.width, graph.segments
     middle = segments.ends.mean(axis=1)
-    along = directions_to(middle, vanishing_points(camera.matrix, frame.rotation)[segments.axis])
+    along = directions_to(middle, vanishing_points(camera.matrix, frame.axes)[segments.axis])
     first, second = graph.edges[which].T
     place = graph.crossing[which]
     # The second line's offset where the gap is, not at its middle: both run to one vanishing point.
@@ -61,7 +61,7 @@ def _across(vector: Float, along: Float) -> Float:
 def _crowd(segments: Segments, middle: Float, along: Float, which: Int, place: Float, scale: float) -> Float:
     """How many parallel segments per px lie beside the end (M,) of segments `which` at the gap in `place` (M, 2)."""
     found = np.zeros(len(which))
-    for axis in range(3):
+    for axis in np.unique(segments.axis[which]).tolist():
         parallel = np.flatnonzero(segments.axis == axis)
         for number in np.flatnonzero(segments.axis[which] == axis).tolist():
             line = which[number]
