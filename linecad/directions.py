@@ -57,6 +57,12 @@ def axis_of(name: str) -> int | None:
     return None
 
 
+def level_axes(frame: int) -> tuple[int, int]:
+    """The two level axes of a frame, 0 for the main one."""
+    first = MAIN + 2 * (frame - 1) if frame else 0
+    return first, first + 1
+
+
 def frame_of(axis: Int) -> Int:
     """The frame of each axis, 0 for the main one; the upright counts as the main one's."""
     return np.where(axis < MAIN, 0, (axis - MAIN) // 2 + 1)
@@ -69,8 +75,9 @@ def common_frame(first: Int, second: Int) -> Int:
     return np.where(either, np.maximum(one, other), np.where(one == other, one, -1))
 
 
-def partner(axis: Int) -> Int:
+def partner(axis: Int | int) -> Int:
     """The other level axis of the same frame; of the upright itself."""
+    axis = np.asarray(axis)
     further = ((axis - MAIN) ^ 1) + MAIN
     return np.where(axis < UP, 1 - axis, np.where(axis == UP, UP, further))
 

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from linecad.camera.horizontal_frames import HorizontalFrames
 from linecad.camera.photo import Photo
 from linecad.camera.refit import find_calibration
 from linecad.corrections.edits import SetFrame
@@ -103,13 +104,25 @@ def name_lines(
     """The same from raw segments, as `linecad.lines.segments.find_segments` gives them."""
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
     calibrated = find_calibration(photo, raw, on_stage, drawn)
-    camera, frame = calibrated.camera, calibrated.frame
+    camera, frames = calibrated.camera, calibrated.frames.sound
     if faint and photo.width >= SMALL_WIDTH:
         on_stage("finding faint segments")
         raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
-    pieces = label_segments(raw, camera, frame).joined(find_vanishing_point_lines(photo.grey, camera, frame))
+    frame = frames.frame
+    pieces = _labelled(raw, camera, frames).joined(find_vanishing_point_lines(photo.grey, camera, frame))
     return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
+
+
+def _labelled(raw: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:
+    """The segments that run along a direction of the frames: along the nearest of one, the most likely of several.
+
+    Directions of two frames may be so near to each other that how usual each is must help to decide.
+    """
+    if not frames.further:
+        return label_segments(raw, camera, frames.main)
+    axis = frames.labelled(raw, camera)
+    return Segments(raw.ends, axis).subset(axis >= 0)
 
 
 def connect(found: FoundLines, options: Options) -> tuple[LineGraph, LineGraph]:

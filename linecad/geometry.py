@@ -11,7 +11,7 @@ from itertools import permutations
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.directions import Turns, across, components
+from linecad.directions import across
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
 DIAGONAL_35MM = 43.27  # mm, of the 36 x 24 mm frame that a "35 mm equivalent" refers to
@@ -53,14 +53,14 @@ def world_rays(pixels: Float, K: Float, R: Float) -> Float:
     return rays
 
 
-def depths_beside(rays: Float, points: Float, axis: Int, turns: Turns = ()) -> Float:
+def depths_beside(rays: Float, points: Float, axis: Int) -> Float:
     """Camera depths (M,) at which rays pass nearest to lines, measured across these.
 
-    The world rays (M, 3) have camera depth 1; the lines run along `axis` (M,) through points (M, 3), where `turns` are
-    those of further frames.
+    The rays (M, K) have camera depth 1; the lines run along `axis` (M,) through points (M, K). Both are told by their
+    components along all directions (`linecad.directions`), in one frame by their coordinates.
     """
     sides = across(axis)
-    ray, fixed = (np.take_along_axis(components(places, turns), sides, axis=1) for places in (rays, points))
+    ray, fixed = (np.take_along_axis(places, sides, axis=1) for places in (rays, points))
     depths: Float = (ray * fixed).sum(axis=1) / (ray**2).sum(axis=1)
     return depths
 

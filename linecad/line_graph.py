@@ -186,21 +186,25 @@ class LineGraph:
         return components(self.end_rays, self.turns)
 
     @cached_property
-    def in_one_frame(self) -> Bool:
-        """(E,) whether both lines of a crossing are of one frame, so that what is known of three axes holds for it.
+    def home(self) -> Int:
+        """(N,) the frame of each line, of an upright one that which most of its crossings are in, the first of equals.
 
-        An upright line is of the frame that most of its crossings are in, the first of equals.
+        What is known of three axes at right angles holds for lines of one home.
         """
         if not self.turns:
-            return np.ones(len(self.edges), bool)
+            return np.zeros(len(self.segments), np.int64)
         axis = self.axis[self.edges]
         frame = common_frame(*axis.T)
         count = np.zeros((len(self.segments), len(self.turns) + 1), np.int64)
         crosses = (frame >= 0) & (axis[:, 0] != axis[:, 1])
         for side in range(2):
             np.add.at(count, (self.edges[crosses, side], frame[crosses]), 1)
-        home = np.where(self.axis == UP, count.argmax(axis=1), frame_of(self.axis))
-        own = home[self.edges]
+        return np.where(self.axis == UP, count.argmax(axis=1), frame_of(self.axis))
+
+    @property
+    def in_one_frame(self) -> Bool:
+        """(E,) whether both lines of a crossing are of one home."""
+        own = self.home[self.edges]
         return np.asarray(own[:, 0] == own[:, 1])
 
     def misfit(self, log_depth: Float) -> Float:

@@ -80,7 +80,7 @@ def reconstruct_lines(
     if options.uses_bodies:
         limits = with_annotations(options.solve, annotations)
         with told_in_the_photo(graph, corrected):
-            sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels, depth)
+            sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
             placed = place_lines(graph, sight, limits, on_progress, on_stage)
         solution = placed.solution
     else:

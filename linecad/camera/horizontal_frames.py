@@ -4,7 +4,7 @@ Houses of a street stand upright and are turned against each other. How many fra
 more gains in likelihood against what it costs, where segments of one wall do not count as independent.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,8 @@ WEDGE = np.radians(1.0)  # of planes through one direction
 MOST_OF_WEDGE = 5.0  # nats
 MOST_FRAMES = 8
 QUARTER = np.pi / 2
+LEAST_SHARE = 0.05  # of the segment length; shadows of a window and wings at an odd angle made frames of 2 to 4 %
+LARGEST_ERROR = np.radians(0.5)  # of a turn; a tenth of what neighbours in a street are usually turned
 
 
 @dataclass(frozen=True)
@@ -67,6 +69,20 @@ class HorizontalFrames:
         """(3 + 2 (K - 1), 3) unit vectors in the camera frame: x, y, z of the main frame, then two for each further."""
         turns = np.array([frame.turn for frame in self.further])
         return np.concatenate([self.main.rotation.T, level_directions(self.main.rotation, turns)])
+
+    @property
+    def sound(self) -> "HorizontalFrames":
+        """The main frame and those that lines of a scene are given to: seen on enough of the photo, and known well."""
+        keep = [True, *(each.share >= LEAST_SHARE and each.error <= LARGEST_ERROR for each in self.further)]
+        columns = np.repeat(keep, [3, *[2] * len(self.further)])
+        shares = self.shares[:-1][columns]
+        frames = tuple(frame for frame, is_kept in zip(self.frames, keep, strict=True) if is_kept)
+        return HorizontalFrames(self.main, frames, np.append(shares, 1 - shares.sum()))
+
+    @property
+    def frame(self) -> ManhattanFrame:
+        """The main frame with the turns of the others."""
+        return replace(self.main, turns=tuple(frame.turn for frame in self.further))
 
     def labelled(self, segments: Segments, camera: Camera) -> Int:
         """(N,) the direction that each segment most likely runs along, as its row in `directions`, or -1 for none."""

@@ -19,7 +19,7 @@ class Drawing:
 
     def __init__(self, camera: Camera, frame: ManhattanFrame) -> None:
         self.width = camera.width
-        self.vanishing = vanishing_points(camera.matrix, frame.rotation)
+        self.vanishing = vanishing_points(camera.matrix, frame.axes)
         self.shortest = SHORTEST_PIECE.px(camera.width)  # px below which a segment is no line of the graph
 
     def long_enough(self, ends: Float) -> Float:

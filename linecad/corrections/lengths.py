@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.directions import components
 from linecad.corrections.apply import CorrectedLines
 from linecad.geometry import depths_beside, world_rays
 from linecad.scene import Scene
@@ -45,6 +46,6 @@ def _length(scene: Scene, row: int, segment: Float) -> float:
     ends, axis = scene.lines.ends[row], int(scene.lines.axis[row])
     if not len(scene.lines.pieces[row]):
         return float(np.linalg.norm(ends[1] - ends[0]))
-    rays = world_rays(segment, scene.camera.matrix, scene.rotation)
-    depth = depths_beside(rays, ends[[0, 0]], np.full(2, axis))
+    rays = components(world_rays(segment, scene.camera.matrix, scene.rotation), scene.turns)
+    depth = depths_beside(rays, components(ends[[0, 0]], scene.turns), np.full(2, axis))
     return float(np.abs(np.diff(depth * rays[:, axis]))[0])

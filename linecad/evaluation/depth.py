@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import components
 from linecad.evaluation.draughting.shapes import nearest_faces
 from linecad.geometry import depths_beside, segment_coordinates, world_rays
 from linecad.scene import Face, Plane, Scene
@@ -96,7 +97,7 @@ def depths_of(scene: Scene, pixels: Float, which: Int) -> Float:
     """Camera depth (M,) at which the ray of each pixel (M, 2) passes nearest to line `which` (M,); NaN for NO_LINE."""
     has = which != NO_LINE
     line = which[has]
-    rays = world_rays(pixels[has], scene.camera.matrix, scene.rotation)
+    rays = components(world_rays(pixels[has], scene.camera.matrix, scene.rotation), scene.turns)
     found = np.full(len(pixels), np.nan)
-    found[has] = depths_beside(rays, scene.lines.ends[line, 0], scene.lines.axis[line])
+    found[has] = depths_beside(rays, components(scene.lines.ends[line, 0], scene.turns), scene.lines.axis[line])
     return found

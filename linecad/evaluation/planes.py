@@ -6,6 +6,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
+from linecad.directions import components
 from linecad.geometry import world_rays
 from linecad.scene import Scene
 
@@ -72,11 +73,12 @@ def _true_planes(truth: Truth) -> tuple[Float, Float, Int]:
 def _matches(scene: Scene, truth: Truth, axis: int, place: float, lines: Int, normal: Float, offset: Float) -> Bool:
     """Which true planes (P,) a found one is, its offset being in metres."""
     # The found normal in the truth's world: through the camera, which both share.
-    turned = truth.rotation.T @ scene.rotation[:, axis]
+    axes = components(scene.rotation, scene.turns)
+    turned = truth.rotation.T @ axes[:, axis]
     parallel = np.abs(normal @ turned) >= np.cos(PLANE_ANGLE)
     pixels = scene.lines.segment[lines].mean(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = place / world_rays(pixels, scene.camera.matrix, scene.rotation)[:, axis]
+        found = place / world_rays(pixels, scene.camera.matrix, axes)[:, axis]
         true = offset[:, None] / (normal @ truth.rays(pixels).T)
         error = np.median(np.abs(found / true - 1), axis=1)
     matches: Bool = parallel & (error < PLANE_DEPTH)

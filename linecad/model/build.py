@@ -13,19 +13,18 @@ from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
-from linecad.model.clean.clean import clean_lines
 from linecad.model.clean.joining import by_size
 from linecad.model.clean.roles import with_roles
-from linecad.model.clean.settling import settled
+from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
+from linecad.model.frames import FramedLines, clean_frames, in_frame, in_frames, main_planes, of_main, planes_in, planes_of, sight_in
 from linecad.model.lifting import Lifted
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
-from linecad.model.planes import find_planes
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
@@ -116,17 +115,20 @@ def build_scene(
         depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
-    cleaned = clean_lines(lines, _intersections(graph, decision, found, new_id), sight)
-    lines = by_size(cleaned.lines)
-    planes = find_planes(lines.ends[:, 0], cleaned.shared, lines.id)
+    framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
+    cleaned, framed = clean_frames(framed, _intersections(graph, decision, found, new_id), sight)
+    framed = replace(framed, lines=by_size(framed.lines))
+    planes = planes_of(framed, cleaned.shared)
+    lines = framed.in_world()
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
-    regions = find_regions(planes, lines, view.camera, view.frame.rotation, look)
-    planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation)
-    holes = find_openings(planes, lines, view.camera, view.frame.rotation, view.pixels)
-    lines = with_roles(settled(lines, planes, sight), planes, sight.forward, _rectangles(holes.openings, planes))
+    regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
+    planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
+    holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
+    framed = _drawn(framed, planes, holes.openings, sight)
     planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
-    cleaning = cleaned.note(lines)
+    cleaning = cleaned.note(framed.lines)
+    lines = framed.in_world()
     notes = (
         *_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []), regions.note, *holes.notes
     )  # fmt: skip
@@ -141,12 +143,26 @@ def build_scene(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.cuts, solution.nodes,
         ),
-        notes=(*notes, *disagreements(planes, lines, pairs)),
+        notes=(*notes, *disagreements(planes, lines, pairs, graph.turns)),
         certainty=view.certainty,
         depth_map=depth_map,
         openings=openings,
+        turns=graph.turns,
     )  # fmt: skip
-    return without_ticks(scene, sight, MIN_COMPONENT)
+    return scene if graph.turns else without_ticks(scene, sight, MIN_COMPONENT)
+
+
+def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:
+    """The lines with their ends where they stop, and what each is drawn for, by the faces of planes."""
+    outlines = outlines_of(planes)
+
+    def draw(lines: Lines, frame: int) -> Lines:
+        own_sight = sight_in(sight, frame, framed.turns)
+        own = planes_in(planes, frame, framed.turns)
+        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight)
+        return with_roles(ends_there, own, own_sight.forward, _rectangles(openings, own))
+
+    return framed.each(draw)
 
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:
@@ -190,7 +206,7 @@ def _joined_by_grids(
     The mask (N,) tells the lines of parts that are not the largest of those they were joined with.
     """
     joined = join_bodies(
-        find_window_grid_cues(graph, view.camera, view.frame.rotation, parts, lifted.offset), len(parts)
+        find_window_grid_cues(graph, view.camera, view.frame.axes, parts, lifted.offset), len(parts)
     )
     sizes = [(int(rigid[part].sum()), len(part)) for part in parts]
     scale, joined_by = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
@@ -227,7 +243,7 @@ def _normals(placed: Placed | None) -> Normals | None:
 def _rectangles(openings: tuple[Opening, ...], planes: tuple[Plane, ...]) -> Float | None:
     """Axis and offset of the wall, then u0, u1, v0, v1 of each opening, (W, 6); None where there is none."""
     wall = {plane.id: (plane.axis, plane.offset) for plane in planes}
-    rows = [(*wall[each.plane], each.u0, each.u1, each.v0, each.v1) for each in openings]
+    rows = [(*wall[each.plane], each.u0, each.u1, each.v0, each.v1) for each in openings if each.plane in wall]
     return np.array(rows) if rows else None
 
 
@@ -245,8 +261,8 @@ def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int], are_pl
     at, marked as weak.
     """
     middle = graph.segments.ends.mean(axis=1)
-    # Camera depth of a line at its segment's middle, from its two exact coordinates.
-    rays = np.where(np.isnan(lifted.offset), 0, graph.rays)
+    # Camera depth of a line at its segment's middle, from its exact coordinates.
+    rays = np.where(np.isnan(lifted.offset), 0, graph.components)
     offset = np.nan_to_num(lifted.offset)
     depth = (rays * offset).sum(axis=1) / (rays**2).sum(axis=1)
     main = parts[0]

@@ -12,6 +12,7 @@ from itertools import combinations
 import numpy as np
 
 from linecad.arrays import Float, Int
+from linecad.directions import MAIN
 from linecad.model.lifting import Lifted
 
 SAME = 0.006  # log offset within which planes of placed components are one
@@ -39,18 +40,20 @@ def join_planes(lifted: Lifted, component: Int, axis: Int) -> Lifted:
     log_scale, shared = _joined(lifted.offset, lifted.shared, component, axis)
     scale = np.append(np.exp(log_scale), 1.0)[component]
     ends, offset = lifted.ends * scale[:, None, None], lifted.offset * scale[:, None]
-    for normal in range(3):
+    for normal in range(shared.shape[1]):
         changed = np.flatnonzero(shared[:, normal] != lifted.shared[:, normal])
         for number in np.unique(shared[changed, normal]).tolist():
             # The number is that of the component that leads, whose lines have the place already.
             lead = int(np.flatnonzero(lifted.shared[:, normal] == number)[0])
             follow = changed[shared[changed, normal] == number]
-            offset[follow, normal] = ends[follow, :, normal] = offset[lead, normal]
+            offset[follow, normal] = offset[lead, normal]
+            if normal < MAIN:
+                ends[follow, :, normal] = offset[lead, normal]
     return replace(lifted, ends=ends, offset=offset, shared=shared)
 
 
 def _joined(offset: Float, shared: Int, component: Int, axis: Int) -> tuple[Float, Int]:
-    """By which log each of the C components moves, and the numbers (N, 3) with one for planes that became one."""
+    """By which log each of the C components moves, and the numbers (N, K) with one for planes that became one."""
     pieces = _pieces(offset, shared, component, axis)
     count = int(component.max(initial=-1)) + 1
     group, moved = np.arange(count), np.zeros(count)
@@ -79,11 +82,11 @@ def _joined(offset: Float, shared: Int, component: Int, axis: Int) -> tuple[Floa
 
 def _pieces(offset: Float, shared: Int, component: Int, axis: Int) -> list[_Piece]:
     found = []
-    for normal in range(3):
+    for normal in range(shared.shape[1]):
         own = np.flatnonzero((shared[:, normal] >= 0) & (component >= 0))
         for part, number in np.unique(np.column_stack([component[own], shared[own, normal]]), axis=0).tolist():
             lines = own[(component[own] == part) & (shared[own, normal] == number)]
             place = float(offset[lines[0], normal])
-            if len(lines) >= LEAST_LINES and len(np.unique(axis[lines])) == 2 and place != 0:
+            if len(lines) >= LEAST_LINES and len(np.unique(axis[lines])) > 1 and place != 0:
                 found.append(_Piece(part, normal, number, float(np.log(abs(place))), float(np.sign(place)), len(lines)))
     return found

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float
+from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.surfaces import Surface
@@ -35,12 +36,13 @@ class _Part:
 
 
 def find_faces(
-    planes: tuple[Plane, ...], lines: Lines, regions: Filled, camera: Camera, rotation: Float
+    planes: tuple[Plane, ...], lines: Lines, regions: Filled, camera: Camera, rotation: Float, turns: Turns = ()
 ) -> tuple[Plane, ...]:
     """The planes with a face for each region that shows one; a ground without lines becomes one more plane.
 
-    `rotation` (3, 3) takes world to camera.
+    `rotation` (3, 3) takes world to camera; `turns` are of further frames.
     """
+    axes = components(rotation, turns)
     labels = regions.labels
     area = camera.width * camera.height
     depth = FURTHEST * float((lines.ends @ rotation[2]).max(initial=0.0))
@@ -49,14 +51,14 @@ def find_faces(
         if number >= labels.sky:
             continue
         surface = labels.surfaces[number]
-        for region in _polygons(_before(whole, surface, depth, camera, rotation), LEAST_AREA * area):
+        for region in _polygons(_before(whole, surface, depth, camera, axes), LEAST_AREA * area):
             hidden = _polygons(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
-            parts.append(_lifted(surface, region, hidden, camera, rotation))
+            parts.append(_lifted(surface, region, hidden, camera, axes))
     parts = _snapped(parts, planes, lines)
     faces: dict[int, list[Face]] = {}
     count = 0
     for part in parts:
-        face = _face(count, part)
+        face = _face(count, part, turns)
         if face is not None:
             faces.setdefault(id(part.surface), []).append(face)
             count += 1
@@ -69,19 +71,19 @@ def _polygons(shape: shapely.Geometry, least: float) -> list[shapely.Polygon]:
 
 
 def _before(
-    region: shapely.Polygon, surface: Surface, depth: float, camera: Camera, rotation: Float
+    region: shapely.Polygon, surface: Surface, depth: float, camera: Camera, axes: Float
 ) -> shapely.Geometry:
     """The part of a region in which its surface is before the camera and no deeper than `depth`.
 
     That is one side of an image line, so that what is cut off is cut off straight.
     """
     corners = shapely.get_coordinates(region.exterior)
-    nearness = world_rays(corners, camera.matrix, rotation)[:, surface.axis] / surface.offset - 1 / depth
+    nearness = world_rays(corners, camera.matrix, axes)[:, surface.axis] / surface.offset - 1 / depth
     if nearness.min() >= 0:
         return region
     left, top, right, bottom = shapely.box(*region.bounds).buffer(1).bounds
     frame = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
-    near = world_rays(frame, camera.matrix, rotation)[:, surface.axis] / surface.offset - 1 / depth
+    near = world_rays(frame, camera.matrix, axes)[:, surface.axis] / surface.offset - 1 / depth
     kept: list[Float] = []
     for number in range(4):
         following = (number + 1) % 4
@@ -93,14 +95,15 @@ def _before(
 
 
 def _lifted(
-    surface: Surface, region: shapely.Polygon, hidden: list[shapely.Polygon], camera: Camera, rotation: Float
+    surface: Surface, region: shapely.Polygon, hidden: list[shapely.Polygon], camera: Camera, axes: Float
 ) -> _Part:
     """The rings of a region where their rays meet a surface."""
     rings = []
     for ring in (region.exterior, *region.interiors, *(part.exterior for part in hidden)):
-        rays = world_rays(shapely.get_coordinates(ring)[:-1], camera.matrix, rotation)
-        points = rays * (surface.offset / rays[:, surface.axis])[:, None]
-        points[:, surface.axis] = surface.offset
+        rays = world_rays(shapely.get_coordinates(ring)[:-1], camera.matrix, axes)
+        points = rays[:, :MAIN] * (surface.offset / rays[:, surface.axis])[:, None]
+        if surface.axis < MAIN:
+            points[:, surface.axis] = surface.offset
         rings.append(points)
     return _Part(surface, rings, len(region.interiors))
 
@@ -113,10 +116,10 @@ def _snapped(parts: list[_Part], planes: tuple[Plane, ...], lines: Lines) -> lis
     points = np.concatenate(rings)
     tolerance = SAME * float(np.linalg.norm(points, axis=1).max())
     snapped = points.copy()
-    for axis in range(3):
+    for axis in range(MAIN):
         of_planes = [plane.offset for plane in planes if plane.axis == axis]
         of_surfaces = [part.surface.offset for part in parts if part.surface.axis == axis]
-        known = np.unique(np.concatenate([of_planes, of_surfaces, lines.ends[lines.axis != axis, 0, axis]]))
+        known = np.unique(np.concatenate([of_planes, of_surfaces, lines.ends[lies_across(lines.axis, axis), 0, axis]]))
         snapped[:, axis] = _joined(points[:, axis], known, tolerance)
     starts = np.cumsum([len(ring) for ring in rings])[:-1]
     new = iter(np.split(snapped, starts))
@@ -139,16 +142,17 @@ def _joined(values: Float, known: Float, tolerance: float) -> Float:
     return joined
 
 
-def _face(number: int, part: _Part) -> Face | None:
+def _face(number: int, part: _Part, turns: Turns) -> Face | None:
     """A face; None for a region that has no area in space."""
-    flat = [axis for axis in range(3) if axis != part.surface.axis]
+    flat = sorted(across(np.array(part.surface.axis)).tolist())
     rings = [ring[(ring != np.roll(ring, 1, axis=0)).any(axis=1)] for ring in part.rings]
     outline, *others = rings
     holes = [ring for ring in others[: part.holes] if len(ring) >= LEAST_CORNERS]
     hidden = [ring for ring in others[part.holes :] if len(ring) >= LEAST_CORNERS]
     if len(outline) < LEAST_CORNERS:
         return None
-    if not shapely.Polygon(outline[:, flat], [hole[:, flat] for hole in holes]).is_valid:
+    shell, *inner = (components(ring, turns)[:, flat] for ring in (outline, *holes))
+    if not shapely.Polygon(shell, inner).is_valid:
         return None
     return Face(number, outline, tuple(holes), KINDS[part.surface.kind], tuple(hidden))
 

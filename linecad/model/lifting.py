@@ -9,14 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags_array
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu, spsolve
 
 from linecad.arrays import Bool, Float, Int, Text
+from linecad.directions import MAIN, UP, across, count_of, directions_of, in_world, lies_across, partner
 from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineDepths, LineGraph
 from linecad.model.plane_merging import MIN_TOLERANCE, NOISE_FACTOR, Merges, find_merges
 
 ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
+RIDGE = 1e-12  # of the largest weight; conditions of upright lines may say the same twice
+REFINEMENTS = 3  # after which the ridge has no part in the numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,8 +27,10 @@ class Lifted:
     """The N lines of a graph in space; the unit is free, lines of different chosen components have unrelated scales."""
 
     ends: Float  # (N, 2, 3) world
-    offset: Float  # (N, 3) the two coordinates that define each line; NaN along its own axis
-    shared: Int  # (N, 3) number of the offset that each coordinate belongs to; -1 along the line's own axis
+    # (N, K) the components along the normals of the planes that each line can lie in: the two of its frame, and of an
+    # upright line those of every frame; NaN along all other directions
+    offset: Float
+    shared: Int  # (N, K) number of the offset that each component belongs to; -1 where there is none
     residual: Float  # (E,) how far the log depths of an edge's lines are from its equation
     shift: Float  # (N,) rad by which each line moved off the plane of its segment to become exact
 
@@ -43,9 +48,9 @@ def lift(graph: LineGraph, chosen: Bool, log_depth: Float) -> Lifted:
         log_depth = fit_log_depths(graph, chosen, log_depth, merges)
         shared = _shared_coordinates(graph, chosen, merges)
     offset = _offsets(graph, shared, np.exp(log_depth))
-    ends, shift = _ends(graph, offset)
-    ends = _end_at_junctions(graph, chosen, offset, ends)
-    return Lifted(ends, offset, shared, graph.misfit(log_depth), shift)
+    along, shift = _ends(graph, offset)
+    along = _end_at_junctions(graph, chosen, offset, along)
+    return Lifted(_points(graph, offset, along), offset, shared, graph.misfit(log_depth), shift)
 
 
 def fit_log_depths(graph: LineGraph, chosen: Bool, guess: Float, merges: Merges | None = None) -> Float:
@@ -111,24 +116,31 @@ def _parts(graph: LineGraph, chosen: Bool) -> Int:
 
 
 def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = None) -> Int:
-    """Numbers (N, 3) such that two coordinates have the same number when crossings or merges make them equal."""
-    count = 3 * len(graph.segments)
-    i, j = graph.edges[chosen].T
-    # Crossing lines share one coordinate, the pieces of one line share both of theirs.
-    also = graph.axis[i] == graph.axis[j]
-    coordinate = np.r_[graph.coordinate[chosen], (3 - graph.axis[i] - graph.coordinate[chosen])[also]]
-    i, j = np.r_[i, i[also]], np.r_[j, j[also]]
+    """Numbers (N, K) such that two components have the same number when crossings or merges make them equal."""
+    directions = count_of(graph.turns)
+    has = lies_across(graph.axis[:, None], np.arange(directions))
+    edges = graph.edges[chosen]
+    # Crossing lines share one component, the pieces of one line share all of theirs.
+    pieces = edges[graph.axis[edges[:, 0]] == graph.axis[edges[:, 1]]]
+    piece, of_piece = np.nonzero(has[pieces[:, 0]])
+    coordinate = np.r_[graph.coordinate[chosen], of_piece]
+    i, j = np.concatenate([edges, pieces[piece]]).T
     if merges is not None:
         coordinate = np.r_[coordinate, merges.axis]
         i, j = np.r_[i, merges.lines[:, 0]], np.r_[j, merges.lines[:, 1]]
-    shared = group_numbers(count, np.column_stack([3 * i + coordinate, 3 * j + coordinate])).reshape(-1, 3)
-    shared[np.arange(len(graph.segments)), graph.axis] = -1
+    places = np.column_stack([directions * i + coordinate, directions * j + coordinate])
+    shared = group_numbers(directions * len(graph.segments), places).reshape(-1, directions)
+    shared[~has] = -1
     return shared
 
 
 def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
-    """One number (N, 3) for each shared coordinate: the mean of what its lines say, by their certainty."""
-    say = depth[:, None] * graph.rays
+    """One number (N, K) for each shared component: the mean of what its lines say, by their certainty.
+
+    The components of an upright line along more than two normals depend on each other: there the numbers are the
+    nearest to the means that fit together.
+    """
+    say = depth[:, None] * graph.components
     # A segment's noise moves its ray by about the same angle everywhere, so its coordinates move with its depth.
     certainty = np.broadcast_to(1 / depth[:, None] ** 2, say.shape)
     own = shared >= 0
@@ -136,49 +148,94 @@ def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
     total = np.bincount(shared[own], (say * certainty)[own], groups)
     mass = np.bincount(shared[own], certainty[own], groups)
     offset = np.full(shared.shape, np.nan)
-    offset[own] = (total / np.maximum(mass, np.finfo(float).tiny))[shared[own]]
+    number = total / np.maximum(mass, np.finfo(float).tiny)
+    if graph.turns:
+        number = _fitting(graph, shared, number, mass)
+    offset[own] = number[shared[own]]
     return offset
 
 
+def _fitting(graph: LineGraph, shared: Int, number: Float, mass: Float) -> Float:
+    """The numbers (G,) nearest to those given, by their `mass` (G,), at which every upright line has one place.
+
+    Its components along the normals of further frames are those of the place that its components x and y tell.
+    """
+    own = shared[graph.axis == UP]
+    asked = [np.unique(own[:, [0, 1, normal]], axis=0) for normal in range(MAIN, shared.shape[1])]
+    place = np.concatenate(asked)
+    vector = np.repeat(directions_of(graph.turns)[MAIN:, :2], [len(each) for each in asked], axis=0)
+    # A component that no other line shares follows from the place; it asks for nothing.
+    follows = np.bincount(shared[shared >= 0], minlength=len(number))[place[:, 2]] == 1
+    bound = place[~follows]
+    if len(bound):
+        values = np.column_stack([vector[~follows], -np.ones(len(bound))])
+        at = np.repeat(np.arange(len(bound)), 3)
+        ask = csr_matrix((values.ravel(), (at, bound.ravel())), (len(bound), len(number)))
+        spread = diags_array(1 / np.maximum(mass, np.finfo(float).tiny))
+        system = (ask @ spread @ ask.T).tocsc()
+        system = system + diags_array(np.full(len(bound), RIDGE * system.diagonal().max())).tocsc()
+        factors = splu(system)
+        for _ in range(REFINEMENTS):
+            number = number - spread @ (ask.T @ factors.solve(ask @ number))
+    number[place[follows, 2]] = (vector[follows] * number[place[follows, :2]]).sum(axis=1)
+    return number
+
+
 def _ends(graph: LineGraph, offset: Float) -> tuple[Float, Float]:
-    """Ends (N, 2, 3): the points of the exact line nearest to the rays of the segment's ends; and the angle (N,)."""
-    count = len(graph.segments)
-    rows = np.arange(count)
-    across = np.stack([(graph.axis + 1) % 3, (graph.axis + 2) % 3], axis=1)
-    fixed = np.take_along_axis(offset, across, axis=1)
-    rays = np.take_along_axis(graph.end_rays, across[:, None, :].repeat(2, axis=1), axis=2)
+    """Places (N, 2) along the exact lines nearest to the rays of the segments' ends; and the angle (N,)."""
+    rows = np.arange(len(graph.segments))
+    sides = across(graph.axis)
+    fixed = np.take_along_axis(offset, sides, axis=1)
+    rays = np.take_along_axis(graph.end_components, sides[:, None, :].repeat(2, axis=1), axis=2)
     # Of all points of a ray, the one whose two fixed coordinates are nearest to the line's.
     depth = (rays * fixed[:, None]).sum(axis=2) / np.maximum((rays**2).sum(axis=2), np.finfo(float).tiny)
-    ends = np.empty((count, 2, 3))
-    ends[rows[:, None], np.arange(2), graph.axis[:, None]] = (
-        depth * graph.end_rays[rows[:, None], np.arange(2), graph.axis[:, None]]
-    )
-    for column in range(2):
-        ends[rows[:, None], np.arange(2), across[:, column, None]] = fixed[:, column, None]
+    along = depth * graph.end_components[rows[:, None], np.arange(2), graph.axis[:, None]]
     missed = depth[..., None] * rays - fixed[:, None]
-    length = np.linalg.norm(ends, axis=2)
+    length = np.linalg.norm(_points(graph, offset, along), axis=2)
     shift = (np.linalg.norm(missed, axis=2) / np.maximum(length, np.finfo(float).tiny)).max(axis=1)
-    return ends, shift
+    return along, shift
 
 
-def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, ends: Float) -> Float:
-    """Ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
+def _points(graph: LineGraph, offset: Float, along: Float) -> Float:
+    """World points (N, 2, 3) at places (N, 2) along the exact lines."""
+    return in_world(along, graph.axis, np.take_along_axis(offset, across(graph.axis), axis=1), graph.turns)
+
+
+def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, along: Float) -> Float:
+    """Places (N, 2) of ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
     edges = np.flatnonzero(chosen & (graph.kind != "collinear"))  # those have no point in common
     line = graph.edges[edges]
     to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edges, None, None], axis=3)
     there = _ends_there(graph.kind[edges, None], graph.gap[edges], to_ends.min(axis=2))
-    place = offset[line[:, ::-1], graph.axis[line]][there]
+    place = _junctions(graph, offset, line)[there]
     end = (2 * line + to_ends.argmin(axis=2))[there]  # place in the flat (N, 2)
-    highest, lowest = np.full(2 * len(ends), -np.inf), np.full(2 * len(ends), np.inf)
+    highest, lowest = np.full(2 * len(along), -np.inf), np.full(2 * len(along), np.inf)
     np.maximum.at(highest, end, place)
     np.minimum.at(lowest, end, place)
-    along = np.take_along_axis(ends, graph.axis[:, None, None], axis=2)[..., 0]
     is_high = (along > along[:, ::-1]).ravel()
     outermost = np.where(is_high, highest, lowest)
-    moved = ends.copy()
+    moved = along.copy()
     own = np.unique(end)
-    moved[own // 2, own % 2, graph.axis[own // 2]] = outermost[own]
+    moved[own // 2, own % 2] = outermost[own]
     return moved
+
+
+def _junctions(graph: LineGraph, offset: Float, line: Int) -> Float:
+    """Places (E, 2) along pairs of lines (E, 2) where each of them meets the other.
+
+    A line of the same frame, and an upright one, stands at a component along this one's axis. A level line of another
+    frame is met where this one goes through its upright plane.
+    """
+    axis = graph.axis[line]
+    place = offset[line[:, ::-1], axis]
+    skew = np.isnan(place)
+    if skew.any():
+        own, other = line[skew], line[:, ::-1][skew]
+        vectors = directions_of(graph.turns)
+        beside, normal = partner(graph.axis[own]), partner(graph.axis[other])
+        way = offset[other, normal] - offset[own, beside] * (vectors[beside] * vectors[normal]).sum(axis=1)
+        place[skew] = way / (vectors[graph.axis[own]] * vectors[normal]).sum(axis=1)
+    return place
 
 
 def _ends_there(kind: Text, gap: Float, to_end: Float) -> Bool:

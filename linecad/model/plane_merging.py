@@ -13,6 +13,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import count_of
 from linecad.line_graph import LineGraph
 
 NOISE_FACTOR = 3.0  # standard deviations; the tolerances of the crossings cover as many
@@ -36,7 +37,7 @@ class Merges:
 def find_merges(
     graph: LineGraph, chosen: Bool, component: Int, shared: Int, log_depth: Float, normal: csr_matrix
 ) -> Merges:
-    """Planes to be merged, given the class `shared` (N, 3) of each coordinate and the component (N,) of each line.
+    """Planes to be merged, given the class `shared` (N, K) of each coordinate and the component (N,) of each line.
 
     `normal` (N, N) is the matrix of the normal equations that gave `log_depth` (N,), in units of 1 / tolerance ** 2.
     Equal classes are one plane already.
@@ -85,25 +86,25 @@ def _planes(graph: LineGraph, shared: Int, log_depth: Float) -> _Planes:
     numbers: list[int] = []
     axes: list[int] = []
     members: list[Int] = []
-    for axis in range(3):
+    for axis in range(count_of(graph.turns)):
         own = np.flatnonzero(shared[:, axis] >= 0)
         if len(own) == 0:
             continue
         order = own[np.argsort(shared[own, axis], kind="stable")]
         found, starts = np.unique(shared[order, axis], return_index=True)
         for number, lines in zip(found.tolist(), np.split(order, starts[1:]), strict=True):
-            side = np.sign(graph.rays[lines, axis])
-            if len(lines) >= FEWEST_LINES and len(np.unique(graph.axis[lines])) == 2 and abs(side.sum()) == len(side):
+            side = np.sign(graph.components[lines, axis])
+            if len(lines) >= FEWEST_LINES and len(np.unique(graph.axis[lines])) > 1 and abs(side.sum()) == len(side):
                 numbers.append(number)
                 axes.append(axis)
                 members.append(np.sort(lines))
     size = np.array([len(own) for own in members], np.int64)
     plane = np.repeat(np.arange(len(size)), size)
     line = np.concatenate([np.zeros(0, np.int64), *members])
-    ray = graph.rays[line, np.repeat(axes, size).astype(np.int64)]
+    ray = graph.components[line, np.repeat(axes, size).astype(np.int64)]
     means = csr_matrix((np.repeat(1 / size, size), (plane, line)), (len(size), len(graph.segments)))
     log_ray = np.bincount(plane, np.log(np.abs(ray)), len(size)) / size
-    side = np.sign([graph.rays[own[0], axis] for own, axis in zip(members, axes, strict=True)])
+    side = np.sign([graph.components[own[0], axis] for own, axis in zip(members, axes, strict=True)])
     return _Planes(numbers, np.array(axes, np.int64), members, side, means, log_ray, means @ log_depth + log_ray)
 
 

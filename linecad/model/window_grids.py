@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import UP, lies_across
 from linecad.geometry import PhotoLength, directions_to, vanishing_points
 from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineGraph
@@ -34,16 +35,16 @@ class _Wall:
 
 
 def find_window_grid_cues(
-    graph: LineGraph, camera: Camera, rotation: Float, bodies: list[Int], offset: Float
+    graph: LineGraph, camera: Camera, axes: Float, bodies: list[Int], offset: Float
 ) -> ScaleCues:
-    """Scale cues between bodies, each given by its lines, whose lines have coordinates `offset` (N, 3).
+    """Scale cues between bodies, each given by its lines, whose lines have components `offset` (N, K).
 
-    `rotation` (3, 3) takes world to camera.
+    `axes` (3, K) is every direction in the camera frame.
     """
     across = ACROSS.px(camera.width)
-    distance = _line_distances(graph, vanishing_points(camera.matrix, rotation))
+    distance = _line_distances(graph, vanishing_points(camera.matrix, axes))
     found: list[tuple[int, int, float, int, float]] = []
-    for normal in range(2):
+    for normal in (axis for axis in range(axes.shape[1]) if axis != UP):
         walls = [_find_wall(graph, body, offset, normal) for body in bodies]
         for first, one in enumerate(walls):
             for second in range(first + 1, len(walls)):
@@ -65,7 +66,7 @@ def find_window_grid_cues(
 
 def _find_wall(graph: LineGraph, body: Int, offset: Float, normal: int) -> _Wall | None:
     """The wall of a body with the given normal, None where it has none."""
-    own = body[graph.axis[body] != normal]
+    own = body[lies_across(graph.axis[body], normal)]
     place = np.log(np.maximum(np.abs(offset[own, normal]), np.finfo(float).tiny))
     side = np.sign(offset[own, normal])
     length = graph.segments.length[own]
@@ -87,7 +88,7 @@ def _line_distances(graph: LineGraph, vanishing: Float) -> list[tuple[Int, Float
     """
     middle = graph.segments.ends.mean(axis=1)
     found = []
-    for axis in range(3):
+    for axis in range(len(vanishing)):
         own = np.flatnonzero(graph.axis == axis)
         place = np.full(len(middle), -1)
         place[own] = np.arange(len(own))

@@ -14,7 +14,7 @@ class Lines:
     """The lines in space of a scene, with the segments that show them."""
 
     id: Int  # (N,) unique, not negative
-    axis: Int  # (N,) 0, 1, 2
+    axis: Int  # (N,) number of a direction: 0, 1, 2, and from 3 on those of further frames
     segment: Float  # (N, 2, 2) px
     ends: Float  # (N, 2, 3) world, in the scene's unit
     is_boundary: Bool  # (N,) at the meeting of two planes
@@ -44,12 +44,10 @@ class Lines:
         self._freeze_pieces()
         same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map", "role", "pieces"]
         check_lengths(self, len(self.id), same + ["probability"] * (len(self.probability) > 0))
-        check_not_negative(self, ["id", "component"])
+        check_not_negative(self, ["id", "axis", "component"])
         check_words(self, "confidence", CONFIDENCES)
         check_words(self, "role", ROLES)
         check_unique("Lines", self.id.tolist())
-        if not np.isin(self.axis, (0, 1, 2)).all():
-            raise ValueError("Lines.axis holds a number outside 0, 1, 2")
         if len(self.probability) and not (min(self.probability) >= 0 and max(self.probability) <= 1):
             raise ValueError("Lines.probability holds a number outside 0 to 1")
 

@@ -31,18 +31,18 @@ class Face:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """A Manhattan plane: all points whose coordinate `axis` is `offset`."""
+    """A Manhattan plane: all points whose component along the direction `axis` is `offset`."""
 
     id: int  # unique in the scene
-    axis: int  # 0, 1, 2: the normal
+    axis: int  # number of a direction: the normal
     offset: float  # world, in the scene's unit
     lines: tuple[int, ...]  # ids of the lines in it
     faces: tuple[Face, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.axis not in (0, 1, 2) or not np.isfinite(self.offset):
+        if self.axis < 0 or not np.isfinite(self.offset):
             found = f"axis {self.axis} and offset {self.offset}"
-            raise ValueError(f"Plane {self.id} has {found}, expected 0, 1 or 2 and a finite number")
+            raise ValueError(f"Plane {self.id} has {found}, expected 0 or more and a finite number")
 
     @property
     def shows_ground(self) -> bool:

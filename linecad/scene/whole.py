@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linecad.arrays import Float, check_unique, freeze
+from linecad.directions import Turns, count_of
 from linecad.scene.camera import Camera, Certainty
 from linecad.scene.lines import Intersections, Lines
 from linecad.scene.reports import DepthMapReport, SolveReport
@@ -28,6 +29,7 @@ class Scene:
     certainty: Certainty | None = None  # of camera and rotation; None in scenes that do not tell
     depth_map: DepthMapReport | None = None  # None where none was given
     openings: tuple[Opening, ...] = ()
+    turns: Turns = ()  # of the frames that lines and planes have beside the world's axes
 
     def __post_init__(self) -> None:
         freeze(self, "rotation", np.float64, (3, 3))
@@ -37,6 +39,9 @@ class Scene:
         ]:
             if not ids <= known:
                 raise ValueError(f"{name} names line {min(ids - known)}, which the scene does not have")
+        highest = max([*self.lines.axis.tolist(), *(plane.axis for plane in self.planes)], default=0)
+        if highest >= count_of(self.turns):
+            raise ValueError(f"Scene has a line or plane of axis {highest}, but {count_of(self.turns)} directions")
         check_unique("Scene.planes", [plane.id for plane in self.planes])
         check_unique("Scene.openings", [opening.id for opening in self.openings])
         walls, openings = {plane.id for plane in self.planes if plane.axis != 2}, {each.id for each in self.openings}

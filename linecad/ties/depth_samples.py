@@ -83,7 +83,7 @@ def _sample(setting: Setting, depth: DepthMap, plane: BodyPlane) -> tuple[Float,
     has = np.flatnonzero(depth.valid[row, column] & is_near)
     has = has[:: -(-len(has) // MOST_SAMPLES) or 1]
     log_depth = plane.log_offset - np.log(towards[has])
-    slant: Float = np.linalg.norm(rays[has], axis=1)
+    slant: Float = np.linalg.norm(rays[has, :3], axis=1)
     return value[has], slant, log_depth
 
 

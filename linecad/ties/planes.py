@@ -7,6 +7,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from linecad.arrays import Float, Int
+from linecad.directions import count_of, lies_across
 from linecad.ties.setting import Setting, densest_groups, sample
 
 WIDTH = 0.008  # log offset within which lines lie in one plane
@@ -50,8 +51,9 @@ def find_planes_of_bodies(setting: Setting) -> list[list[BodyPlane]]:
     found = []
     for lines in setting.lines:
         planes: list[BodyPlane] = []
-        for normal in range(3):
-            planes += _planes(setting, lines[graph.axis[lines] != normal], normal, length[lines].size, length)
+        for normal in range(count_of(graph.turns)):
+            own = lines[lies_across(graph.axis[lines], normal)]
+            planes += _planes(setting, own, normal, length[lines].size, length)
         found.append(planes)
     return found
 
@@ -61,8 +63,8 @@ def _planes(setting: Setting, lines: Int, normal: int, of: int, length: Float) -
     graph = setting.graph
     groups = []
     for side in (-1, 1):
-        own = lines[np.sign(graph.rays[lines, normal]) == side]
-        log_offset = np.log(np.abs(graph.rays[own, normal])) + setting.log_depth[own]
+        own = lines[np.sign(graph.components[lines, normal]) == side]
+        log_offset = np.log(np.abs(graph.components[own, normal])) + setting.log_depth[own]
         for middle, which in densest_groups(log_offset, length[own], WIDTH, MOST):
             if len(which) >= LEAST_LINES:
                 groups.append((float(length[own[which]].sum()), side, middle, own[which]))

@@ -23,7 +23,7 @@ class Sight:
     """The photo that the lines were found in."""
 
     matrix: Float  # (3, 3) K, px
-    rotation: Float  # (3, 3) camera from world
+    rotation: Float  # (3, K) every direction in the camera frame, x, y, z of the world first
     width: int  # px
     pixels: NDArray[np.uint8] | None  # (H, W, 3) RGB, as straight as the lines; None where there is none to look at
     depth: DepthMap | None = None  # of the photo, on the same pixels

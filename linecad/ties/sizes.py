@@ -6,12 +6,14 @@ Two bodies are compared at all ratios at once, by the correlation of how often e
 """
 
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float
+from linecad.directions import UP, across, count_of, level_axes
 from linecad.geometry import depths_beside
 from linecad.ties.setting import Setting
 
@@ -75,21 +77,24 @@ def find_sizes(setting: Setting) -> list[Sizes]:
     """The sizes of each body."""
     graph = setting.graph
     depth = np.exp(setting.log_depth)
-    points = graph.rays * depth[:, None]
+    points = graph.components * depth[:, None]
     reach = np.empty((len(depth), 2))
     for end in range(2):
-        rays = graph.end_rays[:, end]
-        reach[:, end] = np.take_along_axis(rays, graph.axis[:, None], 1)[:, 0] * depths_beside(rays, points, graph.axis)
+        along = np.take_along_axis(graph.end_components[:, end], graph.axis[:, None], 1)[:, 0]
+        beside = depths_beside(graph.end_components[:, end], points, graph.axis)
+        reach[:, end] = along * beside
     reach.sort(axis=1)
     found = []
     for lines in setting.lines:
         level: list[Float] = []
         upright: list[Float] = []
-        for axis in range(3):
+        for axis in range(count_of(graph.turns)):
             own = lines[graph.axis[lines] == axis]
-            for across in (other for other in range(3) if other != axis):
-                sizes = _distances(points[own], reach[own], depth[own], across, 3 - axis - across)
-                (upright if axis == 2 else level).append(sizes)
+            for frame in range(len(graph.turns) + 1 if axis == UP else 1):
+                sides = level_axes(frame) if axis == UP else np.sort(across(np.array(axis))).tolist()
+                for beside, normal in permutations(sides):
+                    sizes = _distances(points[own], reach[own], depth[own], beside, normal)
+                    (upright if axis == UP else level).append(sizes)
         middle = float(np.median(setting.log_depth[lines]))
         found.append(Sizes.of(np.concatenate(level), np.concatenate(upright), middle))
     return found

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
+from linecad.directions import partner
 from linecad.geometry import world_rays
 from linecad.ties.planes import BodyPlane, find_planes_of_bodies
 from linecad.ties.setting import Setting
@@ -67,7 +68,7 @@ def find_walls(setting: Setting) -> list[Wall]:
             offset = plane.side * float(np.exp(plane.log_offset))
             rays = world_rays(setting.graph.segments.ends[plane.lines].reshape(-1, 2), sight.matrix, sight.rotation)
             before = rays[rays[:, plane.normal] * offset > 0]
-            at = before[:, 1 - plane.normal] * offset / before[:, plane.normal]
+            at = before[:, int(partner(plane.normal))] * offset / before[:, plane.normal]
             if len(at) > LEAST_LINES:
                 found.append(Wall(body, plane, offset, (float(at.min()), float(at.max()))))
     return found
@@ -112,7 +113,7 @@ class StripDrawer:
 
     def seen_at(self, wall: Wall, along: Float, height: Float) -> tuple[Float, Float]:
         """Pixels (..., 2) of the photo and depths (...) of points of a wall; (0, 0) for those behind the camera."""
-        of_normal, of_along, of_height = self._projection[:, [wall.plane.normal, 1 - wall.plane.normal, 2]].T
+        of_normal, of_along, of_height = self._projection[:, [wall.plane.normal, int(partner(wall.plane.normal)), 2]].T
         seen = (wall.offset * of_normal + along[..., None] * of_along) + height[..., None] * of_height
         depth = seen[..., 2]
         pixels: Float = seen[..., :2] / np.where(depth > 0, depth, np.inf)[..., None]
@@ -149,7 +150,7 @@ class StripDrawer:
         rays = world_rays(ends, self._sight.matrix, self._sight.rotation)
         points = rays * (wall.offset / rays[..., wall.plane.normal])[..., None]
         forth = 1.0 if along[-1] >= along[0] else -1.0
-        column = np.interp(forth * points[..., 1 - wall.plane.normal], forth * along, np.arange(len(along)))
+        column = np.interp(forth * points[..., int(partner(wall.plane.normal))], forth * along, np.arange(len(along)))
         row = (np.log(np.maximum(-points[..., 2], 1e-9)) - top) * FINER / ROW
         drawn = np.zeros((ROWS * FINER, COLUMNS * FINER), np.float32)
         corners = np.rint(np.stack([column, np.clip(row, -50, 10 * ROWS)], axis=2)).astype(np.int64)

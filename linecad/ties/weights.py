@@ -3,6 +3,7 @@
 import numpy as np
 
 from linecad.arrays import Float, Int
+from linecad.directions import MAIN, UP
 from linecad.ties.candidates import Candidate, Kind
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from solver.bodies.ties import Ties
@@ -26,8 +27,9 @@ def weigh_candidates(candidates: list[Candidate], size: Int) -> Ties:
     chance = float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
     gain = np.array([log_odds_of(candidate) for candidate in candidates]) - chance
     kept = np.flatnonzero(gain >= LEAST_WEIGHT).tolist()
-    layers = [(kind, normal) for kind in REPEATING for normal in (-1, 0, 1, 2)]
+    layers = [(kind, normal) for kind in REPEATING for normal in (-1, 0, 1, UP)]
     chosen = [candidates[number] for number in kept]
+    layers += [("plane", normal) for normal in sorted({each.normal for each in chosen}) if normal >= MAIN]
     with_ground = np.append(size, size.sum())  # the ground is no crumb
     smaller = np.array([with_ground[list(candidate.bodies)].min() for candidate in chosen], np.float64)
     repeated = np.array([REPEATED if candidate.kind in REPEATING else 1.0 for candidate in chosen])

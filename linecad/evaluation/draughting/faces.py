@@ -121,7 +121,7 @@ def steps_of(shape: Shape) -> list[Float]:
         short = np.linalg.norm(along, axis=1) < STEP * shape.diagonal
         for corner in np.flatnonzero((turn * np.roll(turn, -1) < 0) & short).tolist():
             ends = ring[[corner, (corner + 1) % len(ring)]]
-            found.append(np.insert(ends, shape.plane.axis, shape.plane.offset, axis=1))
+            found.append(shape.in_world(ends))
     return found
 
 
@@ -143,7 +143,7 @@ def _recesses(scene: Scene, shapes: list[Shape]) -> int:
     for shape in shapes:
         parallel = [(each.plane, each.face) for each in shapes if each.plane.axis == shape.plane.axis]
         for hole in shape.rings[1:]:
-            points = np.insert(_inside(hole), shape.plane.axis, shape.plane.offset, axis=1)
+            points = shape.in_world(_inside(hole))
             own = points @ scene.rotation[2]
             pixels = project(points[own > 0], scene.camera.matrix, scene.rotation)
             which, depth = nearest_faces(scene, pixels, parallel)

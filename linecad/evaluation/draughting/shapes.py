@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
+from linecad.directions import MAIN, Turns, across, components, directions_of
 from linecad.geometry import ring_sides, world_rays
 from linecad.scene import Face, Plane, Scene
 
@@ -21,12 +22,21 @@ class Shape:
     plane: Plane
     face: Face
     depth: float  # median camera depth of its corners, in the scene's unit
+    turns: Turns = ()  # of further frames
 
-    @property
-    def flat(self) -> tuple[int, int]:
-        """The two axes in its plane, ascending."""
-        first, second = (axis for axis in range(3) if axis != self.plane.axis)
-        return first, second
+    def flat(self, ring: Float) -> Float:
+        """World points (V, 3) of its plane in the two axes of the plane, ascending."""
+        flat: Float = components(ring, self.turns)[:, np.sort(across(np.array(self.plane.axis)))]
+        return flat
+
+    def in_world(self, points: Float) -> Float:
+        """Points (V, 2) of its plane in the world."""
+        if self.plane.axis < MAIN:
+            return np.insert(points, self.plane.axis, self.plane.offset, axis=1)
+        vectors = directions_of(self.turns)
+        sides = np.sort(across(np.array(self.plane.axis)))
+        found: Float = points @ vectors[sides] + self.plane.offset * vectors[self.plane.axis]
+        return found
 
     @property
     def is_upright(self) -> bool:
@@ -36,17 +46,17 @@ class Shape:
     @cached_property
     def polygon(self) -> shapely.Polygon:
         """The face with its holes, in its plane."""
-        return shapely.Polygon(self.face.outline[:, self.flat], [hole[:, self.flat] for hole in self.face.holes])
+        return shapely.Polygon(self.flat(self.face.outline), [self.flat(hole) for hole in self.face.holes])
 
     @cached_property
     def rings(self) -> tuple[Float, ...]:
         """(V, 2) corners of the outline and then of each hole, without points at which nothing turns."""
-        return tuple(corners_of(ring[:, self.flat]) for ring in (self.face.outline, *self.face.holes))
+        return tuple(corners_of(self.flat(ring)) for ring in (self.face.outline, *self.face.holes))
 
     @cached_property
     def edges(self) -> Float:
         """(E, 2, 3) both ends of each side of all rings, in the world."""
-        return ring_sides(np.insert(ring, self.plane.axis, self.plane.offset, axis=1) for ring in self.rings)
+        return ring_sides(self.in_world(ring) for ring in self.rings)
 
     @property
     def diagonal(self) -> float:
@@ -56,7 +66,10 @@ class Shape:
 
 def shapes_of(scene: Scene) -> list[Shape]:
     """All faces of a scene, in ascending order of their ids."""
-    return [Shape(plane, face, float(np.median(face.outline @ scene.rotation[2]))) for plane, face in scene.faces]
+    return [
+        Shape(plane, face, float(np.median(face.outline @ scene.rotation[2])), scene.turns)
+        for plane, face in scene.faces
+    ]
 
 
 def corners_of(ring: Float) -> Float:
@@ -71,13 +84,14 @@ def corners_of(ring: Float) -> Float:
 def nearest_faces(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> tuple[Int, Float]:
     """Which of `faces` is nearest on the ray of each pixel (M, 2), NO_FACE for none, and its camera depth (M,), NaN."""
     nearest, which = np.full(len(pixels), np.inf), np.full(len(pixels), NO_FACE)
-    rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
+    rays = components(world_rays(pixels, scene.camera.matrix, scene.rotation), scene.turns)
     for number, (plane, face) in enumerate(faces):
-        flat = np.delete(np.arange(3), plane.axis)
+        flat = np.sort(across(np.array(plane.axis)))
         with np.errstate(divide="ignore", invalid="ignore"):
             depth = plane.offset / rays[:, plane.axis]
         points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
-        polygon = shapely.Polygon(face.outline[:, flat], [hole[:, flat] for hole in face.holes])
+        shell, *holes = (components(ring, scene.turns)[:, flat] for ring in (face.outline, *face.holes))
+        polygon = shapely.Polygon(shell, holes)
         shapely.prepare(polygon)
         hit = shapely.contains_xy(polygon, points) & (depth > 0) & (depth < nearest)
         nearest[hit], which[hit] = depth[hit], number

@@ -31,9 +31,9 @@ class Stops:
     is_sure: Bool  # (P,) so near that the end belongs there, whatever the photo shows
 
 
-def settled(lines: Lines, planes: tuple[Plane, ...], sight: Sight) -> Lines:
-    """The lines with their ends drawn on to where they stop."""
-    strokes = settle_ends(strokes_of(lines, sight.forward), outlines_of(planes), sight)
+def settled(lines: Lines, outlines: Float, sight: Sight) -> Lines:
+    """The lines with their ends drawn on to where they stop; `outlines` (E, 2, 3) are edges of faces."""
+    strokes = settle_ends(strokes_of(lines, sight.forward), outlines, sight)
     return with_ends(lines, strokes)
 
 

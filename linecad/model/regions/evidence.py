@@ -10,6 +10,7 @@ import cv2
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import MAIN, UP, across, components, frame_of, level_axes, partner
 from linecad.depth.normals import UNTOLD
 from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
@@ -166,20 +167,19 @@ def _rising(off: Float, reach: float, most: float) -> Float:
 
 def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
     """Cost (S,) of being outside the box of a surface's lines, and NEVER far behind all of them."""
-    ends = lines.ends[surface.lines].reshape(-1, 3)
+    ends = components(lines.ends[surface.lines], raster.turns).reshape(-1, raster.rays.shape[1])
     is_seen = np.isfinite(depth)
     met = np.where(is_seen, depth, 0.0)  # whole columns are faster than the seen samples of them
     over = np.zeros(raster.size)
-    for axis in range(3):
-        if axis != surface.axis:
-            low, high = np.percentile(ends[:, axis], [1, 99])
-            at = raster.rays[:, axis] * met
-            off = low - at
-            at -= high
-            np.maximum(off, at, out=off)
-            np.maximum(off, 0, out=off)
-            off /= max(high - low, NARROWEST * abs(surface.offset))
-            over += off
+    for axis in sorted(across(np.array(surface.axis)).tolist()):
+        low, high = np.percentile(ends[:, axis], [1, 99])
+        at = raster.rays[:, axis] * met
+        off = low - at
+        at -= high
+        np.maximum(off, at, out=off)
+        np.maximum(off, 0, out=off)
+        off /= max(high - low, NARROWEST * abs(surface.offset))
+        over += off
     own = raster.line_depth[np.isin(raster.line, surface.lines)]
     furthest = float(np.quantile(own, NEARLY_ALL)) if len(own) else 0.0
     over *= OUTSIDE_COST
@@ -197,8 +197,8 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
     for number, surface in enumerate(surfaces):
         if surface.kind != "wall":
             continue
-        along = 1 - surface.axis
-        low, high = np.percentile(lines.ends[surface.lines][:, :, along], [2, 98])
+        along = int(partner(surface.axis))
+        low, high = np.percentile(components(lines.ends[surface.lines], raster.turns)[:, :, along], [2, 98])
         before = depth[:, number]
         at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
         hidden |= (before < reach) & (at > low) & (at < high)
@@ -235,12 +235,32 @@ def sums(cell: Int, count: int, values: Float) -> Float:
 def direction_costs(raster: Raster, surfaces: list[Surface], cell: Int, count: int) -> Float:
     """Costs (count, K + 2) for each cell, by the axes along which its edges run."""
     votes = sums(cell, count, raster.votes)
-    shares = [OF_GROUND if surface.kind == "ground" else DIRECTIONS[surface.axis] for surface in surfaces]
     costs = np.zeros((count, len(surfaces) + 2))
-    for number, own in enumerate(shares):
-        costs[:, number] = -OF_EDGE * (votes * np.log(own / OF_CLUTTER)).sum(axis=1)
+    for number, surface in enumerate(surfaces):
+        own = OF_GROUND if surface.kind == "ground" else DIRECTIONS[_axis_in_frame(surface)]
+        costs[:, number] = -OF_EDGE * (_votes_in_frame(votes, surface) * np.log(own / OF_CLUTTER)).sum(axis=1)
     costs[:, SKY] = SKY_EDGE * votes.sum(axis=1)
     return costs
+
+
+def _axis_in_frame(surface: Surface) -> int:
+    """The normal of a surface in its own frame: 0, 1 or 2."""
+    return surface.axis if surface.axis < MAIN else (surface.axis - MAIN) % 2
+
+
+def _votes_in_frame(votes: Float, surface: Surface) -> Float:
+    """Votes (C, K + 1) as those (C, 4) along x, y and z of a surface's frame, of all frames for a level one, and none.
+
+    What runs along another frame is as strange to a wall as what runs along none.
+    """
+    if votes.shape[1] == MAIN + 1:
+        return votes
+    further = range(MAIN, votes.shape[1] - 1)
+    if surface.axis == UP:
+        level = [votes[:, [first, *further[first::2]]].sum(axis=1) for first in range(2)]
+        return np.column_stack([*level, votes[:, UP], votes[:, -1]])
+    own = [*level_axes(int(frame_of(np.array(surface.axis)))), UP]
+    return np.column_stack([votes[:, own], np.delete(votes, own, axis=1).sum(axis=1)])
 
 
 def colour_costs(raster: Raster, cell: Int, label: Int, columns: int) -> Float:

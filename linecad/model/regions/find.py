@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.directions import Turns
 from linecad.depth.normals import Normals
 from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.evidence import look_up
@@ -25,10 +26,12 @@ class Look:
     normals: Normals | None  # of a depth map on the photo's pixels
 
 
-def find_regions(planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, look: Look) -> Filled:
-    """What every part of the photo shows. `rotation` (3, 3) takes world to camera."""
-    view = View(camera, rotation, look.photo)
-    raster = take_raster(lines, camera, rotation, look.photo, look.normals)
+def find_regions(
+    planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, look: Look, turns: Turns = ()
+) -> Filled:
+    """What every part of the photo shows. `rotation` (3, 3) takes world to camera; `turns` are of further frames."""
+    view = View(camera, rotation, look.photo, turns)
+    raster = take_raster(lines, camera, rotation, look.photo, look.normals, turns)
     heaven = look_up(raster)
     surfaces = find_surfaces(planes, lines, camera, look.feet, heaven.is_ceiling)
     found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.normals import UNTOLD, Normals
+from linecad.directions import Turns, components
 from linecad.geometry import depths_beside, directions_to, vanishing_points, world_rays
 from linecad.scene import Camera, Lines
 
@@ -22,7 +23,6 @@ EDGE = 0.35  # gradient, in units of the noise that light itself has; a stronger
 DARK = 8.0  # grey value that is added before the square root, so that black has some noise
 ALONG_AXIS = np.sin(np.radians(8.0))  # of the angle between an edge and an image line through a vanishing point
 SHADES = 512  # in which colours are told apart: 8 of lightness, 8 of each hue
-NO_AXIS = 3  # column of the votes of edges that run along none
 GREEN = (123, 131)  # of CIE a* and b*, in bytes; less of the first and more of the second is green
 DIM, DIM_GREEN = 70, (128, 3)  # below that L*, in bytes: less a*, and more b* than a* by so much
 LIT = 0.25  # least share of a plant that is green, not dim
@@ -40,15 +40,16 @@ class Raster:
 
     shape: tuple[int, int]  # H, W
     step: float  # px between samples
-    rays: Float  # (S, 3) world, camera depth 1
+    rays: Float  # (S, K) components along all directions, camera depth 1
     colour: Picture  # (H, W, 3) CIE L*a*b* as OpenCV has it in bytes
     gradient: Float  # (S,) of the grey value, in units of its noise
-    votes: Float  # (S, 4) edge pixels along x, y, z and along none
+    votes: Float  # (S, K + 1) edge pixels along each direction and along none
     facing: Int  # (S,) axis along which what it shows faces by a depth map, or UNTOLD
     line: Int  # (T,) line of each point
     at: Int  # (T,) sample in which the point lies
-    line_rays: Float  # (T, 3)
+    line_rays: Float  # (T, K)
     line_depth: Float  # (T,)
+    turns: Turns = ()  # of further frames
 
     @property
     def size(self) -> int:
@@ -67,9 +68,9 @@ class Raster:
     def plants(self) -> Bool:
         """Mask (S,) of trees, hedges and bushes: green, and full of edges that mostly run along no axis."""
         colour = cv2.GaussianBlur(self.colour, (0, 0), 1.5)
-        votes = cv2.blur(self.votes.astype(np.float32).reshape(*self.shape, 4), (LEAVES, LEAVES))
+        votes = cv2.blur(self.votes.astype(np.float32).reshape(*self.shape, -1), (LEAVES, LEAVES))
         edges = votes.sum(axis=2)
-        rough = (edges > MANY_EDGES) & (votes[:, :, NO_AXIS] > ASTRAY * edges)
+        rough = (edges > MANY_EDGES) & (votes[:, :, -1] > ASTRAY * edges)
         light, red, yellow = (colour[:, :, channel].astype(np.int64) for channel in range(3))
         green = (red < GREEN[0]) & (yellow > GREEN[1])
         dim = (light < DIM) & (red < DIM_GREEN[0]) & (yellow - red > DIM_GREEN[1])  # in the dark all is nearly grey
@@ -103,12 +104,19 @@ class Raster:
 
 
 def take_raster(
-    lines: Lines, camera: Camera, rotation: Float, photo: Picture | None, normals: Normals | None = None
+    lines: Lines,
+    camera: Camera,
+    rotation: Float,
+    photo: Picture | None,
+    normals: Normals | None = None,
+    turns: Turns = (),
 ) -> Raster:
     """The raster of a photo (H, W, 3) RGB as straight as the lines; without one no sample has an edge.
 
-    `rotation` (3, 3) takes world to camera; `normals` are those of a depth map on the photo's pixels.
+    `rotation` (3, 3) takes world to camera, `turns` are those of further frames; `normals` are those of a depth map on
+    the photo's pixels.
     """
+    axes = components(rotation, turns)
     step = camera.width / COLUMNS
     shape = (max(1, round(camera.height / step)), COLUMNS)
     pixels = _pixels(shape, step)
@@ -117,22 +125,23 @@ def take_raster(
     facing = np.full(len(pixels), UNTOLD)
     if normals is not None:
         at_x, at_y = np.minimum(np.rint(pixels).astype(np.int64), [camera.width - 1, camera.height - 1]).T
-        facing = normals.axes_at(at_y, at_x, rotation)
+        facing = normals.axes_at(at_y, at_x, axes)
     small = np.asarray(cv2.resize(photo, shape[::-1], interpolation=cv2.INTER_AREA), np.uint8)
     line, at, points = _points_on_lines(lines, shape, step)
-    rays = world_rays(points, camera.matrix, rotation)
+    rays = world_rays(points, camera.matrix, axes)
     return Raster(
         shape=shape,
         step=step,
-        rays=np.asfortranarray(world_rays(pixels, camera.matrix, rotation)),  # planes look at one coordinate of all
+        rays=np.asfortranarray(world_rays(pixels, camera.matrix, axes)),  # planes look at one component of all
         colour=np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), np.uint8),
         gradient=_gradients(_grey(small), 0.7)[2].ravel(),
-        votes=_votes(photo, shape, step, camera, rotation),
+        votes=_votes(photo, shape, step, camera, axes),
         facing=facing,
         line=line,
         at=at,
         line_rays=rays,
-        line_depth=depths_beside(rays, lines.ends[line, 0], lines.axis[line]),
+        line_depth=depths_beside(rays, components(lines.ends[line, 0], turns), lines.axis[line]),
+        turns=turns,
     )
 
 
@@ -167,8 +176,8 @@ def _gradients(grey: NDArray[np.uint8], blur: float) -> tuple[Float, Float, Floa
     return across, down, np.asarray(np.hypot(across, down) / np.sqrt(light))
 
 
-def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, rotation: Float) -> Float:
-    """How many pixels (S, 4) of edges along each axis and along none a finer raster has in each sample."""
+def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, axes: Float) -> Float:
+    """How many pixels (S, K + 1) of edges along each of `axes` (3, K) and along none a finer raster has in each sample."""
     fine = (shape[0] * FINER, shape[1] * FINER)
     resized = np.asarray(cv2.resize(photo, fine[::-1], interpolation=cv2.INTER_AREA), np.uint8)
     across, down, strength = _gradients(_grey(resized), 0.8)
@@ -176,11 +185,12 @@ def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, 
     pixels = np.column_stack([column + 0.5, row + 0.5]) * (step / FINER) - 0.5
     along = np.column_stack([-down[row, column], across[row, column]])
     along /= np.linalg.norm(along, axis=1, keepdims=True)
-    sines = np.empty((3, len(row)))
-    for axis, point in enumerate(vanishing_points(camera.matrix, rotation)):
+    none = axes.shape[1]
+    sines = np.empty((none, len(row)))
+    for axis, point in enumerate(vanishing_points(camera.matrix, axes)):
         to = directions_to(pixels, point)
         sines[axis] = np.abs(along[:, 0] * to[:, 1] - along[:, 1] * to[:, 0])
-    votes_for = np.where(sines.min(axis=0) < ALONG_AXIS, sines.argmin(axis=0), NO_AXIS)
+    votes_for = np.where(sines.min(axis=0) < ALONG_AXIS, sines.argmin(axis=0), none)
     sample = (row // FINER) * shape[1] + column // FINER
-    votes = np.bincount(sample * 4 + votes_for, minlength=shape[0] * shape[1] * 4)
-    return votes.reshape(-1, 4).astype(np.float64)
+    votes = np.bincount(sample * (none + 1) + votes_for, minlength=shape[0] * shape[1] * (none + 1))
+    return votes.reshape(-1, none + 1).astype(np.float64)

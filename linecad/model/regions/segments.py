@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
+from linecad.directions import MAIN, Turns, components, directions_of, partner
 from linecad.geometry import angles_to, directions_to, project, vanishing_points
 from linecad.model.regions.raster import COLUMNS, Picture, Raster
 from linecad.model.regions.surfaces import Surface
@@ -38,6 +39,7 @@ class View:
     camera: Camera
     rotation: Float  # (3, 3) world to camera
     photo: Picture | None  # (H, W, 3) RGB, as straight as the lines; None where there is none to look at
+    turns: Turns = ()  # of further frames
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,7 +101,7 @@ def _edges(view: View) -> Float:
     ends = ends[np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) >= LEAST_EDGE * camera.width]
     if len(ends) == 0:
         return ends
-    points = vanishing_points(camera.matrix, view.rotation)
+    points = vanishing_points(camera.matrix, components(view.rotation, view.turns))
     sines = angles_to(ends, points)
     middle, half = ends.mean(axis=1), np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / 2
     straight = directions_to(middle, points[sines.argmin(axis=0)]) * half[:, None]
@@ -111,27 +113,31 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
     """Where walls meet each other, the ground and the ceiling."""
     walls = [index for index, surface in enumerate(surfaces) if surface.kind == "wall"][:MOST_WALLS]
     levels = [index for index, surface in enumerate(surfaces) if surface.kind in ("ground", "ceiling")]
-    boxes = {index: np.percentile(lines.ends[surfaces[index].lines].reshape(-1, 3), [2, 98], axis=0) for index in walls}
+    ends = components(lines.ends, view.turns)
+    boxes = {
+        index: np.percentile(ends[surfaces[index].lines].reshape(-1, ends.shape[2]), [2, 98], axis=0) for index in walls
+    }
     found: list[tuple[Float, tuple[int, int]]] = []
     for index in walls:
         low, high = boxes[index]
         for level in levels:
             side = FOOT_BEYOND * (high - low)
-            meet = np.array([low - side, high + side])
-            meet[:, surfaces[index].axis], meet[:, 2] = surfaces[index].offset, surfaces[level].offset
+            wall, along = surfaces[index], int(partner(surfaces[index].axis))
+            reach = np.array([low - side, high + side])[:, along]
+            meet = _in_world(wall.axis, wall.offset, along, reach, np.full(2, surfaces[level].offset), view.turns)
             found.append((meet, (index, level)))
     bottom = min([surfaces[level].offset for level in levels], default=np.inf)
     for one, other in combinations(walls, 2):
         if surfaces[one].axis == surfaces[other].axis:
             continue
         meet = np.empty((2, 3))
-        for index in (one, other):
-            meet[:, surfaces[index].axis] = surfaces[index].offset
+        meet[:, :2] = _corner(surfaces[one], surfaces[other], view.turns)
         meet[:, 2] = (
             min(bottom, boxes[one][0, 2], boxes[other][0, 2]), max(boxes[one][1, 2], boxes[other][1, 2])
         )  # fmt: skip
-        along = {index: 1 - surfaces[index].axis for index in (one, other)}
-        if all(_within(meet[0, along[index]], boxes[index][:, along[index]]) for index in (one, other)):
+        at = components(meet[0], view.turns)
+        along = {index: int(partner(surfaces[index].axis)) for index in (one, other)}
+        if all(_within(at[along[index]], boxes[index][:, along[index]]) for index in (one, other)):
             found.append((meet, (one, other)))
     shown = [
         (pixels, pair) for meet, pair in found
@@ -141,6 +147,24 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
         np.array([pixels for pixels, _ in shown]).reshape(-1, 2, 2),
         np.array([pair for _, pair in shown], np.int64).reshape(-1, 2),
     )
+
+
+def _in_world(normal: int, offset: float, along: int, reach: Float, height: Float, turns: Turns) -> Float:
+    """World points (2, 3) of a wall at places and heights (2,)."""
+    sides = {normal: np.full(2, offset), along: reach}
+    if normal < MAIN:
+        return np.column_stack([sides[0], sides[1], height])
+    vectors = directions_of(turns)
+    level: Float = sum(place[:, None] * vectors[axis] for axis, place in sides.items())
+    return np.column_stack([level[:, :2], height])
+
+
+def _corner(one: Surface, other: Surface, turns: Turns) -> Float:
+    """x and y (2,) where two walls of different normals meet."""
+    if max(one.axis, other.axis) < MAIN:
+        return np.array([one.offset, other.offset] if one.axis == 0 else [other.offset, one.offset])
+    normals = directions_of(turns)[[one.axis, other.axis], :2]
+    return np.asarray(np.linalg.solve(normals, np.array([one.offset, other.offset])))
 
 
 def _within(value: float, span: Float) -> bool:

@@ -1,0 +1,201 @@
+"""The lines of each frame in the frame's own axes, where they are Manhattan lines, and back in the world.
+
+What is known of three axes at right angles, from pieces of one line to the corners that they close, holds within one
+frame. So the lines are taken frame by frame, each as if its frame were the only one, and an upright line with the frame
+that most of its crossings are in.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.directions import MAIN, UP, Turns, components, directions_of, in_world, level_axes
+from linecad.model.clean.clean import Cleaned, clean_lines
+from linecad.model.clean.joining import joined_crossings
+from linecad.model.clean.sight import Sight
+from linecad.model.planes import find_planes
+from linecad.scene import Face, Intersections, Lines, Plane
+
+
+@dataclass(frozen=True, eq=False)
+class FramedLines:
+    """N lines, each in the axes of its frame, where it runs along x, y or z."""
+
+    lines: Lines  # N; of the main frame the world's axes
+    frame: Int  # (N,) 0 is the main one
+    turns: Turns
+
+    def of(self, frame: int) -> Int:
+        """Rows of the lines of a frame."""
+        return np.flatnonzero(self.frame == frame)
+
+    @property
+    def frames(self) -> range:
+        """The numbers of all frames."""
+        return range(len(self.turns) + 1)
+
+    def each(self, change: Callable[[Lines, int], Lines]) -> "FramedLines":
+        """The same with the lines of each frame as `change` makes them, of the lines and the number of the frame."""
+        if not self.turns:
+            return replace(self, lines=change(self.lines, 0))
+        rows = [self.of(frame) for frame in self.frames if len(self.of(frame))]
+        parts = [change(_rows(self.lines, own), int(self.frame[own[0]])) for own in rows]
+        order = np.argsort(np.concatenate(rows))
+        return replace(self, lines=_rows(_together(parts), order))
+
+    def in_world(self) -> Lines:
+        """The lines in the world, along the directions of all frames."""
+        if not self.turns:
+            return self.lines
+        return replace(self.lines, axis=self.axis, ends=_turned_back(self.lines.ends, self.frame, self.turns))
+
+    @property
+    def axis(self) -> Int:
+        """(N,) the direction of each line."""
+        axes = np.array([[*level_axes(frame), UP] for frame in self.frames])
+        return np.asarray(axes[self.frame, self.lines.axis])
+
+
+def frame_axes(frame: int) -> list[int]:
+    """The directions that are x, y and z in a frame."""
+    return [*level_axes(frame), UP]
+
+
+def in_frame(points: Float, frame: int, turns: Turns) -> Float:
+    """World points or directions (..., 3) in the axes of a frame."""
+    if not frame:
+        return points
+    turned: Float = components(points, turns)[..., frame_axes(frame)]
+    return turned
+
+
+def sight_in(sight: Sight, frame: int, turns: Turns) -> Sight:
+    """The same photo for lines in the axes of a frame."""
+    return replace(sight, rotation=in_frame(sight.rotation, frame, turns)) if frame else sight
+
+
+def planes_in(planes: tuple[Plane, ...], frame: int, turns: Turns) -> tuple[Plane, ...]:
+    """The planes that a frame has, and the level ones, in its axes."""
+    if not turns:
+        return planes
+    axes = frame_axes(frame)
+    return tuple(
+        replace(plane, axis=axes.index(plane.axis), faces=tuple(_turned(face, frame, turns) for face in plane.faces))
+        for plane in planes
+        if plane.axis in axes
+    )
+
+
+def main_planes(planes: tuple[Plane, ...]) -> tuple[Plane, ...]:
+    """The planes whose normal is an axis of the world."""
+    return tuple(plane for plane in planes if plane.axis < MAIN)
+
+
+def of_main(lines: Lines) -> Lines:
+    """The lines that run along an axis of the world."""
+    return lines if (lines.axis < MAIN).all() else _rows(lines, np.flatnonzero(lines.axis < MAIN))
+
+
+def in_frames(lines: Lines, offset: Float, home: Int, turns: Turns) -> FramedLines:
+    """Lines in the axes of their frames `home` (N,); `offset` (N, K) are the components that lines share exactly."""
+    if not turns:
+        return FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    ends, axis = lines.ends.copy(), lines.axis.copy()
+    for frame in range(1, len(turns) + 1):
+        own = np.flatnonzero(home == frame)
+        axes = frame_axes(frame)
+        turned = in_frame(lines.ends[own], frame, turns)
+        fixed = offset[own][:, None, axes]
+        ends[own] = np.where(np.isnan(fixed), turned, fixed)
+        level = own[lines.axis[own] != UP]
+        axis[level] = lines.axis[level] - axes[0]
+        along = axis[own]
+        rows = np.arange(len(own))
+        ends[own[:, None], np.arange(2), along[:, None]] = turned[rows[:, None], np.arange(2), along[:, None]]
+    return FramedLines(replace(lines, axis=axis, ends=ends), home, turns)
+
+
+def _turned_back(ends: Float, frame: Int, turns: Turns) -> Float:
+    """Points (N, M, 3) in the axes of frames (N,), in the world."""
+    found = ends.copy()
+    vectors = directions_of(turns)
+    for number in range(1, len(turns) + 1):
+        own = frame == number
+        found[own] = ends[own] @ vectors[frame_axes(number)]
+    return found
+
+
+def _turned(face: Face, frame: int, turns: Turns) -> Face:
+    rings = {name: tuple(in_frame(ring, frame, turns) for ring in getattr(face, name)) for name in ("holes", "hidden")}
+    return replace(face, outline=in_frame(face.outline, frame, turns), **rings)
+
+
+def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) -> tuple[Cleaned, FramedLines]:
+    """The lines joined and closed within each frame (`linecad.model.clean.clean`), and the crossings of all."""
+    if not framed.turns:
+        cleaned = clean_lines(framed.lines, crossings, sight)
+        return cleaned, replace(framed, lines=cleaned.lines, frame=np.zeros(len(cleaned.lines), np.int64))
+    parts, frames, row, count = [], [], np.zeros(len(framed.lines), np.int64), 0
+    highest = 0
+    for frame in framed.frames:
+        own = framed.of(frame)
+        if len(own) == 0:
+            continue
+        lines = _rows(framed.lines, own)
+        inside = np.isin(crossings.lines, lines.id).all(axis=1)
+        part = clean_lines(lines, _rows(crossings, np.flatnonzero(inside)), sight_in(sight, frame, framed.turns))
+        row[own] = part.row + count
+        shared = np.where(part.shared >= 0, part.shared + highest, part.shared)
+        highest = int(shared.max(initial=highest)) + 1
+        ids = np.arange(count, count + len(part.lines))
+        parts.append(replace(part, shared=shared, lines=replace(part.lines, id=ids)))
+        frames.append(np.full(len(part.lines), frame))
+        count += len(part.lines)
+    lines = _together([part.lines for part in parts])
+    cleaned = Cleaned(
+        lines=lines,
+        intersections=joined_crossings(crossings, framed.lines.id, row, count),
+        row=row,
+        shared=np.concatenate([part.shared for part in parts]),
+        moved=max(part.moved for part in parts),
+        depth=np.concatenate([part.depth for part in parts]),
+        reach=np.concatenate([part.reach for part in parts]),
+    )
+    return cleaned, FramedLines(lines, np.concatenate(frames), framed.turns)
+
+
+def planes_of(framed: FramedLines, shared: Int) -> tuple[Plane, ...]:
+    """The planes of all frames, of lines with offsets numbered by `shared` (N, 3) in their frames' axes."""
+    found: list[Plane] = []
+    for frame in framed.frames:
+        own = framed.of(frame)
+        lines = framed.lines
+        planes = find_planes(lines.ends[own, 0], shared[own], lines.id[own])
+        found += [replace(plane, axis=frame_axes(frame)[plane.axis]) for plane in planes]
+    if framed.turns:
+        found.sort(key=lambda plane: (-len(plane.lines), plane.lines[0], plane.axis))
+    return tuple(replace(plane, id=number) for number, plane in enumerate(found))
+
+
+def _rows(record: Lines | Intersections, rows: Int):
+    """The entries of every field of a record in the rows that an index array selects."""
+    values = {}
+    for each in fields(record):
+        value = getattr(record, each.name)
+        if isinstance(value, tuple):
+            values[each.name] = tuple(value[row] for row in rows.tolist()) if value else value
+        else:
+            values[each.name] = value[rows] if len(value) else value
+    return replace(record, **values)
+
+
+def _together(parts: list[Lines]) -> Lines:
+    """The lines of several records."""
+    values = {}
+    for each in fields(Lines):
+        found = [getattr(part, each.name) for part in parts]
+        is_tuple = isinstance(found[0], tuple)
+        values[each.name] = tuple(one for part in found for one in part) if is_tuple else np.concatenate(found)
+    return Lines(**values)
