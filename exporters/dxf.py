@@ -23,13 +23,20 @@ from exporters.camera import principal_point
 from exporters.faces import FlatFace
 from exporters.model import LineGroup, Model, group_name
 from exporters.triangulation import triangulate
-from linecad.scene import AXES, DETAIL, OUTLINE, ROLES
+from linecad.directions import MAIN, axis_name, count_of
+from linecad.scene import DETAIL, OUTLINE, ROLES
 
 _APPLICATION = "LINECAD"
 _FACES, _OUTLINES = "FACES", "FACE_OUTLINES"  # layer names; ASCII, because FreeCAD replaces other characters
 
 # AutoCAD colour index: x red, y green, z blue, the paler one where the line is no boundary.
 _COLOUR = {(0, True): 1, (0, False): 11, (1, True): 3, (1, False): 91, (2, True): 5, (2, False): 171}
+_FURTHER = (
+    (30, 31),
+    (132, 131),
+    (212, 211),
+    (52, 51),
+)  # of the level axes of further frames, in turn: orange, teal ...
 _FACE_COLOUR, _OUTLINE_COLOUR = 254, 8
 _LINEWEIGHT = {True: 35, False: 13}  # hundredths of a millimetre on paper, by boundary
 _DETAIL_LINEWEIGHT = 9
@@ -81,7 +88,12 @@ def _add_layers(document: Drawing, model: Model) -> None:
     bands = BANDS if any(group.band for group in model.groups) else ("",)
     used = {group.role for group in model.groups}
     roles = [role for role in ("", *ROLES) if role in used or (role == OUTLINE and "" not in used)]
-    for ((axis, is_boundary), colour), role, band in product(_COLOUR.items(), roles, bands):
+    further = {
+        (axis, is_boundary): _FURTHER[(axis - MAIN) % len(_FURTHER)][not is_boundary]
+        for axis in range(MAIN, count_of(model.scene.turns))
+        for is_boundary in (True, False)
+    }
+    for ((axis, is_boundary), colour), role, band in product((_COLOUR | further).items(), roles, bands):
         name = group_name(axis, is_boundary, role, band).upper()
         weight = _DETAIL_LINEWEIGHT if role == DETAIL else _LINEWEIGHT[is_boundary]
         document.layers.add(name, color=colour, lineweight=weight)
@@ -91,7 +103,7 @@ def _add_layers(document: Drawing, model: Model) -> None:
 
 def _add_lines(document: Drawing, group: LineGroup) -> None:
     space = document.modelspace()
-    kind = ((_INT16, int(group.is_boundary)), (_STRING, AXES[group.axis]))
+    kind = ((_INT16, int(group.is_boundary)), (_STRING, axis_name(group.axis)))
     told = [[(_REAL, value)] for value in group.probability.tolist()] or [[]] * len(group.ids)
     each = zip(group.ids.tolist(), group.ends.tolist(), group.roles.tolist(), told, strict=True)
     for number, (start, end), role, more in each:

@@ -19,6 +19,7 @@ class Frame:
 
     metres: float  # per unit of the scene
     eye: Float  # (3,) m, where the camera stands
+    directions: Float  # (K, 3) unit vectors that lines and normals run along
 
     def __call__(self, points: Float) -> Float:
         """Points (..., 3) of the scene in metres."""
@@ -28,7 +29,12 @@ class Frame:
     def offset(self, plane: Plane) -> float:
         """Where a plane cuts its axis, in metres."""
         offset = plane.offset * self.metres
-        return offset + float(self.eye[plane.axis]) if self.eye.any() else offset
+        return offset + float(self.direction(plane) @ self.eye) if self.eye.any() else offset
+
+    def direction(self, plane: Plane) -> Float:
+        """(3,) the unit vector along which a plane's offset is measured."""
+        direction: Float = self.directions[plane.axis]
+        return direction
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,10 +48,13 @@ class FlatFace:
     kind: FaceKind
     thing: str  # for people, what it is or belongs to: a kind, with a number where there are several, such as `wall 3`
     plane: int  # id of its plane
-    axis: int  # 0, 1, 2: the plane's normal
+    axis: int  # number of the direction that is the plane's normal
+    direction: Float  # (3,) unit vector along it
     offset: float  # m
     normal: Float  # (3,) unit, from the plane to the side that is looked at
-    in_plane: tuple[int, int]  # the two axes (u, v) in the plane for which u x v is the normal
+    # Two coordinates (u, v) of the world for which u x v is on the side of the normal: the two in the plane, and in one
+    # of a further frame those in which it looks widest.
+    in_plane: tuple[int, int]
     rings: tuple[Float, ...]  # outline first, then holes; each (V, 3) m, not closed
     hidden: tuple[Float, ...]  # each (H, 3) m, not closed: parts of it that a thing without a face hides in the photo
     opening: int | None  # id of the opening that it is the pane or a reveal of
@@ -68,7 +77,7 @@ class FlatFace:
     def moved(self, by: Float) -> "FlatFace":
         """The same face elsewhere; `by` is (3,) m."""
         rings, hidden = (tuple(ring + by for ring in each) for each in (self.rings, self.hidden))
-        return replace(self, offset=self.offset + float(by[self.axis]), rings=rings, hidden=hidden)
+        return replace(self, offset=self.offset + float(self.direction @ by), rings=rings, hidden=hidden)
 
 
 def build_faces(scene: Scene, frame: Frame) -> tuple[FlatFace, ...]:
@@ -102,10 +111,11 @@ def _things(scene: Scene, openings: dict[int, Opening]) -> dict[tuple[bool, int]
 
 def _flat_face(plane: Plane, face: Face, opening: Opening | None, thing: str, frame: Frame) -> FlatFace:
     side = _side(plane, face, opening)
-    normal = np.zeros(3)
-    normal[plane.axis] = side
-    u, v = (plane.axis + 1) % 3, (plane.axis + 2) % 3
-    in_plane = (u, v) if side > 0 else (v, u)
+    direction = frame.direction(plane)
+    normal = np.where(direction == 0, 0.0, side * direction)
+    steepest = int(np.abs(normal).argmax())
+    u, v = (steepest + 1) % 3, (steepest + 2) % 3
+    in_plane = (u, v) if normal[steepest] > 0 else (v, u)
     outline = _turned(frame(face.outline), in_plane, counter_clockwise=True)
     holes = [_turned(frame(hole), in_plane, counter_clockwise=False) for hole in face.holes]
     rings, hidden = (outline, *holes), tuple(frame(part) for part in face.hidden)
@@ -115,6 +125,7 @@ def _flat_face(plane: Plane, face: Face, opening: Opening | None, thing: str, fr
         thing=thing,
         plane=plane.id,
         axis=plane.axis,
+        direction=direction,
         offset=frame.offset(plane),
         normal=normal,
         in_plane=in_plane,

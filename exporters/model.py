@@ -15,7 +15,8 @@ from exporters.bands import BANDS, bands_of
 from exporters.faces import FlatFace, Frame, build_faces
 from exporters.openings import Fitting, build_fittings
 from linecad.arrays import Float, Int, Text
-from linecad.scene import AXES, ROLES, Scene, ground_of
+from linecad.directions import axis_name, count_of, directions_of
+from linecad.scene import ROLES, Scene, ground_of
 
 SHORTEST_LINE = 1e-9  # m; shorter lines are points to every reader, and the STEP library refuses them
 
@@ -30,7 +31,7 @@ ON_THE_GROUND, AT_THE_CAMERA = ORIGINS = ("ground", "camera")  # where the origi
 class LineGroup:
     """The lines, in ascending id, of one axis that are all boundaries, or all not, and may be of one role and band."""
 
-    axis: int  # 0, 1, 2
+    axis: int  # number of a direction
     is_boundary: bool
     role: str  # one of ROLES; "" for lines of all roles
     ids: Int  # (N,)
@@ -50,7 +51,7 @@ class FlatPlane:
     """A plane of the scene in metres."""
 
     id: int
-    axis: str  # one of AXES: the normal
+    axis: str  # name of the normal's direction
     offset: float  # m
     lines: tuple[int, ...]  # ids of the lines in it
 
@@ -91,7 +92,7 @@ class Model:
 def group_name(axis: int, is_boundary: bool, role: str, band: str) -> str:
     """The name of the group of these lines; role and band may be empty. Outlines are what a name without a role has."""
     kind = "boundary" if is_boundary else "nonboundary"
-    return "_".join(["lines", AXES[axis], kind, *(word for word in (role, band) if word not in ("", ROLES[0]))])
+    return "_".join(["lines", axis_name(axis), kind, *(word for word in (role, band) if word not in ("", ROLES[0]))])
 
 
 def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, origin: str = AT_THE_CAMERA) -> Model:
@@ -101,7 +102,8 @@ def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, orig
     probabilities. `origin` is one of ORIGINS: the ground is z = 0 where the scene has it and its scale is known.
     """
     ground = _ground_height(scene) if origin == ON_THE_GROUND else None
-    frame = Frame(metres_per_unit(scene), np.array([0.0, 0.0, 0.0 if ground is None else -ground]))
+    eye = np.array([0.0, 0.0, 0.0 if ground is None else -ground])
+    frame = Frame(metres_per_unit(scene), eye, directions_of(scene.turns))
     faces = build_faces(scene, frame)
     unit = FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT
     return Model(
@@ -109,7 +111,7 @@ def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, orig
         groups=_line_groups(scene, frame, bands_of(scene.lines) if by_band else None, by_role),
         faces=faces,
         fittings=build_fittings(scene.openings, faces),
-        planes=tuple(FlatPlane(each.id, AXES[each.axis], frame.offset(each), each.lines) for each in scene.planes),
+        planes=tuple(FlatPlane(each.id, axis_name(each.axis), frame.offset(each), each.lines) for each in scene.planes),
         eye=frame.eye,
         photo=photo_name(scene),
         unit_note=unit if ground is None else f"{unit}; {ON_GROUND}",
@@ -136,14 +138,14 @@ def photo_name(scene: Scene) -> str:
 
 
 def _line_groups(scene: Scene, frame: Frame, bands: Text | None, by_role: bool) -> tuple[LineGroup, ...]:
-    lines = scene.lines
+    lines, directions = scene.lines, count_of(scene.turns)
     order = np.argsort(lines.id)
     ends = frame(lines.ends)
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST_LINE
     probability = np.asarray(lines.probability)
     groups = []
     words = (ROLES if by_role else ("",), ("",) if bands is None else BANDS)
-    for axis, is_boundary, role, band in product(range(3), (True, False), *words):
+    for axis, is_boundary, role, band in product(range(directions), (True, False), *words):
         wanted = long_enough & (lines.axis == axis) & (lines.is_boundary == is_boundary)
         if by_role:
             wanted &= lines.role == role

@@ -1,7 +1,8 @@
 """Arrays in records: the names of their types, and the checks that make them read-only and of one shape."""
 
 from collections.abc import Iterable
-from typing import Any
+from dataclasses import fields, replace
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,8 @@ Float = NDArray[np.float64]
 Int = NDArray[np.int64]
 Bool = NDArray[np.bool_]
 Text = NDArray[np.str_]
+
+Record = TypeVar("Record")
 
 
 def freeze(record: object, name: str, kind: Any, shape: tuple[int | None, ...]) -> None:
@@ -72,3 +75,19 @@ def read_only_rings(owner: str, rings: Iterable[Float]) -> tuple[Float, ...]:
             raise ValueError(f"{owner} holds a number that is not finite")
         ring.flags.writeable = False
     return frozen
+
+
+def rows_of(record: Record, chosen: Bool | Int) -> Record:
+    """A frozen record of arrays and tuples with the entries of every field that a mask or an index array selects."""
+    rows: Int = np.arange(len(chosen))[chosen] if chosen.dtype == np.bool_ else np.asarray(chosen, np.int64)
+    of_record: Any = record
+    found: Record = replace(
+        of_record, **{each.name: _entries(getattr(record, each.name), rows) for each in fields(of_record)}
+    )
+    return found
+
+
+def _entries(entries: Any, rows: Int) -> Any:
+    if len(entries) == 0:  # of what a record does not tell there are none
+        return entries
+    return tuple(entries[row] for row in rows.tolist()) if isinstance(entries, tuple) else entries[rows]

@@ -1,16 +1,12 @@
 """A scene without the lines whose depth is not sure enough, by the probability that it is right."""
 
-from dataclasses import fields, replace
-from itertools import compress
-from typing import Any, TypeVar
+from dataclasses import replace
 
 import numpy as np
 
-from linecad.arrays import Bool
+from linecad.arrays import Bool, rows_of
 from linecad.errors import ConfidenceError
-from linecad.scene import Intersections, Lines, Opening, Plane, Scene
-
-Record = TypeVar("Record", Lines, Intersections)
+from linecad.scene import Opening, Plane, Scene
 
 
 def keep_probable(scene: Scene, least: float) -> Scene:
@@ -51,18 +47,7 @@ def with_lines(scene: Scene, kept: Bool) -> Scene:
     crossings = scene.intersections
     both = np.asarray(np.isin(crossings.lines, list(ids)).all(axis=1))
     planes = tuple(_plane_of(plane, ids) for plane in scene.planes)
-    return replace(scene, lines=_rows(scene.lines, kept), intersections=_rows(crossings, both), planes=planes)
-
-
-def _rows(record: Record, kept: Bool) -> Record:
-    """The masked entries of every field of a record of arrays and tuples."""
-    return replace(record, **{each.name: _masked(getattr(record, each.name), kept) for each in fields(record)})
-
-
-def _masked(entries: Any, kept: Bool) -> Any:
-    if isinstance(entries, tuple):
-        return tuple(compress(entries, kept))
-    return entries[kept] if len(entries) else entries  # of what a scene does not tell there are none
+    return replace(scene, lines=rows_of(scene.lines, kept), intersections=rows_of(crossings, both), planes=planes)
 
 
 def _plane_of(plane: Plane, ids: set[int]) -> Plane:

@@ -1,9 +1,9 @@
 """The records of the line graph: segments with their axes, the graph that goes into a solver, what comes out.
 
 Words: a *segment* is in the image, a *line* is in space, an *edge* joins two nodes of the line graph, a *crossing* is
-where two segments meet in the image, an *axis* is the number of a direction (`linecad.directions`): 0, 1, 2 for x, y, z,
-3 and more for the level axes of further frames. A *depth* is the camera z of a point. Frames of
-reference are those of `linecad.scene`.
+where two segments meet in the image, an *axis* is the number of a direction (`linecad.directions`): 0, 1, 2 for x, y,
+z, 3 and more for the level axes of further frames, a *depth* is the camera z of a point. Frames of reference are those
+of `linecad.scene`.
 """
 
 from collections.abc import Sequence

@@ -12,7 +12,7 @@ def check_graph(graph: LineGraph) -> None:
     if (axis < 0).any():
         raise ValueError(f"segment {int(np.argmin(axis))} of the line graph has no axis")
     if (axis >= count_of(graph.turns)).any():
-        raise ValueError(f"segment {int(np.argmax(axis))} of the line graph has axis {axis.max()}, which is no direction")
+        raise ValueError(f"segment {int(np.argmax(axis))} of the line graph has axis {axis.max()}, no direction of it")
     if len(graph.edges) == 0:
         return
     i, j = graph.edges.T

@@ -18,8 +18,8 @@ def end_ratios(graph: LineGraph) -> Float:
     """(N, 2) depth of each end over the depth of the segment's middle, positive.
 
     From the paper's (5): along the line only the coordinate of its axis changes, so s d_beta = lambda_a d_a,beta for
-    the two components beta across it, solved by least squares. Raises ValueError where a segment does not pass through the
-    vanishing point of its axis (the two coordinates disagree) or ends in it.
+    the two components beta across it, solved by least squares. Raises ValueError where a segment does not pass through
+    the vanishing point of its axis (the two disagree) or ends in it.
     """
     lines = np.arange(len(graph.segments))
     sides = across(graph.axis)

@@ -2,8 +2,8 @@
 
 Edges and lines are given by their indices in the LineGraph. Collinear edges stand in none of these sub-graphs, since
 the families speak about lines of different axes that meet, nor do edges between level lines of two frames: each
-sub-graph is one of the lines of a single frame (`LineGraph.home`). All are found by sorting half edges, an edge as seen from
-one of its lines, so that graphs of thousands of lines take a fraction of a second.
+sub-graph is one of the lines of a single frame (`LineGraph.home`). All are found by sorting half edges, an edge as seen
+from one of its lines, so that graphs of thousands of lines take a fraction of a second.
 """
 
 from collections.abc import Iterator, Set

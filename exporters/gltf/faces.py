@@ -17,7 +17,7 @@ from exporters.openings import Fitting
 from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
 from linecad.arrays import Float
-from linecad.scene import AXES
+from linecad.directions import axis_name
 
 Y_UP = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])  # (x, y, z) -> (x, z, -y)
 _PLACEHOLDER = PBRMaterial()  # trimesh wants one; `set_materials` puts ours in its place
@@ -98,7 +98,7 @@ def _told_of_face(face: FlatFace) -> _Tree:
         "kind": face.kind,
         "label": face.label,
         "plane_id": face.plane,
-        "axis": AXES[face.axis],
+        "axis": axis_name(face.axis),
         "offset": face.offset,
         **({} if face.opening is None else {"opening": face.opening}),
     }

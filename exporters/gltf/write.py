@@ -33,7 +33,7 @@ from exporters.gltf.materials import add_pictures, set_materials
 from exporters.gltf.tubes import build_tubes
 from exporters.model import LineGroup, Model
 from exporters.textures.pages import Textures
-from linecad.scene import AXES
+from linecad.directions import axis_name
 
 _ROOT, _LINES, _FACES, _CAMERA = "linecad", "lines", "faces", "photo_camera"  # names of nodes
 _LARGEST_EXACT_FLOAT32 = 2**24  # all integers up to here have their own float32
@@ -110,7 +110,7 @@ def _tubes(group: LineGroup, width: float) -> trimesh.Trimesh:
 def _told(group: LineGroup) -> _Tree:
     told = {"probabilities": group.probability.tolist()} if len(group.probability) else {}
     return {
-        "axis": AXES[group.axis],
+        "axis": axis_name(group.axis),
         "boundary": group.is_boundary,
         "line_ids": group.ids.tolist(),
         "roles": group.roles.tolist(),

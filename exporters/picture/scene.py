@@ -14,7 +14,8 @@ from exporters.picture.canvas import Canvas, drawable, text_width
 from exporters.picture.faces import OPACITY, draw_faces, draw_line, words_of
 from exporters.picture.views import VIEWS, draw_view
 from linecad.arrays import Float
-from linecad.scene import AXES, DepthMapReport, Lines, Scene
+from linecad.directions import axis_name, count_of
+from linecad.scene import DepthMapReport, Lines, Scene
 
 _WIDTH = 2400  # px
 _MARGIN, _GAP = 44, 24  # px
@@ -59,7 +60,7 @@ def write(model: Model, path: Path, photo: NDArray[np.uint8] | None) -> None:
     _draw_photo(canvas.window(*shape), scene, photo)
     for box, (name, right, up) in zip(views, VIEWS, strict=True):
         draw_view(canvas.window(*box), scene, name, right, up)
-    _draw_legend(canvas, words_of(scene.lines)[1])
+    _draw_legend(canvas, words_of(scene.lines)[1], count_of(scene.turns))
     canvas.image().save(path, format="PNG")
 
 
@@ -91,7 +92,9 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
     solve = scene.solve
     share = f"{100 * solve.gap:.3g} %" if np.isfinite(solve.gap) else "unknown"
     facts = [
-        ", ".join(f"{int((lines.axis == axis).sum())} along {AXES[axis]}" for axis in range(3)),
+        ", ".join(
+            f"{int((lines.axis == axis).sum())} along {axis_name(axis)}" for axis in range(count_of(scene.turns))
+        ),
         f"{_count(len(scene.intersections), 'crossing')}: {real} real, {len(scene.intersections) - real} fake",
         f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}",
         f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
@@ -192,13 +195,13 @@ def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
     panel.cross(centre, radius + 1.5, _FAKE, 3)
 
 
-def _draw_legend(canvas: Canvas, words: Sequence[str]) -> None:
+def _draw_legend(canvas: Canvas, words: Sequence[str], directions: int) -> None:
     x, y = float(_MARGIN), canvas.height - 48
-    for axis in range(3):
+    for axis in range(directions):
         for is_boundary in (True, False):
             width = _LINE_WIDTH[is_boundary]
             canvas.line((x, y), (x + 50, y), line_colour(axis, True), width)
-            x = _label(canvas, x + 62, y, f"{AXES[axis]} {'boundary' if is_boundary else 'other'}")
+            x = _label(canvas, x + 62, y, f"{axis_name(axis)} {'boundary' if is_boundary else 'other'}")
     _draw_real(canvas, [x + 8, y], _MARK_RADIUS)
     x = _label(canvas, x + 26, y, "real crossing")
     _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)

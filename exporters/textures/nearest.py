@@ -50,7 +50,7 @@ def shape_of(face: FlatFace, view: View) -> Shape:
     if not rings or face.offset == 0 or abs(signed_area(rings[0])) < _LEAST_AREA:
         return Shape([], (0, 0, 0, 0), np.zeros(3))
     # World rays of camera depth 1 are linear in the pixel, and the plane cuts them at offset over their coordinate.
-    inverse_depth = np.linalg.inv(view.projection)[face.axis] / face.offset
+    inverse_depth = face.direction @ np.linalg.inv(view.projection) / face.offset
     left, top = np.maximum(np.floor(rings[0].min(axis=0)).astype(int) - _BORDER, 0).tolist()
     right, bottom = np.ceil(rings[0].max(axis=0)).astype(int) + _BORDER + 1
     return Shape(rings, (left, top, min(int(right), view.width), min(int(bottom), view.height)), inverse_depth)

@@ -18,6 +18,7 @@ from exporters.textures.behind import PLAIN, cover_of, fill_behind
 from exporters.textures.layout import MARGIN, Layout, Patch, View, seen_part
 from exporters.textures.nearest import Nearest, Shape, filled, nearest_of, shape_of
 from linecad.arrays import Bool, Float
+from linecad.directions import MAIN
 
 _ROUNDED = 0.75  # px by which the border of a face is off where it is filled pixel by pixel
 _BLURRED = 1.5  # px, the width of an edge in a photo: so near to a border the colours are mixed
@@ -95,7 +96,10 @@ def _to_space(face: FlatFace, patch: Patch) -> Float:
     """(3, 3) from column, row and 1 of a texel of the patch with its margin to the point of the plane at its centre."""
     across, down = patch.right / patch.density[0], -patch.up / patch.density[1]
     start = patch.right * patch.corner[0] + patch.up * patch.corner[1] + (0.5 - MARGIN) * (across + down)
-    start[face.axis] = face.offset
+    if face.axis < MAIN:
+        start[face.axis] = face.offset
+    else:
+        start += (face.offset - face.direction @ start) * face.direction
     return np.stack([across, down, start], axis=1)
 
 

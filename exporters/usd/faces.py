@@ -19,7 +19,7 @@ from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
 from exporters.usd.attributes import set_display_colour, set_extent, set_own
 from exporters.usd.materials import add_material, add_photo_material, bind, set_coordinates
-from linecad.scene import AXES
+from linecad.directions import axis_name
 
 _LARGEST_INT32 = 2**31 - 1
 
@@ -126,7 +126,7 @@ class _Writer:
         set_display_colour(mesh, linear(face_colour(face.kind)))
         prim = mesh.GetPrim()
         set_own(prim, "linecad:kind", Sdf.ValueTypeNames.Token, face.kind)
-        set_own(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, AXES[face.axis])
+        set_own(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, axis_name(face.axis))
         counts = Vt.IntArray([len(ring) for ring in face.rings])
         set_own(prim, "linecad:ringCounts", Sdf.ValueTypeNames.IntArray, counts)
         return mesh

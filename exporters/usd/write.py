@@ -21,8 +21,8 @@ from exporters.textures.pages import Textures
 from exporters.usd.attributes import set_display_colour, set_extent, set_own
 from exporters.usd.faces import Places, add_face_materials, add_faces
 from exporters.usd.materials import add_material, bind
+from linecad.directions import axis_name
 from linecad.io.files import UNFINISHED
-from linecad.scene import AXES
 
 _ROOT = Sdf.Path("/Reconstruction")
 _LINES, _FACES, _SHAPES, _MATERIALS = map(_ROOT.AppendChild, ("Lines", "Faces", "Shapes", "Materials"))
@@ -134,7 +134,7 @@ def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
         told.Set(Vt.DoubleArray.FromNumpy(group.probability))
     roles = variables.CreatePrimvar("linecad:role", Sdf.ValueTypeNames.TokenArray, UsdGeom.Tokens.uniform)
     roles.Set(Vt.TokenArray(group.roles.tolist()))
-    set_own(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, AXES[group.axis])
+    set_own(curves.GetPrim(), "linecad:direction", Sdf.ValueTypeNames.Token, axis_name(group.axis))
 
     material = _MATERIALS.AppendChild(group.name)
     add_material(stage, material, colour, emits=True)

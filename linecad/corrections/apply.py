@@ -29,9 +29,10 @@ from linecad.corrections.edits import (
     Split,
 )
 from linecad.corrections.lookup import LineTable
+from linecad.directions import axis_name
 from linecad.errors import CorrectionError
 from linecad.line_graph import ManhattanFrame, Segments
-from linecad.scene import AXES, Camera
+from linecad.scene import Camera
 
 MOST_NOTES = 5  # about single corrections; the rest is counted
 FIRST_IDS = 100_000  # ids for the lines of one frame; those found with the next one are other lines
@@ -224,7 +225,8 @@ class Correcting:
         one, other = self.lines[first], self.lines[second]
         if one.axis != other.axis:
             raise CorrectionError(
-                f"one line runs along {AXES[one.axis]}, the other along {AXES[other.axis]}; give them one axis first"
+                f"one line runs along {axis_name(one.axis)}, the other along {axis_name(other.axis)}; "
+                "give them one axis first"
             )
         ends = self.drawing.joined(one.ends, other.ends, one.axis)
         whole = self._add(_Line(ends, one.axis, "joined"))

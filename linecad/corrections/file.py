@@ -24,10 +24,10 @@ from linecad.corrections.edits import (
     SetFrame,
     Split,
 )
+from linecad.directions import axis_name, axis_of
 from linecad.errors import CorrectionsFileError
 from linecad.io.files import read_text, write_text_atomically
 from linecad.io.strict_json import JsonError, Node, parse
-from linecad.scene import AXES
 
 FORMAT = "linecad-corrections"
 VERSION = 1
@@ -98,7 +98,7 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
                 "value": edit.label,
             }
         case SetAxis():
-            return {"op": "axis", "line": _anchor_to_json(edit.line), "axis": AXES[edit.axis]}
+            return {"op": "axis", "line": _anchor_to_json(edit.line), "axis": axis_name(edit.axis)}
         case Delete():
             return {"op": "delete", "line": _anchor_to_json(edit.line)}
         case Split():
@@ -116,7 +116,7 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
 
 
 def _anchor_to_json(anchor: Anchor) -> dict[str, object]:
-    return {"segment": [list(end) for end in anchor.ends], "axis": AXES[anchor.axis]}
+    return {"segment": [list(end) for end in anchor.ends], "axis": axis_name(anchor.axis)}
 
 
 def _corrections(top: Node) -> Corrections:
@@ -195,8 +195,11 @@ def point(node: Node) -> Point:
 
 
 def axis(node: Node) -> int:
-    """0, 1 or 2 for x, y or z."""
-    return AXES.index(node.one_of(tuple(AXES)))
+    """The number of a direction by its name."""
+    found = axis_of(node.text())
+    if found is None:
+        raise node.wrong('"x", "y", "z", or "x2", "y2" and so on of further frames')
+    return found
 
 
 def label(node: Node) -> Label | None:

@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.directions import components
 from linecad.corrections.apply import CorrectedLines
+from linecad.directions import components
 from linecad.geometry import depths_beside, world_rays
 from linecad.scene import Scene
 

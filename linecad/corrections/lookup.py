@@ -6,9 +6,9 @@ import numpy as np
 
 from linecad.arrays import Float, Int
 from linecad.corrections.edits import Anchor
+from linecad.directions import axis_name
 from linecad.errors import CorrectionError
 from linecad.geometry import PhotoLength, segment_coordinates
-from linecad.scene import AXES
 
 ACROSS = PhotoLength(6.0, floor=2.5)  # between a line as it was named and as it is found again
 LEAST_OVERLAP = 0.5  # of the shorter of the two
@@ -45,7 +45,7 @@ class LineTable:
         if not own.any():
             (a, b), (c, d) = anchor.ends
             raise CorrectionError(
-                f"no line runs from ({a:.0f}, {b:.0f}) to ({c:.0f}, {d:.0f}) along {AXES[anchor.axis]} any more"
+                f"no line runs from ({a:.0f}, {b:.0f}) to ({c:.0f}, {d:.0f}) along {axis_name(anchor.axis)} any more"
             )
         return int(self.ids[own.argmax()])
 

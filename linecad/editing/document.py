@@ -13,11 +13,12 @@ from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.depth.depth_map import DepthMap
+from linecad.directions import axis_name
 from linecad.editing.depth_layers import document_of_layers
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError
-from linecad.scene import AXES, Face, Scene
+from linecad.scene import Face, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
@@ -99,7 +100,7 @@ def _lines(now: Now) -> list[dict[str, object]]:
     return [
         {
             "id": number,
-            "axis": AXES[axis],
+            "axis": axis_name(axis),
             "segment": ends.tolist(),
             **in_space.get((axis, ends.tobytes()), NOT_IN_SPACE),
             "origin": origin[number],
@@ -179,7 +180,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
     return [
         {
             "id": plane.id,
-            "axis": AXES[plane.axis],
+            "axis": axis_name(plane.axis),
             "offset": plane.offset,
             "lines": [number for line in plane.lines for number in numbers[line]],
             "faces": [

@@ -8,10 +8,10 @@ from pathlib import Path
 
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import Annotations
+from linecad.directions import axis_name
 from linecad.errors import OutputError
 from linecad.io.files import check_output
 from linecad.line_graph import LineGraph
-from linecad.scene import AXES
 
 FORMAT = "linecad-labels"
 VERSION = 1
@@ -48,7 +48,7 @@ def labels_to_json(photo: Photo, camera: object, graph: LineGraph, annotations: 
             record = {
                 "pixel": graph.crossing[edge].tolist(),
                 "segments": graph.segments.ends[pair].tolist(),
-                "axes": [AXES[axis] for axis in graph.axis[pair].tolist()],
+                "axes": [axis_name(axis) for axis in graph.axis[pair].tolist()],
                 "label": label,
             }
             rows.append("  " + json.dumps(record))

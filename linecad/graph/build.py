@@ -1,8 +1,8 @@
 """Labelled segments to the paper's line graph: which lines may meet, with what evidence, and what it would mean.
 
 Every crossing of two segments of different axes, each extended by `extension`, is an edge. Two lines that meet agree
-along the normal alpha of their plane: s_i d_i = s_j d_j, an equation between the logs of their depths. Its tolerance is not a
-free parameter: it is how far the equation moves when the segments move by their pixel noise.
+along the normal alpha of their plane: s_i d_i = s_j d_j, an equation between the logs of their depths. Its tolerance is
+not a free parameter: it is how far the equation moves when the segments move by their pixel noise.
 """
 
 from collections.abc import Callable

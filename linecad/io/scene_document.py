@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 
+from linecad.directions import Turns, axis_name
 from linecad.scene import (
-    AXES,
     Certainty,
     DepthMapReport,
     Intersections,
@@ -17,6 +17,7 @@ from linecad.scene import (
 
 FORMAT = "linecad-scene"
 VERSION = 1
+FRAMES_VERSION = 2  # of files whose lines and planes may be of further frames, so that an axis may have a new name
 LARGEST_ERROR = 180.0  # degrees; whoever errs by that much about a rotation knows nothing of it
 ANGLE_DIGITS = 12  # after the point, of degrees: a number that was turned to radians and back is the same again
 
@@ -26,7 +27,7 @@ def document_of(scene: Scene) -> dict[str, object]:
     camera, solve = scene.camera, scene.solve
     return {
         "format": FORMAT,
-        "version": VERSION,
+        "version": version_of(scene.turns),
         "photo": scene.photo,
         "camera": {
             "width": int(camera.width),
@@ -37,6 +38,7 @@ def document_of(scene: Scene) -> dict[str, object]:
             "source": camera.source,
             "R_cam_from_world": scene.rotation.tolist(),
         },
+        **({"turns": list(scene.turns)} if scene.turns else {}),
         "certainty": None if scene.certainty is None else certainty_document(scene.certainty),
         "metres_per_unit": None if scene.metres_per_unit is None else float(scene.metres_per_unit),
         "scale_source": scene.scale_source or None,
@@ -59,11 +61,16 @@ def document_of(scene: Scene) -> dict[str, object]:
     }
 
 
+def version_of(turns: Turns) -> int:
+    """Of a file with further frames of such turns: the first, which all readers know, where one frame suffices."""
+    return FRAMES_VERSION if turns else VERSION
+
+
 def _line_records(lines: Lines) -> list[dict[str, object]]:
     return [
         {
             "id": int(lines.id[row]),
-            "axis": AXES[lines.axis[row]],
+            "axis": axis_name(int(lines.axis[row])),
             "segment": lines.segment[row].tolist(),
             "ends": lines.ends[row].tolist(),
             "boundary": bool(lines.is_boundary[row]),
@@ -96,7 +103,7 @@ def _crossing_records(crossings: Intersections) -> list[dict[str, object]]:
 def _plane_record(plane: Plane) -> dict[str, object]:
     return {
         "id": int(plane.id),
-        "axis": AXES[plane.axis],
+        "axis": axis_name(plane.axis),
         "offset": float(plane.offset),
         "lines": [int(line) for line in plane.lines],
         "faces": [

@@ -6,6 +6,7 @@ from typing import cast
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.directions import UP, Turns, axis_name, components
 from linecad.io.members import (
     LARGEST_NUMBER,
     count_or_zero,
@@ -15,12 +16,11 @@ from linecad.io.members import (
     optional_boolean,
     optional_items,
 )
-from linecad.io.scene_document import FORMAT, LARGEST_ERROR, VERSION
+from linecad.io.scene_document import FORMAT, FRAMES_VERSION, LARGEST_ERROR, VERSION
 from linecad.io.strict_json import JsonError, Node
-from linecad.io.surface_reading import read_openings, read_planes
+from linecad.io.surface_reading import read_axis, read_openings, read_planes
 from linecad.line_graph import EDGE_KINDS
 from linecad.scene import (
-    AXES,
     CAMERA_SOURCES,
     CONFIDENCES,
     DEPTH_KINDS,
@@ -39,6 +39,7 @@ from linecad.scene import (
     SolveReport,
 )
 
+LARGEST_TURN = math.pi / 4 + 1e-9  # rad; what is turned by more is turned by less against the other axis
 LARGEST_PHOTO = 10**6  # px along one side
 FLATNESS = 1e-6  # of the scene's size: how far a face may leave its plane before the file contradicts itself
 ROTATION_ERROR = 1e-6  # largest element of R R' - 1
@@ -49,13 +50,15 @@ def scene_of(top: Node) -> Scene:
     """The scene that a document tells; ValueError in one line, mostly a JsonError with the place, where it is wrong."""
     if top["format"].value != FORMAT:
         raise top["format"].wrong(f'"{FORMAT}"')
-    if top["version"].integer() != VERSION:
-        raise JsonError(f"version is {top['version'].value}, but only version {VERSION} can be read here")
+    if top["version"].integer() not in (VERSION, FRAMES_VERSION):
+        found = top["version"].value
+        raise JsonError(f"version is {found}, but only versions {VERSION} and {FRAMES_VERSION} can be read here")
     camera, rotation = _camera(top["camera"])
-    lines = _lines(top["lines"].items())
+    turns = _turns(top)
+    lines = _lines(top["lines"].items(), turns)
     known = set(lines.id.tolist())
     told = optional_items(top, "openings")
-    planes = read_planes(top["planes"].items(), known, {node["id"].integer() for node in told})
+    planes = read_planes(top["planes"].items(), known, {node["id"].integer() for node in told}, turns)
     scene = Scene(
         photo=top["photo"].text(),
         camera=camera,
@@ -69,10 +72,22 @@ def scene_of(top: Node) -> Scene:
         notes=tuple(note.text() for note in optional_items(top, "notes")),
         certainty=_certainty(top.get("certainty")),
         depth_map=_depth_map(top.get("depth_map")),
-        openings=read_openings(told, {plane.id for plane in planes if plane.axis != 2}),
+        openings=read_openings(told, {plane.id for plane in planes if plane.axis != UP}),
+        turns=turns,
     )
     _check_flatness(scene)
     return scene
+
+
+def _turns(top: Node) -> Turns:
+    """Of the frames beside the world's axes, rad; only files of the second version may have some."""
+    told = optional_items(top, "turns")
+    if told and top["version"].integer() != FRAMES_VERSION:
+        raise JsonError(f"turns stands in a file of version {top['version'].value}, expected {FRAMES_VERSION}")
+    for node in told:
+        if not 0 < abs(node.number()) <= LARGEST_TURN:
+            raise node.wrong("a turn of at most an eighth of a circle, in radians, that is not 0")
+    return tuple(node.number() for node in told)
 
 
 def _camera(node: Node) -> tuple[Camera, Float]:
@@ -142,11 +157,11 @@ def _standard_error(node: Node, largest: float = LARGEST_NUMBER) -> float:
     return node.number()
 
 
-def _lines(nodes: list[Node]) -> Lines:
+def _lines(nodes: list[Node], turns: Turns) -> Lines:
     ids = [node["id"] for node in nodes]
     return Lines(
         id=np.array(distinct_ids(ids), np.int64),
-        axis=np.array([AXES.index(node["axis"].one_of(tuple(AXES))) for node in nodes], np.int64),
+        axis=np.array([read_axis(node["axis"], turns) for node in nodes], np.int64),
         segment=np.array([node["segment"].array(2, 2, largest=LARGEST_NUMBER) for node in nodes]),
         ends=np.array([node["ends"].array(2, 3, largest=LARGEST_NUMBER) for node in nodes]),
         is_boundary=np.array([node["boundary"].boolean() for node in nodes], bool),
@@ -245,9 +260,9 @@ def _check_flatness(scene: Scene) -> None:
     points = np.concatenate([scene.lines.ends.reshape(-1, 3), *(ring for _, _, ring in rings)])
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     for plane, face, ring in rings:
-        off = float(np.abs(ring[:, plane.axis] - plane.offset).max())
+        off = float(np.abs(components(ring, scene.turns)[:, plane.axis] - plane.offset).max())
         if off > FLATNESS * size:
             raise JsonError(
-                f"face {face.id} leaves plane {plane.id} ({AXES[plane.axis]} = {plane.offset:g}) by {off:.3g}, "
+                f"face {face.id} leaves plane {plane.id} ({axis_name(plane.axis)} = {plane.offset:g}) by {off:.3g}, "
                 f"expected at most {FLATNESS * size:.3g}"
             )

@@ -3,6 +3,7 @@
 from typing import cast
 
 from linecad.arrays import Float
+from linecad.directions import Turns, axis_name, count_of
 from linecad.io.members import (
     LARGEST_NUMBER,
     count_or_zero,
@@ -13,23 +14,32 @@ from linecad.io.members import (
     optional_items,
 )
 from linecad.io.strict_json import JsonError, Node
-from linecad.scene import AXES, FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
+from linecad.scene import FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
 
 
-def read_planes(nodes: list[Node], known: set[int], openings: set[int]) -> tuple[Plane, ...]:
-    """The planes with their faces; `known` are the ids of the scene's lines, `openings` those of its openings."""
+def read_planes(nodes: list[Node], known: set[int], openings: set[int], turns: Turns) -> tuple[Plane, ...]:
+    """The planes with their faces; `known` are the ids of the scene's lines, `openings` those of its openings.
+
+    `turns` are of further frames.
+    """
     distinct_ids([node["id"] for node in nodes])
     distinct_ids([face["id"] for node in nodes for face in optional_items(node, "faces")])
     return tuple(
         Plane(
             id=node["id"].integer(),
-            axis=AXES.index(node["axis"].one_of(tuple(AXES))),
+            axis=read_axis(node["axis"], turns),
             offset=node["offset"].number(LARGEST_NUMBER),
             lines=tuple(line_ids(node["lines"], known)),
             faces=tuple(_face(face, openings) for face in optional_items(node, "faces")),
         )
         for node in nodes
     )
+
+
+def read_axis(node: Node, turns: Turns) -> int:
+    """The number of a direction by its name, as far as frames are turned."""
+    names = tuple(axis_name(axis) for axis in range(count_of(turns)))
+    return names.index(node.one_of(names))
 
 
 def _face(node: Node, openings: set[int]) -> Face:

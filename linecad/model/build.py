@@ -20,7 +20,17 @@ from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
 from linecad.model.faces import find_faces
-from linecad.model.frames import FramedLines, clean_frames, in_frame, in_frames, main_planes, of_main, planes_in, planes_of, sight_in
+from linecad.model.frames import (
+    FramedLines,
+    clean_frames,
+    in_frame,
+    in_frames,
+    main_planes,
+    of_main,
+    planes_in,
+    planes_of,
+    sight_in,
+)
 from linecad.model.lifting import Lifted
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
@@ -205,9 +215,7 @@ def _joined_by_grids(
     in the order of their number of lines. A joined part is scaled as a whole, so that all crossings in it stay exact.
     The mask (N,) tells the lines of parts that are not the largest of those they were joined with.
     """
-    joined = join_bodies(
-        find_window_grid_cues(graph, view.camera, view.frame.axes, parts, lifted.offset), len(parts)
-    )
+    joined = join_bodies(find_window_grid_cues(graph, view.camera, view.frame.axes, parts, lifted.offset), len(parts))
     sizes = [(int(rigid[part].sum()), len(part)) for part in parts]
     scale, joined_by = np.ones(len(graph.segments)), np.zeros(len(graph.segments), bool)
     groups: list[Int] = []

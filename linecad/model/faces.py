@@ -70,9 +70,7 @@ def _polygons(shape: shapely.Geometry, least: float) -> list[shapely.Polygon]:
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and part.area >= least]
 
 
-def _before(
-    region: shapely.Polygon, surface: Surface, depth: float, camera: Camera, axes: Float
-) -> shapely.Geometry:
+def _before(region: shapely.Polygon, surface: Surface, depth: float, camera: Camera, axes: Float) -> shapely.Geometry:
     """The part of a region in which its surface is before the camera and no deeper than `depth`.
 
     That is one side of an image line, so that what is cut off is cut off straight.

@@ -7,11 +7,12 @@ that most of its crossings are in.
 
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 
-from linecad.arrays import Float, Int
-from linecad.directions import MAIN, UP, Turns, components, directions_of, in_world, level_axes
+from linecad.arrays import Float, Int, rows_of
+from linecad.directions import MAIN, UP, Turns, components, directions_of, level_axes
 from linecad.model.clean.clean import Cleaned, clean_lines
 from linecad.model.clean.joining import joined_crossings
 from linecad.model.clean.sight import Sight
@@ -41,9 +42,9 @@ class FramedLines:
         if not self.turns:
             return replace(self, lines=change(self.lines, 0))
         rows = [self.of(frame) for frame in self.frames if len(self.of(frame))]
-        parts = [change(_rows(self.lines, own), int(self.frame[own[0]])) for own in rows]
+        parts = [change(rows_of(self.lines, own), int(self.frame[own[0]])) for own in rows]
         order = np.argsort(np.concatenate(rows))
-        return replace(self, lines=_rows(_together(parts), order))
+        return replace(self, lines=rows_of(_together(parts), order))
 
     def in_world(self) -> Lines:
         """The lines in the world, along the directions of all frames."""
@@ -95,7 +96,7 @@ def main_planes(planes: tuple[Plane, ...]) -> tuple[Plane, ...]:
 
 def of_main(lines: Lines) -> Lines:
     """The lines that run along an axis of the world."""
-    return lines if (lines.axis < MAIN).all() else _rows(lines, np.flatnonzero(lines.axis < MAIN))
+    return lines if (lines.axis < MAIN).all() else rows_of(lines, np.flatnonzero(lines.axis < MAIN))
 
 
 def in_frames(lines: Lines, offset: Float, home: Int, turns: Turns) -> FramedLines:
@@ -128,8 +129,9 @@ def _turned_back(ends: Float, frame: Int, turns: Turns) -> Float:
 
 
 def _turned(face: Face, frame: int, turns: Turns) -> Face:
-    rings = {name: tuple(in_frame(ring, frame, turns) for ring in getattr(face, name)) for name in ("holes", "hidden")}
-    return replace(face, outline=in_frame(face.outline, frame, turns), **rings)
+    outline = in_frame(face.outline, frame, turns)
+    holes, hidden = (tuple(in_frame(ring, frame, turns) for ring in rings) for rings in (face.holes, face.hidden))
+    return replace(face, outline=outline, holes=holes, hidden=hidden)
 
 
 def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) -> tuple[Cleaned, FramedLines]:
@@ -143,9 +145,9 @@ def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) ->
         own = framed.of(frame)
         if len(own) == 0:
             continue
-        lines = _rows(framed.lines, own)
+        lines = rows_of(framed.lines, own)
         inside = np.isin(crossings.lines, lines.id).all(axis=1)
-        part = clean_lines(lines, _rows(crossings, np.flatnonzero(inside)), sight_in(sight, frame, framed.turns))
+        part = clean_lines(lines, rows_of(crossings, np.flatnonzero(inside)), sight_in(sight, frame, framed.turns))
         row[own] = part.row + count
         shared = np.where(part.shared >= 0, part.shared + highest, part.shared)
         highest = int(shared.max(initial=highest)) + 1
@@ -179,21 +181,9 @@ def planes_of(framed: FramedLines, shared: Int) -> tuple[Plane, ...]:
     return tuple(replace(plane, id=number) for number, plane in enumerate(found))
 
 
-def _rows(record: Lines | Intersections, rows: Int):
-    """The entries of every field of a record in the rows that an index array selects."""
-    values = {}
-    for each in fields(record):
-        value = getattr(record, each.name)
-        if isinstance(value, tuple):
-            values[each.name] = tuple(value[row] for row in rows.tolist()) if value else value
-        else:
-            values[each.name] = value[rows] if len(value) else value
-    return replace(record, **values)
-
-
 def _together(parts: list[Lines]) -> Lines:
     """The lines of several records."""
-    values = {}
+    values: dict[str, Any] = {}
     for each in fields(Lines):
         found = [getattr(part, each.name) for part in parts]
         is_tuple = isinstance(found[0], tuple)

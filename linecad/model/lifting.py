@@ -150,7 +150,7 @@ def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
     offset = np.full(shared.shape, np.nan)
     number = total / np.maximum(mass, np.finfo(float).tiny)
     if graph.turns:
-        number = _fitting(graph, shared, number, mass)
+        number = _fitting(graph, shared, number, np.asarray(mass, np.float64))
     offset[own] = number[shared[own]]
     return offset
 
@@ -202,7 +202,7 @@ def _points(graph: LineGraph, offset: Float, along: Float) -> Float:
 
 
 def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, along: Float) -> Float:
-    """Places (N, 2) of ends that fall short of chosen crossings, or stop near them, moved to the outermost junction exactly."""
+    """Places (N, 2) of ends; those short of chosen crossings, or near them, moved to the outermost junction exactly."""
     edges = np.flatnonzero(chosen & (graph.kind != "collinear"))  # those have no point in common
     line = graph.edges[edges]
     to_ends = np.linalg.norm(graph.segments.ends[line] - graph.crossing[edges, None, None], axis=3)

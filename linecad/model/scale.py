@@ -14,9 +14,10 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float
+from linecad.directions import Turns, across, axis_name, components
 from linecad.errors import ScaleError
 from linecad.geometry import world_rays
-from linecad.scene import AXES, Face, Plane, Scene, ground_of
+from linecad.scene import Face, Plane, Scene, ground_of
 
 REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in the photo lies on it
 LOWER_SHARE = 0.1  # of the camera's height: what reaches farther below a plane speaks against its being the ground
@@ -134,7 +135,8 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
         points, where = _nearest_on_line(rays, ends), f"line {scene.lines.id[row]}"
     else:
         plane = _plane_under(scene, rays)
-        points, where = rays * (plane.offset / rays[:, plane.axis])[:, None], f"plane {plane.id} ({AXES[plane.axis]})"
+        depth = plane.offset / components(rays, scene.turns)[:, plane.axis]
+        points, where = rays * depth[:, None], f"plane {plane.id} ({axis_name(plane.axis)})"
     return _checked(scene, float(np.linalg.norm(points[1] - points[0])), "between the two points"), where
 
 
@@ -166,7 +168,7 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     for plane, face in scene.faces:
         if plane.id in planes:
             for number in range(2):
-                if _meets(rays[number], plane, face):
+                if _meets(rays[number], plane, face, scene.turns):
                     hit[number].add(plane.id)
     for number, word in enumerate(("first", "second")):
         if not hit[number]:
@@ -183,12 +185,14 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     return planes[common[0]]
 
 
-def _meets(ray: Float, plane: Plane, face: Face) -> bool:
+def _meets(ray: Float, plane: Plane, face: Face, turns: Turns) -> bool:
     """Whether a ray from the camera meets a face."""
+    ray = components(ray, turns)
     if ray[plane.axis] * plane.offset <= 0:
         return False
-    others = [axis for axis in range(3) if axis != plane.axis]
-    polygon = shapely.Polygon(face.outline[:, others], [hole[:, others] for hole in face.holes])
+    others = sorted(across(np.array(plane.axis)).tolist())
+    shell, *holes = (components(ring, turns)[:, others] for ring in (face.outline, *face.holes))
+    polygon = shapely.Polygon(shell, holes)
     return bool(shapely.contains_xy(polygon, *(ray * (plane.offset / ray[plane.axis]))[others]))
 
 

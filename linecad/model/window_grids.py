@@ -34,9 +34,7 @@ class _Wall:
     side: int  # of the camera, 1 or -1
 
 
-def find_window_grid_cues(
-    graph: LineGraph, camera: Camera, axes: Float, bodies: list[Int], offset: Float
-) -> ScaleCues:
+def find_window_grid_cues(graph: LineGraph, camera: Camera, axes: Float, bodies: list[Int], offset: Float) -> ScaleCues:
     """Scale cues between bodies, each given by its lines, whose lines have components `offset` (N, K).
 
     `axes` (3, K) is every direction in the camera frame.

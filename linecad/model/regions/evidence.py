@@ -10,8 +10,8 @@ import cv2
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.directions import MAIN, UP, across, components, frame_of, level_axes, partner
 from linecad.depth.normals import UNTOLD
+from linecad.directions import MAIN, UP, across, components, frame_of, level_axes, partner
 from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines

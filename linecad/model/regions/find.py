@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.directions import Turns
 from linecad.depth.normals import Normals
+from linecad.directions import Turns
 from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.evidence import look_up
 from linecad.model.regions.filling import Filled, fill

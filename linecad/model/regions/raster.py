@@ -177,7 +177,7 @@ def _gradients(grey: NDArray[np.uint8], blur: float) -> tuple[Float, Float, Floa
 
 
 def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, axes: Float) -> Float:
-    """How many pixels (S, K + 1) of edges along each of `axes` (3, K) and along none a finer raster has in each sample."""
+    """How many pixels (S, K + 1) of edges along `axes` (3, K) and along none a finer raster has in each sample."""
     fine = (shape[0] * FINER, shape[1] * FINER)
     resized = np.asarray(cv2.resize(photo, fine[::-1], interpolation=cv2.INTER_AREA), np.uint8)
     across, down, strength = _gradients(_grey(resized), 0.8)

@@ -136,8 +136,8 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
             min(bottom, boxes[one][0, 2], boxes[other][0, 2]), max(boxes[one][1, 2], boxes[other][1, 2])
         )  # fmt: skip
         at = components(meet[0], view.turns)
-        along = {index: int(partner(surfaces[index].axis)) for index in (one, other)}
-        if all(_within(at[along[index]], boxes[index][:, along[index]]) for index in (one, other)):
+        sides = {index: int(partner(surfaces[index].axis)) for index in (one, other)}
+        if all(_within(float(at[side]), boxes[index][:, side]) for index, side in sides.items()):
             found.append((meet, (one, other)))
     shown = [
         (pixels, pair) for meet, pair in found
