@@ -66,7 +66,8 @@ def compare_faces(scene: Scene, shapes: list[Shape], shown: Shown, truth: Truth,
     drawn = (quad != NOTHING) & (axis[quad] != NOTHING) & ~is_clutter(truth)[quad]
     has = drawn & (shown.face != NO_FACE)
     names = true_axes(scene.rotation, truth.rotation)  # both frames are turned against the same camera
-    found_axis = np.array([names[shape.plane.axis] for shape in shapes] + [NOTHING])[shown.face]
+    known = {axis: int(name) for axis, name in enumerate(names)}  # a wall of a further frame has none of these axes
+    found_axis = np.array([known.get(shape.plane.axis, NOTHING) for shape in shapes] + [NOTHING])[shown.face]
     right_axis = has & (found_axis == axis[quad])
     ratio = np.full(len(quad), np.nan)
     if scale is not None:

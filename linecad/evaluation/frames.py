@@ -3,6 +3,7 @@
 import numpy as np
 
 from linecad.arrays import Float, Int
+from linecad.directions import MAIN
 from linecad.geometry import angle_between_frames, angles_to, vanishing_points
 
 
@@ -12,6 +13,12 @@ def true_axes(found: Float, true: Float) -> Int:
     names = np.empty(3, np.int64)
     names[list(which)] = np.arange(3)
     return names
+
+
+def true_directions(axes: Float, true: Float) -> Float:
+    """(K, 3) unit vectors, in the world of the true frame, of found directions (3, K): true axes, then further ones."""
+    main = np.eye(3)[true_axes(axes[:, :MAIN], true)]
+    return np.concatenate([main, axes[:, MAIN:].T @ true])
 
 
 def nearest_axes(ends: Float, K: Float, rotation: Float) -> Int:

@@ -9,6 +9,7 @@ from html import escape
 import numpy as np
 
 from linecad.arrays import Bool, Float
+from linecad.directions import components
 from linecad.evaluation.depth import NO_LINE, depths_of, nearest_lines
 from linecad.evaluation.labels import depth_on, find_true_lines
 from linecad.evaluation.references import Reference
@@ -67,7 +68,7 @@ def true_ratios(scene: Scene, reference: Reference) -> Float:
     ratio = np.full(count, np.nan)
     if reference.truth is not None:
         segments = Segments(scene.lines.segment, scene.lines.axis)
-        lines = find_true_lines(reference.truth, segments, scene.rotation)
+        lines = find_true_lines(reference.truth, segments, components(scene.rotation, scene.turns))
         middle = scene.lines.segment.mean(axis=1)
         true = depth_on(reference.truth.rays(middle), lines.point, lines.direction)
         found = depths_of(scene, middle, np.arange(count))

@@ -10,7 +10,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int, Text
 from linecad.dataset.truth import NOTHING, Truth
-from linecad.evaluation.frames import true_axes
+from linecad.evaluation.frames import true_directions
 from linecad.evaluation.overlap import Overlaps, find_overlaps, union_length
 from linecad.geometry import angles_to, vanishing_points
 from linecad.line_graph import LineGraph, Segments
@@ -43,9 +43,12 @@ class TrueLines:
     direction: Float  # (N, 3) unit vector along it; NaN for spurious ones
 
 
-def find_true_lines(truth: Truth, segments: Segments, rotation: Float | None = None) -> TrueLines:
-    """What each segment shows. `rotation` is the frame (3, 3) that names the segments' axes, if not the truth's own."""
-    names = true_axes(truth.rotation if rotation is None else rotation, truth.rotation)
+def find_true_lines(truth: Truth, segments: Segments, axes: Float | None = None) -> TrueLines:
+    """What each segment shows. `axes` (3, K) are the found directions that name the segments' axes, if not the truth's.
+
+    Those of the main frame stand for the true axes that they are nearest to, further ones for themselves.
+    """
+    directions = true_directions(truth.rotation if axes is None else axes, truth.rotation)
     count = len(segments)
     kind = np.full(count, "spurious", "<U8")
     right = np.zeros(count, bool)
@@ -53,26 +56,27 @@ def find_true_lines(truth: Truth, segments: Segments, rotation: Float | None = N
     edge_along = truth.edges[:, 1] - truth.edges[:, 0]
     edge_along = edge_along / np.linalg.norm(edge_along, axis=1, keepdims=True)
     normal, offset = truth.planes()
-    # Sine of the angle (3, N) between each segment and the image of each true axis
-    astray = angles_to(segments.ends, vanishing_points(truth.matrix, truth.rotation))
+    # Sine of the angle (K, N) between each segment and the image of each direction
+    astray = angles_to(segments.ends, vanishing_points(truth.matrix, truth.rotation @ directions.T))
     for i, ends in enumerate(segments.ends):
-        axis = int(names[segments.axis[i]])
+        axis = int(segments.axis[i])
+        along = directions[axis]
         edge = _edge_of(truth, edge_along, ends)
         if edge != NOTHING:
             kind[i], point[i], direction[i] = "edge", truth.edges[edge, 0], edge_along[edge]
-            right[i] = abs(edge_along[edge, axis]) >= np.cos(LABEL_ANGLE)
+            right[i] = abs(edge_along[edge] @ along) >= np.cos(LABEL_ANGLE)
             continue
         quad = _plane_beside(truth, normal, offset, ends)
         if quad != NOTHING:
             kind[i] = "surface"
-            right[i] = abs(normal[quad, axis]) <= np.sin(LABEL_ANGLE) and astray[axis, i] <= np.sin(EDGE_ANGLE)
-            point[i], direction[i] = _lift(truth, ends, quad, normal[quad], axis if right[i] else NOTHING)
+            right[i] = abs(normal[quad] @ along) <= np.sin(LABEL_ANGLE) and astray[axis, i] <= np.sin(EDGE_ANGLE)
+            point[i], direction[i] = _lift(truth, ends, quad, normal[quad], along if right[i] else None)
     return TrueLines(kind, right & (segments.axis >= 0), point, direction)
 
 
-def label_crossings(truth: Truth, graph: LineGraph, rotation: Float | None = None) -> Int:
-    """REAL, FAKE or UNDECIDED for each crossing (E,) of a graph; `rotation` as in `find_true_lines`."""
-    lines = find_true_lines(truth, graph.segments, rotation)
+def label_crossings(truth: Truth, graph: LineGraph, axes: Float | None = None) -> Int:
+    """REAL, FAKE or UNDECIDED for each crossing (E,) of a graph; `axes` as in `find_true_lines`."""
+    lines = find_true_lines(truth, graph.segments, axes)
     return judge_crossings(truth, graph, lines)
 
 
@@ -155,19 +159,19 @@ def _plane_beside(truth: Truth, normal: Float, offset: Float, ends: Float) -> in
     return quad if both.mean() > SIDE_SHARE else NOTHING
 
 
-def _lift(truth: Truth, ends: Float, quad: int, normal: Float, axis: int) -> tuple[Float, Float]:
+def _lift(truth: Truth, ends: Float, quad: int, normal: Float, known: Float | None) -> tuple[Float, Float]:
     """A point and the direction of the line in the plane of a quad that a segment (2, 2) shows.
 
-    Where the line is known to run along an axis, it is that direction exactly: a pixel of noise at the ends of a short
-    segment on the ground would turn it by degrees.
+    Where the line is known to run along a direction (3,), it is that direction exactly: a pixel of noise at the ends of a
+    short segment on the ground would turn it by degrees.
     """
     middle = ends.mean(axis=0)[None]
     point = truth.rays(middle)[0] * truth.quad_depth(middle, np.array([quad]))[0]
-    if axis == NOTHING:
+    if known is None:
         lifted = truth.rays(ends) * truth.quad_depth(ends, np.full(2, quad))[:, None]
         along = lifted[1] - lifted[0]
     else:
-        along = np.eye(3)[axis] - normal[axis] * normal
+        along = known - (normal @ known) * normal
     return point, along / np.linalg.norm(along)
 
 

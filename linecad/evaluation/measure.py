@@ -11,6 +11,7 @@ from linecad.arrays import Bool, Float, Int
 from linecad.camera.photo import Photo
 from linecad.depth.depth_map import DepthMap
 from linecad.depth.for_photo import open_depth_map
+from linecad.directions import MAIN, UP
 from linecad.errors import LinecadError
 from linecad.evaluation.datasets import Case
 from linecad.evaluation.decisions import Decisions, GraphStatistics, compare, count
@@ -118,7 +119,7 @@ def measure(
     methods: dict[Formulation, dict[str, Run]] = {}
     if reference.has_labels:
         everything, graph = connect(found, settings.paper_graph())
-        label = reference.label(graph, found.camera, found.frame.rotation)
+        label = reference.label(graph, found.camera, found.frame.axes)
         statistics = count(graph, label)
         length = float(everything.segments.length.sum())
         if settings.ablation:
@@ -138,7 +139,7 @@ def _whole(
 ) -> tuple[WholeResult, Picture | None, str | None]:
     made = reconstruct_lines(photo.name, found, settings.reconstruction, depth=depth_map)
     graph, solution, scene = made.graph, made.solution, made.scene
-    label = reference.label(graph, found.camera, found.frame.rotation)
+    label = reference.label(graph, found.camera, found.frame.axes)
     length = float(made.whole.segments.length.sum())
     depth = None if reference.edges is None else score_scene(scene, reference.edges, reference.dense)
     scale = None if depth is None else depth.component_0.lines.scale
@@ -184,7 +185,7 @@ def _marked(reference: Reference, marked: MarkedLines, scene: Scene) -> MarkedSc
     """Coverage and labels of lines that were marked by hand (method: the same axis, within MARKED_REACH)."""
     assert reference.rotation is not None  # who marks lines by axis knows the axes
     names = true_axes(scene.rotation, reference.rotation)
-    axis = names[scene.lines.axis]
+    axis = np.where(scene.lines.axis < MAIN, names[np.minimum(scene.lines.axis, UP)], scene.lines.axis)
     nearest = names[nearest_axes(marked.ends, scene.camera.matrix, scene.rotation)]
     covered = covered_length(marked.ends, marked.axis, scene.lines.segment, axis)
     length = float(np.linalg.norm(marked.ends[:, 1] - marked.ends[:, 0], axis=1).sum())

@@ -59,10 +59,10 @@ class Reference:
         """Whether crossings can be told real from fake."""
         return self.truth is not None or self.marks is not None
 
-    def label(self, graph: LineGraph, camera: Camera, rotation: Float) -> Int:
+    def label(self, graph: LineGraph, camera: Camera, axes: Float) -> Int:
         """REAL, FAKE or UNDECIDED for each crossing (E,); all undecided where nothing is known."""
         if self.truth is not None:
-            return label_crossings(self.truth, graph, rotation)
+            return label_crossings(self.truth, graph, axes)
         if self.marks is not None:
             return label_by_marks(self.marks, graph, camera)
         return np.full(len(graph.edges), UNDECIDED, np.int64)

@@ -46,7 +46,7 @@ def look(folder: Path, time_limit: float) -> tuple[np.ndarray, np.ndarray]:
     truth, photo = read_truth(folder), read_photo(folder / "photo.jpg", folder / "camera.json")
     found = find_lines(photo)
     graph = connect(found, Options(collinear=False, largest_component=True))[1]
-    lines = find_true_lines(truth, graph.segments, found.frame.rotation)
+    lines = find_true_lines(truth, graph.segments, found.frame.axes)
     label = judge_crossings(truth, graph, lines)
     i, j = graph.edges.T
     depth = depths_at_crossings(truth, graph, lines)

@@ -254,7 +254,7 @@ def test_probabilities_are_counted_in_the_title_and_explained_in_the_legend(told
     picture._draw_title(canvas, told)
     assert "depths right within 5 %: 20 sure, 20 likely, 20 guess" in texts(canvas)[1]
     legend = Canvas(2400, 300, GREY)
-    picture._draw_legend(legend, picture_faces.words_of(told.lines)[1])
+    picture._draw_legend(legend, picture_faces.words_of(told.lines)[1], 3)
     assert texts(legend)[-3:] == ["sure (0.9)", "likely (0.5)", "guess"]
     last = legend.texts[-1]
     assert last.x + text_width(last.text, last.size) < 2400

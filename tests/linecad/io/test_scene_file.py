@@ -382,7 +382,7 @@ def test_every_key_is_either_required_or_optional() -> None:
 
 WRONG = [
     ("format", "gltf", 'format is "gltf", expected "linecad-scene"'),
-    ("version", 2, "version is 2, but only version 1 can be read here"),
+    ("version", 3, "version is 3, but only versions 1 and 2 can be read here"),
     ("version", "1", 'version is "1", expected a whole number'),
     ("version", True, "version is true, expected a whole number"),
     ("photo", 7, "photo is 7, expected a string"),

@@ -66,9 +66,9 @@ def looks(monkeypatch):
     """What scenes were given to look at for their faces."""
     seen = []
 
-    def find(planes, lines, camera, rotation, look):
+    def find(planes, lines, camera, rotation, look, turns):
         seen.append(look)
-        return find_regions(planes, lines, camera, rotation, look)
+        return find_regions(planes, lines, camera, rotation, look, turns)
 
     monkeypatch.setattr(build, "find_regions", find)
     return seen

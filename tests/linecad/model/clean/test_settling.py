@@ -129,5 +129,5 @@ def test_outlines_holes_and_what_is_hidden_are_edges_of_faces(lines, camera, rot
     assert edges.shape == (12, 2, 3)
     assert outlines_of(()).shape == (0, 2, 3)
     before = lines([(X, (2.05, DEPTH, 0), (2.95, DEPTH, 0))])
-    after = settled(before, (plane,), Sight(camera.matrix, rotation, None))
+    after = settled(before, outlines_of((plane,)), Sight(camera.matrix, rotation, None))
     np.testing.assert_allclose(after.ends[0], [[2, DEPTH, 0], [3, DEPTH, 0]])

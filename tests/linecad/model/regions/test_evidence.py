@@ -26,7 +26,7 @@ from linecad.model.regions.evidence import (
     sample_costs,
     sums,
 )  # fmt: skip
-from linecad.model.regions.raster import COLUMNS, NO_AXIS, take_raster
+from linecad.model.regions.raster import COLUMNS, take_raster
 from linecad.model.regions.segments import limit_of_depth
 from linecad.model.regions.surfaces import Surface, find_surfaces
 
@@ -240,7 +240,7 @@ def test_edges_say_which_axis_a_cell_does_not_face(raster):
     costs = direction_costs(replace(raster, votes=votes), [*walls, ground], cell, 1)[0]
     assert costs[0] == costs[1] < 0 < costs[2]
     votes = np.zeros((raster.size, 4))
-    votes[:100, NO_AXIS] = 1
+    votes[:100, -1] = 1
     costs = direction_costs(replace(raster, votes=votes), [*walls, ground], cell, 1)[0]
     assert (costs[:3] > 0).all()
 
