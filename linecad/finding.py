@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from linecad.camera.frame_labels import label_by_frames
 from linecad.camera.horizontal_frames import HorizontalFrames
 from linecad.camera.photo import Photo
 from linecad.camera.refit import find_calibration
@@ -110,19 +111,22 @@ def name_lines(
         raw = raw.joined(find_faint_segments(photo.grey))
     on_stage("following lines along their vanishing points")
     frame = frames.frame
-    pieces = _labelled(raw, camera, frames).joined(find_vanishing_point_lines(photo.grey, camera, frame))
+    through_points = find_vanishing_point_lines(photo.grey, camera, frame)
+    pieces = _labelled(raw, through_points, camera, frames)
     return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
 
 
-def _labelled(raw: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:
-    """The segments that run along a direction of the frames: along the nearest of one, the most likely of several.
+def _labelled(raw: Segments, through_points: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:
+    """The segments along the directions of the frames, and the lines that were followed through vanishing points.
 
-    Directions of two frames may be so near to each other that how usual each is must help to decide.
+    Of several frames, a line that was found through the vanishing points of two is one.
     """
     if not frames.further:
-        return label_segments(raw, camera, frames.main)
-    axis = frames.labelled(raw, camera)
-    return Segments(raw.ends, axis).subset(axis >= 0)
+        return label_segments(raw, camera, frames.main).joined(through_points)
+    every = raw.joined(through_points)
+    axis = label_by_frames(every, camera, frames)
+    kept = (axis >= 0) & ((every.axis < 0) | (every.axis == axis))
+    return Segments(every.ends, axis).subset(kept)
 
 
 def connect(found: FoundLines, options: Options) -> tuple[LineGraph, LineGraph]:

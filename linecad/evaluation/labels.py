@@ -162,8 +162,8 @@ def _plane_beside(truth: Truth, normal: Float, offset: Float, ends: Float) -> in
 def _lift(truth: Truth, ends: Float, quad: int, normal: Float, known: Float | None) -> tuple[Float, Float]:
     """A point and the direction of the line in the plane of a quad that a segment (2, 2) shows.
 
-    Where the line is known to run along a direction (3,), it is that direction exactly: a pixel of noise at the ends of a
-    short segment on the ground would turn it by degrees.
+    Where the line is known to run along a direction (3,), it is that direction exactly: a pixel of noise at the ends of
+    a short segment on the ground would turn it by degrees.
     """
     middle = ends.mean(axis=0)[None]
     point = truth.rays(middle)[0] * truth.quad_depth(middle, np.array([quad]))[0]

@@ -9,17 +9,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csr_matrix, diags_array
-from scipy.sparse.linalg import splu, spsolve
+from scipy.sparse.linalg import spsolve
 
 from linecad.arrays import Bool, Float, Int, Text
-from linecad.directions import MAIN, UP, across, count_of, directions_of, in_world, lies_across, partner
+from linecad.directions import UP, across, count_of, directions_of, in_world, level_axes, lies_across, partner
 from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineDepths, LineGraph
 from linecad.model.plane_merging import MIN_TOLERANCE, NOISE_FACTOR, Merges, find_merges
 
 ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
-RIDGE = 1e-12  # of the largest weight; conditions of upright lines may say the same twice
-REFINEMENTS = 3  # after which the ridge has no part in the numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,7 +28,7 @@ class Lifted:
     # (N, K) the components along the normals of the planes that each line can lie in: the two of its frame, and of an
     # upright line those of every frame; NaN along all other directions
     offset: Float
-    shared: Int  # (N, K) number of the offset that each component belongs to; -1 where there is none
+    shared: Int  # (N, K) number of the offset that each of the two of its frame belongs to; -1 elsewhere
     residual: Float  # (E,) how far the log depths of an edge's lines are from its equation
     shift: Float  # (N,) rad by which each line moved off the plane of its segment to become exact
 
@@ -116,9 +114,16 @@ def _parts(graph: LineGraph, chosen: Bool) -> Int:
 
 
 def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = None) -> Int:
-    """Numbers (N, K) such that two components have the same number when crossings or merges make them equal."""
+    """Numbers (N, K) such that two components have the same number when crossings or merges make them equal.
+
+    Only in one frame: an upright line that stood in the planes of two would be where these meet, and they may be so
+    nearly parallel that the noise of both moves it far.
+    """
     directions = count_of(graph.turns)
     has = lies_across(graph.axis[:, None], np.arange(directions))
+    axes = np.array([level_axes(frame) for frame in range(len(graph.turns) + 1)])
+    has[graph.axis == UP] = (np.arange(directions) == axes[graph.home[graph.axis == UP], :, None]).any(axis=1)
+    chosen = chosen & graph.in_one_frame
     edges = graph.edges[chosen]
     # Crossing lines share one component, the pieces of one line share all of theirs.
     pieces = edges[graph.axis[edges[:, 0]] == graph.axis[edges[:, 1]]]
@@ -137,8 +142,7 @@ def _shared_coordinates(graph: LineGraph, chosen: Bool, merges: Merges | None = 
 def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
     """One number (N, K) for each shared component: the mean of what its lines say, by their certainty.
 
-    The components of an upright line along more than two normals depend on each other: there the numbers are the
-    nearest to the means that fit together.
+    Where an upright line stands in other frames than its own follows from those.
     """
     say = depth[:, None] * graph.components
     # A segment's noise moves its ray by about the same angle everywhere, so its coordinates move with its depth.
@@ -149,36 +153,14 @@ def _offsets(graph: LineGraph, shared: Int, depth: Float) -> Float:
     mass = np.bincount(shared[own], certainty[own], groups)
     offset = np.full(shared.shape, np.nan)
     number = total / np.maximum(mass, np.finfo(float).tiny)
-    if graph.turns:
-        number = _fitting(graph, shared, number, np.asarray(mass, np.float64))
     offset[own] = number[shared[own]]
+    for frame in range(len(graph.turns) + 1 if graph.turns else 0):
+        upright = np.flatnonzero((graph.axis == UP) & (graph.home == frame))
+        vectors, level = directions_of(graph.turns), list(level_axes(frame))
+        foot = offset[upright][:, level] @ vectors[level]
+        others = [axis for axis in range(len(vectors)) if axis not in (*level, UP)]
+        offset[upright[:, None], others] = foot @ vectors[others].T
     return offset
-
-
-def _fitting(graph: LineGraph, shared: Int, number: Float, mass: Float) -> Float:
-    """The numbers (G,) nearest to those given, by their `mass` (G,), at which every upright line has one place.
-
-    Its components along the normals of further frames are those of the place that its components x and y tell.
-    """
-    own = shared[graph.axis == UP]
-    asked = [np.unique(own[:, [0, 1, normal]], axis=0) for normal in range(MAIN, shared.shape[1])]
-    place = np.concatenate(asked)
-    vector = np.repeat(directions_of(graph.turns)[MAIN:, :2], [len(each) for each in asked], axis=0)
-    # A component that no other line shares follows from the place; it asks for nothing.
-    follows = np.bincount(shared[shared >= 0], minlength=len(number))[place[:, 2]] == 1
-    bound = place[~follows]
-    if len(bound):
-        values = np.column_stack([vector[~follows], -np.ones(len(bound))])
-        at = np.repeat(np.arange(len(bound)), 3)
-        ask = csr_matrix((values.ravel(), (at, bound.ravel())), (len(bound), len(number)))
-        spread = diags_array(1 / np.maximum(mass, np.finfo(float).tiny))
-        system = (ask @ spread @ ask.T).tocsc()
-        system = system + diags_array(np.full(len(bound), RIDGE * system.diagonal().max())).tocsc()
-        factors = splu(system)
-        for _ in range(REFINEMENTS):
-            number = number - spread @ (ask.T @ factors.solve(ask @ number))
-    number[place[follows, 2]] = (vector[follows] * number[place[follows, :2]]).sum(axis=1)
-    return number
 
 
 def _ends(graph: LineGraph, offset: Float) -> tuple[Float, Float]:
