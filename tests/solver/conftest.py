@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from linecad.directions import across, directions_of, third
 from linecad.line_graph import LineGraph, Segments
 
 FOCAL = 1000.0
@@ -32,18 +33,24 @@ def image_crossing(first, second):
     return [x / w, y / w]
 
 
-def line_graph(lines, edges=None, *, tolerance=0.01, weight=1.0, informative=True, kind="X", yaw=0.3, pitch=0.1):
-    """The graph of `lines`, each (axis, point, low, high): all points with coordinate `axis` from low to high.
+def line_graph(
+    lines, edges=None, *, tolerance=0.01, weight=1.0, informative=True, kind="X", yaw=0.3, pitch=0.1, turns=()
+):
+    """The graph of `lines`, each (axis, point, low, high): all points with component `axis` from low to high.
 
-    `edges` are pairs of lines of different axes, or of one axis (collinear); all pairs of different axes if None.
-    The other arguments are one value for all edges or one each.
+    `turns` are those of further frames. `edges` are pairs of lines of different axes, or of one axis (collinear); all
+    pairs of different axes if None. The other arguments are one value for all edges or one each.
     """
     rotation = camera_rotation(yaw, pitch)
     axis = np.array([line[0] for line in lines], int).reshape(-1)
     ends = np.empty((len(lines), 2, 3))
     for i, (a, point, low, high) in enumerate(lines):
-        ends[i] = point
-        ends[i, :, a] = low, high
+        if a < 3:
+            ends[i] = point
+            ends[i, :, a] = low, high
+        else:
+            along = directions_of(turns)[a]
+            ends[i] = point + (np.array([low, high]) - along @ point)[:, None] * along
     in_camera = ends @ rotation.T
     assert (in_camera[..., 2] > 0).all(), "a line of the made scene lies behind the camera"
     end_rays = ends / in_camera[..., 2:]
@@ -54,8 +61,9 @@ def line_graph(lines, edges=None, *, tolerance=0.01, weight=1.0, informative=Tru
     edges = np.array(edges, int).reshape(-1, 2)
     i, j = edges.T
     same = axis[i] == axis[j]
-    coordinate = np.where(same, (axis[i] + 1) % 3, 3 - axis[i] - axis[j])
-    d_i, d_j = rays[i, coordinate], rays[j, coordinate]
+    coordinate = np.where(same, across(axis[i])[..., 0], third(axis[i], axis[j]))
+    along = directions_of(turns)[coordinate]
+    d_i, d_j = ((rays[line] * along).sum(axis=1) for line in (i, j))
     possible = d_i * d_j > 0
     return LineGraph(
         segments=Segments(pixels, axis),
@@ -72,6 +80,7 @@ def line_graph(lines, edges=None, *, tolerance=0.01, weight=1.0, informative=Tru
         tolerance=np.broadcast_to(np.asarray(tolerance, float), len(edges)),
         possible=possible,
         informative=np.broadcast_to(np.asarray(informative, bool), len(edges)),
+        turns=turns,
     )
 
 

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 import solver.gain.search
 import solver.gain.separation
+from linecad.directions import directions_of
 from linecad.errors import ContradictionError
 from solver.options import BACKENDS, FAMILIES, FORMULATIONS, SolveOptions
 from solver.solve import solve
@@ -28,15 +29,16 @@ DEPTH_RANGES = [100.0, 3.07, 1.531]
 
 
 @st.composite
-def lines_in_space(draw):
+def lines_in_space(draw, turns=()):
     """Three to seven lines on a small grid, so that many of them meet; some moved a little off it."""
     lines = []
     for _ in range(draw(st.integers(3, 7))):
-        axis = draw(st.integers(0, 2))
+        axis = draw(st.integers(0, 2 + 2 * len(turns)))
         x, y, z = draw(st.integers(-1, 2)), draw(st.integers(4, 6)), draw(st.integers(-1, 1))
         point = np.array([x, y, z]) + GRID + np.array(draw(st.sampled_from(WOBBLES)))
-        low = point[axis] - draw(st.sampled_from([0.2, 0.9]))
-        lines.append((axis, point, low, point[axis] + draw(st.sampled_from([0.4, 1.7]))))
+        place = float(directions_of(turns)[axis] @ point)
+        low = place - draw(st.sampled_from([0.2, 0.9]))
+        lines.append((axis, point, low, place + draw(st.sampled_from([0.4, 1.7]))))
     return lines
 
 
@@ -46,7 +48,8 @@ WOBBLES = [(0, 0, 0), (0, 0, 0), (0.0031, -0.0043, 0.0017), (-0.011, 0.023, 0.01
 @st.composite
 def problems(draw, most_edges=MOST_EDGES):
     """Arguments for `build_graph` and for SolveOptions."""
-    lines = draw(lines_in_space())
+    turns = draw(st.sampled_from([(), (), (0.46,), (0.06, -0.3)]))
+    lines = draw(lines_in_space(turns))
     pairs = [(i, j) for i in range(len(lines)) for j in range(i + 1, len(lines))]
     crossings = [(i, j) for i, j in pairs if lines[i][0] != lines[j][0]]
     collinear = [(i, j) for i, j in pairs if lines[i][0] == lines[j][0]]
@@ -62,6 +65,7 @@ def problems(draw, most_edges=MOST_EDGES):
         "weight": draw(st.lists(st.sampled_from([0.4, 1.0, 1.0, 2.3]), **each)),
         "informative": draw(st.lists(st.sampled_from([True, True, True, False]), **each)),
         "yaw": draw(st.sampled_from([0.3, -0.2])),
+        "turns": turns,
     }
     options = {
         "mu_planarity": draw(st.sampled_from([0.0, 0.5, 3.0])),
@@ -93,7 +97,7 @@ def fits_depths(graph, depth_range):
     """Which sets of edges have depths: shortest paths between all lines and the ground, no negative cycle."""
     subsets = all_subsets(len(graph.edges))
     n = len(graph.segments)
-    axis = np.eye(3)[graph.axis]
+    axis = directions_of(graph.turns)[graph.axis]
     flat = np.linalg.norm(np.cross(graph.rays, axis), axis=1)  # of the ray, across the line's axis
     ends = np.linalg.norm(np.cross(graph.end_rays, axis[:, None]), axis=2)
     nearest = np.log((flat[:, None] / ends).min(axis=1))  # log of near end depth over middle depth
@@ -111,6 +115,28 @@ def fits_depths(graph, depth_range):
     return fits & ~(subsets & ~graph.possible).any(axis=1)
 
 
+def axes_of(frame):
+    """The axes of a frame, the first of further ones being number 1."""
+    return {0, 1, 2} if frame == 0 else {2 * frame + 1, 2 * frame + 2, 2}
+
+
+def frames(graph):
+    """The frame of each line, of an upright one that in which it has most crossings."""
+    found = []
+    for line, axis in enumerate(graph.axis.tolist()):
+        met = [graph.axis[i + j - line] for i, j in graph.edges.tolist() if line in (i, j)]
+        met = [other for other in met if other != 2]
+        own = [frame for frame in range(len(graph.turns) + 1) if axis in axes_of(frame)]
+        found.append(max(own, key=lambda frame: (sum(other in axes_of(frame) for other in met), -frame)))
+    return np.array(found)
+
+
+def in_one_frame(graph):
+    """Which edges families speak about."""
+    frame = frames(graph)
+    return (frame[graph.edges[:, 0]] == frame[graph.edges[:, 1]]) & (graph.kind != "collinear")
+
+
 def edge_table(graph, allowed):
     return {tuple(pair): e for e, (i, j) in enumerate(graph.edges.tolist()) if allowed[e] for pair in ((i, j), (j, i))}
 
@@ -119,7 +145,7 @@ def edge_table(graph, allowed):
 def keeps_cycles_open(graph):
     """Which sets of edges hold no cycle of 3 or 4 lines of all three axes."""
     subsets = all_subsets(len(graph.edges))
-    edge = edge_table(graph, (graph.kind != "collinear") & graph.informative)
+    edge = edge_table(graph, in_one_frame(graph) & graph.informative)
     axis = graph.axis.tolist()
     keeps = np.ones(len(subsets), bool)
     for size in (3, 4):
@@ -134,7 +160,8 @@ def keeps_cycles_open(graph):
 def planar_count(graph):
     """For each set of edges, how many pairs of parallel lines can be given a plane."""
     subsets = all_subsets(len(graph.edges))
-    edge = edge_table(graph, graph.kind != "collinear")
+    edge = edge_table(graph, in_one_frame(graph))
+    frame = frames(graph)
     axis = graph.axis.tolist()
     count = np.zeros(len(subsets), int)
     for k, l in combinations(range(len(axis)), 2):  # noqa: E741
@@ -142,7 +169,7 @@ def planar_count(graph):
         if axis[k] != axis[l] or not any(graph.possible[edge[k, m]] and graph.possible[edge[l, m]] for m in shared):
             continue
         planar = np.zeros(len(subsets), bool)
-        for plane in {0, 1, 2} - {axis[k]}:
+        for plane in axes_of(frame[k]) - {axis[k]}:
             holds = np.ones(len(subsets), bool)
             for m in shared:
                 one, other = subsets[:, edge[k, m]], subsets[:, edge[l, m]]
@@ -156,13 +183,14 @@ def planar_count(graph):
 def inner_count(graph):
     """For each set of edges, how many lines meet lines of at most one other axis."""
     subsets = all_subsets(len(graph.edges))
-    edge = edge_table(graph, graph.kind != "collinear")
+    edge = edge_table(graph, in_one_frame(graph))
+    frame = frames(graph)
     axis = graph.axis.tolist()
     count = np.zeros(len(subsets), int)
     for i in range(len(axis)):
         met = [
             subsets[:, [edge[i, m] for m in range(len(axis)) if axis[m] == a and (i, m) in edge]].any(axis=1)
-            for a in {0, 1, 2} - {axis[i]}
+            for a in axes_of(frame[i]) - {axis[i]}
         ]
         count += ~(met[0] & met[1])
     return count
