@@ -27,6 +27,7 @@ from exporters.camera import camera_to_world, principal_point, vanishing_points
 from exporters.fspy.control_lines import find_control_lines
 from exporters.model import LineGroup, Model
 from linecad.arrays import Float
+from linecad.directions import MAIN
 from linecad.errors import OutputError
 from linecad.line_graph import Segments
 from linecad.scene import AXES, Camera
@@ -167,7 +168,8 @@ def _reference(model: Model) -> _Reference:
     """The longest line of the largest group."""
     scene = model.scene
     largest = set(scene.lines.id[scene.lines.component == 0].tolist())
-    groups = [group for group in model.groups if largest & set(group.ids.tolist())]
+    # Along an axis of the world, for fSpy knows no others.
+    groups = [group for group in model.groups if group.axis < MAIN and largest & set(group.ids.tolist())]
     found = _longest(groups, largest)
     known = scene.metres_per_unit is not None
     if found is None:

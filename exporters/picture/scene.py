@@ -14,7 +14,7 @@ from exporters.picture.canvas import Canvas, drawable, text_width
 from exporters.picture.faces import OPACITY, draw_faces, draw_line, words_of
 from exporters.picture.views import VIEWS, draw_view
 from linecad.arrays import Float
-from linecad.directions import axis_name, count_of
+from linecad.directions import MAIN, axis_name, count_of
 from linecad.scene import DepthMapReport, Lines, Scene
 
 _WIDTH = 2400  # px
@@ -197,11 +197,14 @@ def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
 
 def _draw_legend(canvas: Canvas, words: Sequence[str], directions: int) -> None:
     x, y = float(_MARGIN), canvas.height - 48
-    for axis in range(directions):
+    for axis in range(MAIN):
         for is_boundary in (True, False):
             width = _LINE_WIDTH[is_boundary]
             canvas.line((x, y), (x + 50, y), line_colour(axis, True), width)
             x = _label(canvas, x + 62, y, f"{axis_name(axis)} {'boundary' if is_boundary else 'other'}")
+    for axis in range(MAIN, directions):  # short, for there may be many
+        canvas.line((x, y), (x + 20, y), line_colour(axis, True), _LINE_WIDTH[True])
+        x = _label(canvas, x + 28, y, axis_name(axis)) - 14
     _draw_real(canvas, [x + 8, y], _MARK_RADIUS)
     x = _label(canvas, x + 26, y, "real crossing")
     _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)
