@@ -1,6 +1,13 @@
 // The colours of lines and crossings: those of the pictures and models that linecad exports.
 
+const FURTHER = ["#ed8c1a", "#0d99a6", "#c233b3", "#8c991a"]; // of the level axes of further frames, in turn
+const MOST_FRAMES = 9;
 export const AXIS = { x: "#de2929", y: "#1a9e38", z: "#265ceb" };
+for (let frame = 2; frame <= MOST_FRAMES; frame++) {
+  const first = 2 * ((frame - 2) % 2);
+  AXIS[`x${frame}`] = FURTHER[first];
+  AXIS[`y${frame}`] = FURTHER[first + 1];
+}
 export const REAL = "#ffd61f";
 export const FAKE = "#cc0d9e";
 export const UNSURE = "#8a8a94";

@@ -165,7 +165,7 @@ export class ModelView {
     const opacity = this.store.texture ? FACE_OPACITY.textured : FACE_OPACITY.plain;
     const corners = [];
     for (const plane of this.store.state.planes) {
-      const colour = [...FACE_COLOURS[plane.axis], opacity];
+      const colour = [...FACE_COLOURS[plane.axis[0]], opacity]; // walls of further frames as those of x and y
       for (const face of plane.faces ?? []) {
         const points = [face.outline, ...(face.holes ?? [])].flat();
         for (const index of face.triangles.flat()) corners.push([...points[index], ...colour]);

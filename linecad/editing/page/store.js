@@ -86,7 +86,7 @@ export class Store {
   }
 
   showsLine(line) {
-    return this.layers[line.axis];
+    return this.layers[line.axis[0]]; // x2, x3 and so on of further frames go with x
   }
 
   showsCrossing(crossing) {
