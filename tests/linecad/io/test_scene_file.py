@@ -363,6 +363,39 @@ def refusal(text: str) -> str:
     return str(caught.value)
 
 
+def of_two_frames(turn: Any = 0.25, version: int = 2) -> str:
+    """The example with its second line along the first axis of another frame."""
+    document = json.loads(EXAMPLE) | {"version": version, "turns": [turn]}
+    document["lines"][2]["axis"] = "x2"
+    return json.dumps(document)
+
+
+def test_lines_of_a_second_frame_are_read() -> None:
+    scene = scene_from_json(of_two_frames())
+    assert scene.turns == (0.25,)
+    assert scene.lines.axis.tolist() == [0, 2, 3]
+
+
+def test_a_scene_of_one_frame_is_written_as_version_1() -> None:
+    assert json.loads(scene_to_json(scene_from_json(EXAMPLE)))["version"] == 1
+    assert json.loads(scene_to_json(scene_from_json(of_two_frames())))["version"] == 2
+
+
+@pytest.mark.parametrize("turn", [0, 0.8, -1.0])
+def test_a_turn_that_means_another_frame_is_refused(turn: float) -> None:
+    expected = "expected a turn of at most an eighth of a circle, in radians, that is not 0"
+    assert refusal(of_two_frames(turn)) == f"turns[0] is {turn}, {expected}; see docs/reference/scene-file.md"
+
+
+def test_turns_in_a_file_of_version_1_are_refused() -> None:
+    assert refusal(of_two_frames(version=1)).startswith("turns stands in a file of version 1, expected 2")
+
+
+def test_an_axis_of_a_frame_that_is_not_told_is_refused() -> None:
+    text = EXAMPLE.replace('"axis": "x"', '"axis": "x2"', 1)
+    assert refusal(text).startswith('lines[0].axis is "x2", expected one of')
+
+
 @pytest.mark.parametrize("place", REQUIRED)
 def test_missing_key_is_named_with_its_place(place: str) -> None:
     assert refusal(without(place)) == f"{place} is missing; see docs/reference/scene-file.md"
@@ -789,7 +822,7 @@ def named_in_tables(heading: str) -> list[str]:
 @pytest.mark.parametrize(
     ("heading", "place", "others"),
     [
-        ("The top object", "", ()),
+        ("The top object", "", ("turns",)),
         ("`camera`", "camera", CAMERA_SOURCES),
         ("`certainty`", "certainty", QUALITIES),
         ("`lines[]`", "lines[2]", (*CONFIDENCES, *ROLES, "pieces")),

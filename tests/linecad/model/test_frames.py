@@ -1,0 +1,89 @@
+"""Lines in the axes of their frames, and back in the world."""
+
+import numpy as np
+import pytest
+
+from linecad.directions import components, directions_of
+from linecad.model.frames import FramedLines, in_frame, in_frames, main_planes, of_main, planes_in
+from linecad.scene import Face, Lines, Plane
+
+TURNS = (0.4, -0.2)
+VECTORS = directions_of(TURNS)
+AXIS = np.array([0, 2, 3, 2, 4, 5])
+HOME = np.array([0, 0, 1, 1, 1, 2])
+
+
+def lines() -> Lines:
+    start = np.random.default_rng(1).normal(size=(len(AXIS), 3)) + np.array([0.0, 9.0, 0.0])
+    count = len(AXIS)
+    return Lines(
+        id=np.arange(count),
+        axis=AXIS,
+        segment=np.zeros((count, 2, 2)),
+        ends=np.stack([start, start + 2 * VECTORS[AXIS]], axis=1),
+        is_boundary=np.zeros(count, bool),
+        component=np.zeros(count, int),
+        confidence=np.full(count, "supported"),
+    )
+
+
+def framed() -> FramedLines:
+    offset = np.full((len(AXIS), len(VECTORS)), np.nan)
+    return in_frames(lines(), offset, HOME, TURNS)
+
+
+def test_every_line_runs_along_an_axis_of_its_frame():
+    found = framed()
+    assert found.lines.axis.tolist() == [0, 2, 0, 2, 1, 0]
+    along = found.lines.ends[:, 1] - found.lines.ends[:, 0]
+    np.testing.assert_allclose(along, 2 * np.eye(3)[found.lines.axis], atol=1e-14)
+    assert found.axis.tolist() == AXIS.tolist()
+
+
+def test_lines_come_back_to_the_world():
+    found = framed().in_world()
+    np.testing.assert_allclose(found.ends, lines().ends, atol=1e-14)
+    assert found.axis.tolist() == AXIS.tolist()
+
+
+def test_components_that_lines_share_are_taken_to_the_last_bit():
+    offset = np.full((len(AXIS), len(VECTORS)), np.nan)
+    told = components(lines().ends[:, 0], TURNS)
+    offset[2, 4], offset[2, 2] = told[2, 4] + 1e-5, told[2, 2]
+    found = in_frames(lines(), offset, HOME, TURNS)
+    assert (found.lines.ends[2, :, 1] == offset[2, 4]).all()
+    assert found.lines.ends[2, 0, 0] == pytest.approx(told[2, 3])
+
+
+def test_a_change_reaches_each_frame_apart_and_keeps_the_order():
+    seen = []
+
+    def change(part: Lines, frame: int) -> Lines:
+        seen.append((frame, part.id.tolist()))
+        return part
+
+    assert framed().each(change).lines.id.tolist() == list(range(len(AXIS)))
+    assert seen == [(0, [0, 1]), (1, [2, 3, 4]), (2, [5])]
+
+
+def test_a_frame_has_its_planes_and_the_level_ones_in_its_axes():
+    corners = np.array([[0.0, 5, 0], [1, 5, 0], [1, 5, 1]]) @ VECTORS[[3, 4, 2]]
+    planes = (
+        Plane(0, 1, 4.0, ()),
+        Plane(1, 4, 5.0, (), (Face(0, corners),)),
+        Plane(2, 2, -1.5, ()),
+        Plane(3, 5, 2.0, ()),
+    )
+    found = planes_in(planes, 1, TURNS)
+    assert [(plane.id, plane.axis) for plane in found] == [(1, 1), (2, 2)]
+    np.testing.assert_allclose(found[0].faces[0].outline, [[0, 5, 0], [1, 5, 0], [1, 5, 1]], atol=1e-14)
+    assert [plane.id for plane in main_planes(planes)] == [0, 2]
+
+
+def test_lines_along_the_worlds_axes_alone():
+    assert of_main(lines()).id.tolist() == [0, 1, 3]
+
+
+def test_points_of_the_main_frame_are_those_of_the_world():
+    points = lines().ends
+    assert in_frame(points, 0, TURNS) is points
