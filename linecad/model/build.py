@@ -13,7 +13,6 @@ from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
-from linecad.model.clean.joining import by_size
 from linecad.model.clean.roles import with_roles
 from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
@@ -127,7 +126,6 @@ def build_scene(
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_frames(framed, _intersections(graph, decision, found, new_id), sight)
-    framed = replace(framed, lines=by_size(framed.lines))
     planes = planes_of(framed, cleaned.shared)
     lines = framed.in_world()
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
@@ -137,10 +135,9 @@ def build_scene(
     framed = _drawn(framed, planes, holes.openings, sight)
     planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
-    cleaning = cleaned.note(framed.lines)
     lines = framed.in_world()
     notes = (
-        *_notes(view, graph, solution, found, depth_map), *([cleaning] if cleaning else []), regions.note, *holes.notes
+        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines)]), regions.note, *holes.notes
     )  # fmt: skip
     scene = Scene(
         photo=view.photo,

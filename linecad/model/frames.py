@@ -14,7 +14,7 @@ import numpy as np
 from linecad.arrays import Float, Int, rows_of
 from linecad.directions import MAIN, UP, Turns, components, directions_of, level_axes
 from linecad.model.clean.clean import Cleaned, clean_lines
-from linecad.model.clean.joining import joined_crossings
+from linecad.model.clean.joining import by_size, joined_crossings
 from linecad.model.clean.sight import Sight
 from linecad.model.planes import find_planes
 from linecad.scene import Face, Intersections, Lines, Plane
@@ -135,10 +135,14 @@ def _turned(face: Face, frame: int, turns: Turns) -> Face:
 
 
 def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) -> tuple[Cleaned, FramedLines]:
-    """The lines joined and closed within each frame (`linecad.model.clean.clean`), and the crossings of all."""
+    """The lines joined and closed within each frame (`linecad.model.clean.clean`), and the crossings of all.
+
+    Components are numbered by the size that they have then.
+    """
     if not framed.turns:
         cleaned = clean_lines(framed.lines, crossings, sight)
-        return cleaned, replace(framed, lines=cleaned.lines, frame=np.zeros(len(cleaned.lines), np.int64))
+        frame = np.zeros(len(cleaned.lines), np.int64)
+        return cleaned, FramedLines(by_size(cleaned.lines), frame, ())
     parts, frames, row, count = [], [], np.zeros(len(framed.lines), np.int64), 0
     highest = 0
     for frame in framed.frames:
@@ -165,7 +169,7 @@ def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) ->
         depth=np.concatenate([part.depth for part in parts]),
         reach=np.concatenate([part.reach for part in parts]),
     )
-    return cleaned, FramedLines(lines, np.concatenate(frames), framed.turns)
+    return cleaned, FramedLines(by_size(lines), np.concatenate(frames), framed.turns)
 
 
 def planes_of(framed: FramedLines, shared: Int) -> tuple[Plane, ...]:
