@@ -137,7 +137,8 @@ def build_scene(
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     lines = framed.in_world()
     notes = (
-        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines)]), regions.note, *holes.notes
+        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines)]), regions.note,
+        *holes.notes,
     )  # fmt: skip
     scene = Scene(
         photo=view.photo,

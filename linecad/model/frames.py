@@ -141,8 +141,8 @@ def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) ->
     """
     if not framed.turns:
         cleaned = clean_lines(framed.lines, crossings, sight)
-        frame = np.zeros(len(cleaned.lines), np.int64)
-        return cleaned, FramedLines(by_size(cleaned.lines), frame, ())
+        main = np.zeros(len(cleaned.lines), np.int64)
+        return cleaned, FramedLines(by_size(cleaned.lines), main, ())
     parts, frames, row, count = [], [], np.zeros(len(framed.lines), np.int64), 0
     highest = 0
     for frame in framed.frames:
