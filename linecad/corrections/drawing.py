@@ -4,6 +4,7 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.corrections.edits import Point
+from linecad.directions import axis_name
 from linecad.errors import CorrectionError
 from linecad.geometry import PhotoLength, angles_to, directions_to, vanishing_points
 from linecad.line_graph import ManhattanFrame
@@ -87,6 +88,8 @@ class Drawing:
 
     def _through(self, point: Float, ends: Float, axis: int) -> Float:
         """The segment on the line from a point (2,) to a vanishing point that reaches as far as `ends` do."""
+        if axis >= len(self.vanishing):
+            raise CorrectionError(f"the photo has no direction {axis_name(axis)}; choose another axis")
         along = directions_to(point, self.vanishing[axis])
         span = ends[1] - ends[0]
         length = float(np.linalg.norm(span))

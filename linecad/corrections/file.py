@@ -198,7 +198,7 @@ def axis(node: Node) -> int:
     """The number of a direction by its name."""
     found = axis_of(node.text())
     if found is None:
-        raise node.wrong('"x", "y", "z", or "x2", "y2" and so on of further frames')
+        raise node.wrong("one of x, y, z, or of x2, y2, x3 and so on of further frames")
     return found
 
 

@@ -1,5 +1,7 @@
 """Lines that a person draws or turns: they pass through vanishing points, and their ends snap to other lines."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -57,3 +59,11 @@ def test_pieces_of_a_split_line_meet_at_the_foot_of_the_point(made):
     one, other = Drawing(made.camera, made.frame).split(np.array([[0.0, 0.0], [100.0, 0.0]]), (40.0, 3.0))
     assert one.tolist() == [[0, 0], [40, 0]]
     assert other.tolist() == [[40, 0], [100, 0]]
+
+
+def test_a_direction_that_the_photo_has_not_is_refused(made):
+    drawing = Drawing(made.camera, made.frame)
+    with pytest.raises(CorrectionError, match="the photo has no direction x2; choose another axis"):
+        drawing.turned(np.array([[700.0, 300.0], [900.0, 320.0]]), 3)
+    turned = Drawing(made.camera, replace(made.frame, turns=(0.2,)))
+    assert len(turned.turned(np.array([[700.0, 300.0], [900.0, 320.0]]), 3)) == 2
