@@ -15,9 +15,8 @@ SHARED = 0.1  # of the smaller of two openings, from which they overlap in the p
 MOST_NODES = 10_000  # of a search; the largest of 50 photos were solved at the first
 OPTIMAL = 0  # the status of milp where nothing is better
 
-Shapes = np.ndarray[
-    tuple[int], np.dtype[np.object_]
-]  # polygons, convex and of four corners each, as rectangles of walls are in a photo
+# Polygons of four corners, convex as rectangles of walls are in a photo.
+Shapes = np.ndarray[tuple[int], np.dtype[np.object_]]
 
 
 @dataclass(frozen=True, eq=False)
