@@ -9,12 +9,14 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int
+from linecad.model.openings.quads import shared_areas
 
 SHARED = 0.1  # of the smaller of two openings, from which they overlap in the photo
 MOST_NODES = 10_000  # of a search; the largest of 50 photos were solved at the first
 OPTIMAL = 0  # the status of milp where nothing is better
 
-Shapes = np.ndarray[tuple[int], np.dtype[np.object_]]  # polygons
+# Polygons of four corners, convex as rectangles of walls are in a photo.
+Shapes = np.ndarray[tuple[int], np.dtype[np.object_]]
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +35,7 @@ class Choice:
 
 
 def choose(shapes: list[shapely.Polygon], odds: Float) -> Choice:
-    """Which of shapes (N,) in the photo are taken.
+    """Which of shapes (N,) in the photo, convex and of four corners each, are taken.
 
     `odds` are above those of a rectangle that is as well left out. Openings of different walls compete too, since each
     pixel shows one of them. Odds count by the size of a shape, as long as its outline is: each opening is told by its
@@ -75,8 +77,14 @@ def not_overlapping(shapes: list[shapely.Polygon], others: list[shapely.Polygon]
 
 def _share(one: Shapes, other: Shapes) -> Bool:
     """Which pairs of shapes (P,) overlap by so much that only one of them can be taken."""
-    shared = shapely.area(shapely.intersection(one, other))
+    shared = shared_areas(_corners(one), _corners(other))
     return np.asarray(shared > SHARED * np.minimum(shapely.area(one), shapely.area(other)))
+
+
+def _corners(shapes: Shapes) -> Float:
+    """The corners (P, 4, 2) of quadrilaterals (P,)."""
+    corners: Float = shapely.get_coordinates(shapes).reshape(-1, 5, 2)[:, :4]
+    return corners
 
 
 def heaviest_set(value: Float, pairs: Int) -> tuple[Bool, float]:

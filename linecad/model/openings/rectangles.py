@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from linecad.arrays import Bool, Float, Int
 from linecad.model.openings.raster import Raster
 
-LEAST_SIDE = 6  # columns or rows
+LEAST_SIDE = 5  # columns or rows; facades seen obliquely show no more of a window
 LEAST_STICK = 7  # rows of an upright edge without gaps
 GAP = 5  # rows, over which an upright edge goes on
 MOST_STICKS = 1200  # the longest

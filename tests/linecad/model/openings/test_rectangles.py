@@ -41,6 +41,13 @@ def test_closed_rectangle_is_found():
     assert nearest(find(raster_of([WINDOW])), WINDOW) <= 1
 
 
+def test_window_seen_obliquely_may_be_five_columns_wide_and_no_less():
+    wide = find(raster_of([(20, 25, 30, 55)]))
+    assert (wide[:, 1] - wide[:, 0]).min() == 5
+    narrower = find(raster_of([(20, 24, 30, 54)]))
+    assert len(narrower) == 0 or (narrower[:, 1] - narrower[:, 0]).min() >= 5
+
+
 def test_nothing_is_found_where_two_sides_are_missing():
     assert len(find(raster_of([WINDOW], missing=("left", "low")))) == 0
 
