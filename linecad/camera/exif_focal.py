@@ -116,7 +116,8 @@ def _ways(tags: Tags, history: CropHistory) -> tuple[list[_Way], list[str]]:
     if tags.zoom > 1 and tags.make not in ZOOM_IS_COUNTED:
         if from_sensor:
             without = _equivalent(tags, history, implied, 1.0, 0.0).focal
-            beside = abs(math.log(from_sensor[0].focal / without)) if from_sensor[0].focal > 0 else 0.0
+            known = from_sensor[0].focal > 0 and without > 0  # lengths of next to nothing are rounded to 0 px
+            beside = abs(math.log(from_sensor[0].focal / without)) if known else 0.0
             counted = min((1.0, tags.zoom), key=lambda zoom: abs(beside - math.log(zoom)))
         else:
             counted, spread = math.sqrt(tags.zoom), math.log(tags.zoom) / 2

@@ -132,7 +132,9 @@ def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, F
     graph = setting.graph
     ends = np.repeat(graph.rays[:, None], 2, axis=1)
     lines = SimpleNamespace(axis=graph.axis, ends=ends, segments_of=lambda line: graph.segments.ends[line : line + 1])
-    scene = SimpleNamespace(camera=found.camera, rotation=found.frame.rotation, lines=lines)
+    scene = SimpleNamespace(
+        camera=found.camera, rotation=found.frame.rotation, turns=found.frame.turns, lines=lines
+    )  # fmt: skip
     on = nearest_lines(scene, pixels, np.ones(len(graph.axis), bool))
     factor = depths_of(scene, pixels, on)
     before = np.isfinite(factor) & (factor > 0)

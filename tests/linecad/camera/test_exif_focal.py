@@ -246,6 +246,12 @@ def test_any_exif_gives_a_sensible_focal_length_or_none(exif: dict[int, Any], tu
     assert focal is None or notes
 
 
+def test_a_length_that_rounds_to_no_px_is_no_fault() -> None:
+    told = tags(length=5e-324, equivalent=5e-324, zoom=22.0, make="Canon", model="Canon EOS 5D")
+    focal, _ = found(told, 64, 64)
+    assert focal is None or focal.focal > 0
+
+
 def test_focal_length_of_york_urban_is_within_two_standard_errors(photographs: Path) -> None:
     photos = sorted((photographs / "york_urban").glob("*.jpg"))
     assert photos
