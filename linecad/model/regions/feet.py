@@ -79,8 +79,9 @@ def image_line(one: Surface, other: Surface, view: View) -> Float:
     # On it the ray has the ratio of both offsets in their two coordinates.
     normal = np.zeros(3)
     normal[one.axis], normal[other.axis] = other.offset, -one.offset
-    line: Float = normal @ view.rotation.T @ np.linalg.inv(view.camera.matrix)
-    return line / np.hypot(line[0], line[1])
+    line = normal @ view.rotation.T @ np.linalg.inv(view.camera.matrix)
+    scaled: Float = line / np.hypot(line[0], line[1])
+    return scaled
 
 
 def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
