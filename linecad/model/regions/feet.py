@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float
+from linecad.directions import UP, directions_of
 from linecad.geometry import vanishing_points
 from linecad.model.regions import partition
 from linecad.model.regions.filling import Filled
@@ -75,18 +76,17 @@ def _strips(labels: Labels, view: View) -> list[tuple[shapely.Polygon, tuple[int
 
 
 def image_line(one: Surface, other: Surface, view: View) -> Float:
-    """The image line (3,) in which two surfaces along different axes meet: zero for (u, v, 1) on it, px."""
-    # On it the ray has the ratio of both offsets in their two coordinates.
-    normal = np.zeros(3)
-    normal[one.axis], normal[other.axis] = other.offset, -one.offset
-    line = normal @ view.rotation.T @ np.linalg.inv(view.camera.matrix)
+    """The image line (3,) in which two surfaces of different normals meet: zero for (u, v, 1) on it, px."""
+    # On it the ray has the ratio of both offsets in their two components.
+    normals = directions_of(view.turns)
+    line = (other.offset * normals[one.axis] - one.offset * normals[other.axis]) @ view.rotation.T @ np.linalg.inv(view.camera.matrix)
     scaled: Float = line / np.hypot(line[0], line[1])
     return scaled
 
 
 def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
     """The parts of the photo between a border (V, 2) px and a meet (3,), along uprights; none where they are apart."""
-    upright = vanishing_points(view.camera.matrix, view.rotation)[2]
+    upright = vanishing_points(view.camera.matrix, view.rotation)[UP]
     direction = upright[:2] - chain * upright[2]
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
     with np.errstate(divide="ignore", invalid="ignore"):
