@@ -18,10 +18,12 @@ from linecad.model.regions.labelling import STRAIGHT, Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
+from linecad.scene import Camera
 
 REACH = 0.02  # of the photo's width, between a border and the meet; what is further off is another thing
 UPRIGHT = 0.2  # sine to the upright direction, of the sides of walls
 LEAST_STRIP = 1e-3  # px^2
+ON_EDGE = 1e-3  # px
 
 
 def on_ground(filled: Filled, raster: Raster, view: View) -> Filled:
@@ -86,6 +88,7 @@ def image_line(one: Surface, other: Surface, view: View) -> Float:
 
 def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
     """The parts of the photo between a border (V, 2) px and a meet (3,), along uprights; none where they are apart."""
+    chain = _beyond_photo(chain, view.camera)
     upright = vanishing_points(view.camera.matrix, view.rotation)[UP]
     direction = upright[:2] - chain * upright[2]
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -104,3 +107,17 @@ def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
         quad = shapely.make_valid(shapely.Polygon(corners))
         quads += [part for part in shapely.get_parts(quad) if isinstance(part, shapely.Polygon)]
     return quads
+
+
+def _beyond_photo(chain: Float, camera: Camera) -> Float:
+    """A border (V, 2) px that goes on outside the photo where it ends on the photo's edge.
+
+    Uprights lean there, and a strip between two of them would leave a splinter beside the edge.
+    """
+    longer = chain.copy()
+    for end, next_to in ((0, 1), (-1, -2)):
+        low, high = chain[end] + 0.5, np.array([camera.width, camera.height]) - 0.5 - chain[end]
+        if min(low.min(), high.min()) < ON_EDGE:
+            along = chain[end] - chain[next_to]
+            longer[end] += along * (REACH * camera.width / np.linalg.norm(along))
+    return longer
