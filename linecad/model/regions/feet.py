@@ -81,7 +81,11 @@ def image_line(one: Surface, other: Surface, view: View) -> Float:
     """The image line (3,) in which two surfaces of different normals meet: zero for (u, v, 1) on it, px."""
     # On it the ray has the ratio of both offsets in their two components.
     normals = directions_of(view.turns)
-    line = (other.offset * normals[one.axis] - one.offset * normals[other.axis]) @ view.rotation.T @ np.linalg.inv(view.camera.matrix)
+    line = (
+        (other.offset * normals[one.axis] - one.offset * normals[other.axis])
+        @ view.rotation.T
+        @ np.linalg.inv(view.camera.matrix)
+    )
     scaled: Float = line / np.hypot(line[0], line[1])
     return scaled
 
