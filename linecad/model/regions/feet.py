@@ -38,22 +38,21 @@ def on_ground(filled: Filled, raster: Raster, view: View) -> Filled:
     label = np.full(len(cells), labels.clutter)
     point, old = shapely.STRtree(labels.cells).query(middle, predicate="within")
     label[point] = labels.label[old]
-    was = label.copy()
-    for strip, (before, after) in strips:
-        label[(was == before) & shapely.contains(strip, middle)] = after
+    for strip, number in strips:
+        label[shapely.contains(strip, middle)] = number
     cell = partition.draw(cells, raster.shape, raster.step)
     return replace(filled, labels=replace(labels, cells=cells, cell=cell, label=label))
 
 
-def _strips(labels: Labels, view: View) -> list[tuple[shapely.Polygon, tuple[int, int]]]:
-    """The parts of the photo between borders and meets, px, with the label that each has and the one it gets."""
+def _strips(labels: Labels, view: View) -> list[tuple[shapely.Polygon, int]]:
+    """The parts of the photo between borders and meets, px, with the label that each gets."""
     shapes = np.array(labels.cells, object)
     # With all corners of their cells, so that neighbours share pieces exactly.
     regions = {
         number: shapely.union_all(shapes[labels.label == number])
         for number in np.unique(labels.label[labels.label < labels.sky]).tolist()
     }
-    found: list[tuple[shapely.Polygon, tuple[int, int]]] = []
+    found: list[tuple[shapely.Polygon, int]] = []
     for ground, wall in ((a, b) for a in regions for b in regions):
         if labels.surfaces[ground].kind != "ground" or labels.surfaces[wall].kind != "wall":
             continue
@@ -70,9 +69,7 @@ def _strips(labels: Labels, view: View) -> list[tuple[shapely.Polygon, tuple[int
                 for before, after in ((ground, wall), (wall, ground)):
                     parts = shapely.get_parts(shapely.intersection(quad, regions[before]))
                     found += [
-                        (part, (before, after))
-                        for part in parts
-                        if isinstance(part, shapely.Polygon) and part.area > LEAST_STRIP
+                        (part, after) for part in parts if isinstance(part, shapely.Polygon) and part.area > LEAST_STRIP
                     ]
     return found
 

@@ -39,12 +39,12 @@ def raster(house):
 
 
 def shown(wall, foot, view):
-    """The part of the photo, px, in which a wall is down to the height `foot`."""
+    """The part of the photo, px, in which a wall is down to the height `foot`, or the two heights of a leaning one."""
     axis, offset, span = wall
     vectors = directions_of(TURNS)
     corners = [
         offset * vectors[axis] + place * vectors[int(partner(axis))] + [0, 0, height]
-        for place, height in zip((*span, *span[::-1]), (foot, foot, TOP, TOP), strict=True)
+        for place, height in zip((*span, *span[::-1]), (*np.broadcast_to(foot, 2), TOP, TOP), strict=True)
     ]
     outline = project(np.array(corners), view.camera.matrix, view.rotation)
     return shapely.Polygon(outline).intersection(PHOTO)
@@ -125,6 +125,12 @@ def test_what_ends_further_from_the_meet_stays(view, raster):
         assert (abs(border @ line[:2] + line[2]) < reach) == moves
         before = labelled([FRONT], [GROUND + high], view, raster)
         assert (on_ground(before, raster, view) is not before) == moves
+
+
+@pytest.mark.parametrize("high", [(0.1, 0.4), (0.4, 0.1)])
+def test_what_ends_further_from_the_meet_at_one_end_stays_whole(high, view, raster):
+    before = labelled([FRONT], [GROUND + np.array(high)], view, raster)
+    assert on_ground(before, raster, view) is before
 
 
 def test_feet_on_the_meet_stay(view, raster):
