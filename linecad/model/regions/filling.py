@@ -36,7 +36,7 @@ class Filled:
     @property
     def note(self) -> str:
         """How sure it is that no other labels are better, for people."""
-        cells = f"faces: what each of the {len(self.labels.cells)} parts of the photo shows"
+        cells = f"faces: what each of the {len(self.labels.costs)} parts of the photo shows"
         if self.labels.gap == 0:
             return f"{cells} is proven best for its costs"
         return f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"

@@ -9,6 +9,7 @@ from linecad.depth.normals import Normals
 from linecad.directions import Turns
 from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.evidence import look_up
+from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.labelling import find_labels
 from linecad.model.regions.raster import Picture, take_raster
@@ -37,4 +38,5 @@ def find_regions(
     found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
-    return with_hidden(fill(found, meets[np.argsort(-length, kind="stable")], raster, camera), raster)
+    filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, camera)
+    return with_hidden(on_ground(filled, raster, view), raster)

@@ -47,8 +47,8 @@ class Labels:
     cell: Int  # (S,) of each sample
     label: Int  # (C,) from 0: a surface, then the sky, then clutter
     of_samples: Float  # (S, K + 2) costs of each sample by itself
-    costs: Int  # (C, K + 2)
-    borders: Borders
+    costs: Int  # (C, K + 2), of the cells as they were labelled: feet of walls cut them further
+    borders: Borders  # of the same cells
     gap: float = 1.0  # by which other labels may be cheaper, as a share of what is not cheapest; 1: nothing is known
 
     @property
