@@ -57,6 +57,16 @@ def axis_of(name: str) -> int | None:
     return None
 
 
+def letter_of(axis: int) -> str:
+    """x, y or z: the axis within its frame."""
+    return axis_name(axis)[0]
+
+
+def axis_in_frame(letter: str, frame: int) -> int:
+    """The axis of x, y or z in a frame, 0 for the main one; z is the same in all."""
+    return UP if letter == "z" else level_axes(frame)["xy".index(letter)]
+
+
 def level_axes(frame: int) -> tuple[int, int]:
     """The two level axes of a frame, 0 for the main one."""
     first = MAIN + 2 * (frame - 1) if frame else 0

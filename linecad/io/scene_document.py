@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from linecad.directions import Turns, axis_name
+from linecad.directions import Turns, frame_of, letter_of
 from linecad.scene import (
     Certainty,
     DepthMapReport,
@@ -17,7 +17,7 @@ from linecad.scene import (
 
 FORMAT = "linecad-scene"
 VERSION = 1
-FRAMES_VERSION = 2  # of files whose lines and planes may be of further frames, so that an axis may have a new name
+FRAMES_VERSION = 2  # of files whose lines and planes may be of further frames, which `frame` tells
 LARGEST_ERROR = 180.0  # degrees; whoever errs by that much about a rotation knows nothing of it
 ANGLE_DIGITS = 12  # after the point, of degrees: a number that was turned to radians and back is the same again
 
@@ -66,11 +66,17 @@ def version_of(turns: Turns) -> int:
     return FRAMES_VERSION if turns else VERSION
 
 
+def _direction(axis: int) -> dict[str, object]:
+    """The axis within its frame, so that readers who know three axes find one of them, and the frame but the main."""
+    frame = int(frame_of(np.array(axis)))
+    return {"axis": letter_of(axis), **({"frame": frame} if frame else {})}
+
+
 def _line_records(lines: Lines) -> list[dict[str, object]]:
     return [
         {
             "id": int(lines.id[row]),
-            "axis": axis_name(int(lines.axis[row])),
+            **_direction(int(lines.axis[row])),
             "segment": lines.segment[row].tolist(),
             "ends": lines.ends[row].tolist(),
             "boundary": bool(lines.is_boundary[row]),
@@ -103,7 +109,7 @@ def _crossing_records(crossings: Intersections) -> list[dict[str, object]]:
 def _plane_record(plane: Plane) -> dict[str, object]:
     return {
         "id": int(plane.id),
-        "axis": axis_name(plane.axis),
+        **_direction(plane.axis),
         "offset": float(plane.offset),
         "lines": [int(line) for line in plane.lines],
         "faces": [

@@ -18,7 +18,7 @@ from linecad.io.members import (
 )
 from linecad.io.scene_document import FORMAT, FRAMES_VERSION, LARGEST_ERROR, VERSION
 from linecad.io.strict_json import JsonError, Node
-from linecad.io.surface_reading import read_axis, read_openings, read_planes
+from linecad.io.surface_reading import read_direction, read_openings, read_planes
 from linecad.line_graph import EDGE_KINDS
 from linecad.scene import (
     CAMERA_SOURCES,
@@ -82,6 +82,8 @@ def scene_of(top: Node) -> Scene:
 def _turns(top: Node) -> Turns:
     """Of the frames beside the world's axes, rad; only files of the second version may have some."""
     told = optional_items(top, "turns")
+    if not told and top["version"].integer() == FRAMES_VERSION:
+        raise JsonError(f"turns has no number, but the file is of version {FRAMES_VERSION}")
     if told and top["version"].integer() != FRAMES_VERSION:
         raise JsonError(f"turns stands in a file of version {top['version'].value}, expected {FRAMES_VERSION}")
     for node in told:
@@ -161,7 +163,7 @@ def _lines(nodes: list[Node], turns: Turns) -> Lines:
     ids = [node["id"] for node in nodes]
     return Lines(
         id=np.array(distinct_ids(ids), np.int64),
-        axis=np.array([read_axis(node["axis"], turns) for node in nodes], np.int64),
+        axis=np.array([read_direction(node, turns) for node in nodes], np.int64),
         segment=np.array([node["segment"].array(2, 2, largest=LARGEST_NUMBER) for node in nodes]),
         ends=np.array([node["ends"].array(2, 3, largest=LARGEST_NUMBER) for node in nodes]),
         is_boundary=np.array([node["boundary"].boolean() for node in nodes], bool),

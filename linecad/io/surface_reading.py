@@ -3,7 +3,7 @@
 from typing import cast
 
 from linecad.arrays import Float
-from linecad.directions import Turns, axis_name, count_of
+from linecad.directions import Turns, axis_in_frame
 from linecad.io.members import (
     LARGEST_NUMBER,
     count_or_zero,
@@ -14,7 +14,7 @@ from linecad.io.members import (
     optional_items,
 )
 from linecad.io.strict_json import JsonError, Node
-from linecad.scene import FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
+from linecad.scene import AXES, FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
 
 
 def read_planes(nodes: list[Node], known: set[int], openings: set[int], turns: Turns) -> tuple[Plane, ...]:
@@ -27,7 +27,7 @@ def read_planes(nodes: list[Node], known: set[int], openings: set[int], turns: T
     return tuple(
         Plane(
             id=node["id"].integer(),
-            axis=read_axis(node["axis"], turns),
+            axis=read_direction(node, turns),
             offset=node["offset"].number(LARGEST_NUMBER),
             lines=tuple(line_ids(node["lines"], known)),
             faces=tuple(_face(face, openings) for face in optional_items(node, "faces")),
@@ -36,10 +36,11 @@ def read_planes(nodes: list[Node], known: set[int], openings: set[int], turns: T
     )
 
 
-def read_axis(node: Node, turns: Turns) -> int:
-    """The number of a direction by its name, as far as frames are turned."""
-    names = tuple(axis_name(axis) for axis in range(count_of(turns)))
-    return names.index(node.one_of(names))
+def read_direction(node: Node, turns: Turns) -> int:
+    """The direction of a line or of the normal of a plane; in version 1, without `turns`, `frame` means nothing."""
+    letter = node["axis"].one_of(tuple(AXES))
+    frame = known_member(node, "frame") if turns else None
+    return axis_in_frame(letter, 0 if frame is None else frame.integer(0, len(turns)))
 
 
 def _face(node: Node, openings: set[int]) -> Face:

@@ -8,13 +8,16 @@ from hypothesis import strategies as st
 from linecad.directions import (
     UP,
     across,
+    axis_in_frame,
     axis_name,
     axis_of,
     common_frame,
     components,
     count_of,
     directions_of,
+    frame_of,
     in_world,
+    letter_of,
     lies_across,
     partner,
     third,
@@ -72,6 +75,16 @@ def test_names_are_read_as_they_are_written(axis):
 @pytest.mark.parametrize("name", ["", "z2", "x1", "x0", "x02", "w", "xy", "x²", "X"])
 def test_what_is_no_name_of_a_direction_is_none(name):
     assert axis_of(name) is None
+
+
+@given(st.integers(0, 500))
+def test_a_letter_and_a_frame_tell_the_axis(axis):
+    assert axis_in_frame(letter_of(axis), int(frame_of(np.array(axis)))) == axis
+
+
+@given(st.integers(0, 200))
+def test_the_upright_is_the_same_axis_in_all_frames(frame):
+    assert axis_in_frame("z", frame) == 2
 
 
 def test_names_count_the_frames():

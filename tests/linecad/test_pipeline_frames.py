@@ -121,8 +121,8 @@ def test_the_scene_file_tells_the_turns_and_is_read_as_it_was(tmp_path):
     document = json.loads(path.read_text())
     assert document["version"] == 2
     assert document["turns"] == [TURN]
-    assert {line["axis"] for line in document["lines"]} == {"x", "z", "x2"}
-    assert {"y", "y2"} <= {plane["axis"] for plane in document["planes"]}
+    assert {(line["axis"], line.get("frame", 0)) for line in document["lines"]} == {("x", 0), ("z", 0), ("x", 1)}
+    assert {("y", 0), ("y", 1)} <= {(plane["axis"], plane.get("frame", 0)) for plane in document["planes"]}
     again = read_scene(path)
     assert again.turns == (TURN,)
     assert again.lines.axis.tolist() == scene().lines.axis.tolist()

@@ -363,10 +363,10 @@ def refusal(text: str) -> str:
     return str(caught.value)
 
 
-def of_two_frames(turn: Any = 0.25, version: int = 2) -> str:
+def of_two_frames(turn: Any = 0.25, version: int = 2, axis: str = "x", frame: Any = 1) -> str:
     """The example with its second line along the first axis of another frame."""
     document = json.loads(EXAMPLE) | {"version": version, "turns": [turn]}
-    document["lines"][2]["axis"] = "x2"
+    document["lines"][2] |= {"axis": axis, "frame": frame}
     return json.dumps(document)
 
 
@@ -391,9 +391,33 @@ def test_turns_in_a_file_of_version_1_are_refused() -> None:
     assert refusal(of_two_frames(version=1)).startswith("turns stands in a file of version 1, expected 2")
 
 
-def test_an_axis_of_a_frame_that_is_not_told_is_refused() -> None:
-    text = EXAMPLE.replace('"axis": "x"', '"axis": "x2"', 1)
-    assert refusal(text).startswith('lines[0].axis is "x2", expected one of')
+def test_version_2_without_turns_is_refused() -> None:
+    text = EXAMPLE.replace('"version": 1', '"version": 2')
+    assert refusal(text).startswith("turns has no number, but the file is of version 2")
+
+
+@pytest.mark.parametrize("frame", [-1, 2, 0.5, "1"])
+def test_a_frame_that_is_not_told_is_refused(frame: Any) -> None:
+    assert refusal(of_two_frames(frame=frame)).startswith(f"lines[2].frame is {json.dumps(frame)}, expected")
+
+
+def test_an_axis_that_names_its_frame_is_refused() -> None:
+    assert refusal(of_two_frames(axis="x2")).startswith('lines[2].axis is "x2", expected one of')
+
+
+@pytest.mark.parametrize(("axis", "frame", "number"), [("y", 1, 4), ("x", 0, 0), ("y", None, 1), ("z", 1, 2)])
+def test_the_frame_decides_which_axis_a_letter_means(axis: str, frame: Any, number: int) -> None:
+    assert scene_from_json(of_two_frames(axis=axis, frame=frame)).lines.axis[2] == number
+
+
+def test_only_level_lines_of_further_frames_tell_a_frame() -> None:
+    lines = json.loads(scene_to_json(scene_from_json(of_two_frames())))["lines"]
+    assert [(line["axis"], line.get("frame")) for line in lines] == [("x", None), ("z", None), ("x", 1)]
+
+
+def test_a_key_called_frame_means_nothing_in_version_1() -> None:
+    text = EXAMPLE.replace('"axis": "x"', '"axis": "x", "frame": "oak"')
+    assert scene_from_json(text).lines.axis.tolist() == [0, 2, 2]
 
 
 @pytest.mark.parametrize("place", REQUIRED)
