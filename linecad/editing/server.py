@@ -17,6 +17,7 @@ from starlette.routing import Route
 
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.depth.depth_map import DepthMap
+from linecad.directions import axis_name
 from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
 from linecad.editing.edits import proposal, read_edit
@@ -150,7 +151,7 @@ class Editor:
     def propose(self, body: Node) -> Response:
         """POST /api/propose: what a drawn line would be."""
         ends, axis, snapped = proposal(body, self.session.editing)
-        return JSONResponse({"axis": "xyz"[axis], "ends": ends.tolist(), "snapped": list(snapped)})
+        return JSONResponse({"axis": axis_name(axis), "ends": ends.tolist(), "snapped": list(snapped)})
 
     def solve(self, body: Node) -> Response:
         """POST /api/solve."""

@@ -233,6 +233,12 @@ class TestEdits:
         assert page.post("propose", ends=ends, axis="x").json()["axis"] == "x"
         assert page.edit(op="draw", ends=ends, axis="x")["lines"][-1]["axis"] == "x"
 
+    def test_an_axis_of_a_further_frame_is_proposed_by_its_name(self, page, monkeypatch):
+        ends = np.array([[700.0, 200.0], [702.0, 420.0]])
+        monkeypatch.setattr("linecad.editing.server.proposal", lambda *_: (ends, 4, (False, True)))
+        proposed = page.post("propose", ends=ends.tolist()).json()
+        assert proposed == {"axis": "y2", "ends": ends.tolist(), "snapped": [False, True]}
+
     def test_a_length_sets_the_scale_without_a_solve_and_undo_takes_it_back(self, page):
         line = next(one for one in page.solve()["lines"] if one["component"] == 0)
         state = page.edit(op="length", line=line["id"], metres=2.5)
