@@ -31,12 +31,8 @@ _FACES, _OUTLINES = "FACES", "FACE_OUTLINES"  # layer names; ASCII, because Free
 
 # AutoCAD colour index: x red, y green, z blue, the paler one where the line is no boundary.
 _COLOUR = {(0, True): 1, (0, False): 11, (1, True): 3, (1, False): 91, (2, True): 5, (2, False): 171}
-_FURTHER = (
-    (30, 31),
-    (132, 131),
-    (212, 211),
-    (52, 51),
-)  # of the level axes of further frames, in turn: orange, teal ...
+# Of the level axes of further frames, in turn, boundary and not: orange, teal, magenta, olive.
+_FURTHER = ((30, 31), (132, 131), (212, 211), (52, 51))
 _FACE_COLOUR, _OUTLINE_COLOUR = 254, 8
 _LINEWEIGHT = {True: 35, False: 13}  # hundredths of a millimetre on paper, by boundary
 _DETAIL_LINEWEIGHT = 9

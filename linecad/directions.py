@@ -73,6 +73,11 @@ def level_axes(frame: int) -> tuple[int, int]:
     return first, first + 1
 
 
+def frame_axes(frame: int) -> list[int]:
+    """The directions that are x, y and z in a frame."""
+    return [*level_axes(frame), UP]
+
+
 def frame_of(axis: Int) -> Int:
     """The frame of each axis, 0 for the main one; the upright counts as the main one's."""
     return np.where(axis < MAIN, 0, (axis - MAIN) // 2 + 1)

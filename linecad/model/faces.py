@@ -14,6 +14,7 @@ from linecad.arrays import Float
 from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
+from linecad.model.regions.partition import polygons_of
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Face, FaceKind, Lines, Plane
 
@@ -51,8 +52,8 @@ def find_faces(
         if number >= labels.sky:
             continue
         surface = labels.surfaces[number]
-        for region in _polygons(_before(whole, surface, depth, camera, axes), LEAST_AREA * area):
-            hidden = _polygons(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
+        for region in polygons_of(_before(whole, surface, depth, camera, axes), LEAST_AREA * area):
+            hidden = polygons_of(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
             parts.append(_lifted(surface, region, hidden, camera, axes))
     parts = _snapped(parts, planes, lines)
     faces: dict[int, list[Face]] = {}
@@ -63,11 +64,6 @@ def find_faces(
             faces.setdefault(id(part.surface), []).append(face)
             count += 1
     return _with_faces(planes, labels.surfaces, faces)
-
-
-def _polygons(shape: shapely.Geometry, least: float) -> list[shapely.Polygon]:
-    """The polygons of a shape that have an area of `least` px^2 or more."""
-    return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and part.area >= least]
 
 
 def _before(region: shapely.Polygon, surface: Surface, depth: float, camera: Camera, axes: Float) -> shapely.Geometry:

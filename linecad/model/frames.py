@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from linecad.arrays import Float, Int, rows_of
-from linecad.directions import MAIN, UP, Turns, components, directions_of, level_axes
+from linecad.directions import MAIN, UP, Turns, components, directions_of, frame_axes
 from linecad.model.clean.clean import Cleaned, clean_lines
 from linecad.model.clean.joining import by_size, joined_crossings
 from linecad.model.clean.sight import Sight
@@ -55,13 +55,8 @@ class FramedLines:
     @property
     def axis(self) -> Int:
         """(N,) the direction of each line."""
-        axes = np.array([[*level_axes(frame), UP] for frame in self.frames])
+        axes = np.array([frame_axes(frame) for frame in self.frames])
         return np.asarray(axes[self.frame, self.lines.axis])
-
-
-def frame_axes(frame: int) -> list[int]:
-    """The directions that are x, y and z in a frame."""
-    return [*level_axes(frame), UP]
 
 
 def in_frame(points: Float, frame: int, turns: Turns) -> Float:

@@ -11,7 +11,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.normals import UNTOLD
-from linecad.directions import MAIN, UP, across, components, frame_of, level_axes, partner
+from linecad.directions import MAIN, UP, across, components, frame_axes, frame_of, partner
 from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines
@@ -259,7 +259,7 @@ def _votes_in_frame(votes: Float, surface: Surface) -> Float:
     if surface.axis == UP:
         level = [votes[:, [first, *further[first::2]]].sum(axis=1) for first in range(2)]
         return np.column_stack([*level, votes[:, UP], votes[:, -1]])
-    own = [*level_axes(int(frame_of(np.array(surface.axis)))), UP]
+    own = frame_axes(int(frame_of(np.array(surface.axis))))
     return np.column_stack([votes[:, own], np.delete(votes, own, axis=1).sum(axis=1)])
 
 

@@ -67,10 +67,8 @@ def _strips(labels: Labels, view: View) -> list[tuple[shapely.Polygon, int]]:
         for chain in shapely.get_parts(merged):
             for quad in _between(shapely.get_coordinates(chain), meet, view):
                 for before, after in ((ground, wall), (wall, ground)):
-                    parts = shapely.get_parts(shapely.intersection(quad, regions[before]))
-                    found += [
-                        (part, after) for part in parts if isinstance(part, shapely.Polygon) and part.area > LEAST_STRIP
-                    ]
+                    strip = shapely.intersection(quad, regions[before])
+                    found += [(part, after) for part in partition.polygons_of(strip, LEAST_STRIP)]
     return found
 
 
@@ -105,8 +103,7 @@ def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
         if not (np.abs(step[number : number + 2]) < REACH * view.camera.width).all():
             return []
         corners = np.array([chain[number], chain[number + 1], moved[number + 1], moved[number]])
-        quad = shapely.make_valid(shapely.Polygon(corners))
-        quads += [part for part in shapely.get_parts(quad) if isinstance(part, shapely.Polygon)]
+        quads += partition.polygons_of(shapely.make_valid(shapely.Polygon(corners)))
     return quads
 
 

@@ -225,4 +225,4 @@ def _bordering(found: Labels, lines: Float, least: float) -> Bool:
 def united(cells: list[shapely.Polygon]) -> list[shapely.Polygon]:
     """The connected unions of cells, px, with corners only where their outlines turn."""
     union = shapely.simplify(shapely.union_all(np.array(cells, object)), STRAIGHT)
-    return [part for part in shapely.get_parts(union) if isinstance(part, shapely.Polygon)]
+    return partition.polygons_of(union)

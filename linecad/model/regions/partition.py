@@ -57,6 +57,11 @@ def cut(lines: Float) -> list[shapely.Polygon]:
     return cells_between(list(shapely.linestrings(lines)))
 
 
+def polygons_of(shape: shapely.Geometry, least: float = 0.0) -> list[shapely.Polygon]:
+    """The polygons of a shape that have an area of `least` px^2 or more."""
+    return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and part.area >= least]
+
+
 def cells_between(lines: list[shapely.Geometry]) -> list[shapely.Polygon]:
     """The cells between lines, with corners on a grid of GRID px, so that neighbours have them in common exactly."""
     pieces = shapely.get_parts(shapely.union_all(lines, grid_size=GRID))
