@@ -16,6 +16,7 @@ from linecad.errors import ReconstructionError
 from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
+from linecad.lines.details import apart_from, find_details, find_whole_details
 from linecad.lines.segments import (
     SMALL_WIDTH,
     find_faint_segments,
@@ -42,6 +43,7 @@ class FoundLines:
     known_inconsistency: float | None = None  # of the photo they come from, where that was asked before
     certainty: Certainty | None = None  # of camera and frame
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) of the photo, for cues that look at it
+    details: Segments | None = None  # labelled fragments too faint or short to build on; None: nobody looked
 
     def grouped(self, options: Options) -> "FoundLines":
         """The whole lines, as the reach in use makes them of the fragments: what a person sees and corrects."""
@@ -62,6 +64,13 @@ class FoundLines:
         if self.reach is None:
             grouped = group_segments(self.segments, self.camera, self.frame, reach.largest_gap)
         return build_line_graph(grouped, self.camera, self.frame, reach, weights, collinear, self.pixels)
+
+    def details_for_faces(self, without: Segments) -> Segments | None:
+        """The whole lines of all fragments, for faces to place, but not where lines `without` were taken away."""
+        if self.details is None:
+            return None
+        whole = group_segments(self.segments.joined(self.details), self.camera, self.frame)
+        return apart_from(whole, without, self.camera.width)
 
     @cached_property
     def widest_graph(self) -> LineGraph:
@@ -113,7 +122,12 @@ def name_lines(
     frame = frames.frame
     through_points = find_vanishing_point_lines(photo.grey, camera, frame)
     pieces = _labelled(raw, through_points, camera, frames)
-    return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
+    on_stage("finding details")
+    details = _labelled(find_details(photo.grey), find_whole_details(photo.grey, camera, frame), camera, frames)
+    certainty = calibrated.certainty
+    return FoundLines(
+        camera, frame, pieces, calibrated.notes, certainty=certainty, pixels=photo.pixels, details=details
+    )
 
 
 def _labelled(raw: Segments, through_points: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:

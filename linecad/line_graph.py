@@ -44,6 +44,11 @@ class Segments:
     def __len__(self) -> int:
         return len(self.ends)
 
+    @classmethod
+    def none(cls) -> "Segments":
+        """No segment at all."""
+        return cls(np.zeros((0, 2, 2)), np.zeros(0, np.int64))
+
     @property
     def length(self) -> Float:
         """(N,) px."""

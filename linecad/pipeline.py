@@ -1,7 +1,11 @@
 """The stages in the paper's order (algorithm 1): a photo becomes a scene."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+import numpy as np
+
+from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.corrections.apply import CorrectedLines, correct
 from linecad.corrections.edits import Corrections
@@ -11,7 +15,7 @@ from linecad.decide.decision import Decision, decide
 from linecad.depth.depth_map import DepthMap
 from linecad.depth.intrinsics import note_on_intrinsics
 from linecad.finding import FoundLines, connect, find_lines
-from linecad.line_graph import LineGraph, Solution
+from linecad.line_graph import LineGraph, Segments, Solution
 from linecad.model.build import View, build_scene, find_components
 from linecad.model.lifting import Lifted, lift
 from linecad.options import Options
@@ -72,6 +76,7 @@ def reconstruct_lines(
     Raises ReconstructionError, SolverError or, where annotations cannot all be true, ContradictionError. The scale of
     known lengths is not set (`corrections.lengths.measured`).
     """
+    details = found.details_for_faces(_taken_away(found.segments, corrected)) if options.uses_bodies else None
     if corrected is not None:
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)
@@ -91,13 +96,25 @@ def reconstruct_lines(
     decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
     notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
-    view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels)
+    view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details)
     lifted = lift(graph, decision.real, solution.log_depth)
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:
         decision = decision.within(found_components.kept, graph)
     scene = build_scene(view, graph, solution, decision, found_components, placed)
     return Reconstruction(whole, graph, solution, decision, lifted, scene)
+
+
+def _taken_away(found: Segments, corrected: CorrectedLines | None) -> Segments:
+    """The segments that a person took away or changed."""
+    if corrected is None:
+        return Segments.none()
+    kept = {(axis, ends.tobytes()) for axis, ends in _looks(corrected.segments)}
+    return found.subset(np.array([(axis, ends.tobytes()) not in kept for axis, ends in _looks(found)], bool))
+
+
+def _looks(segments: Segments) -> Iterator[tuple[int, Float]]:
+    return zip(segments.axis.tolist(), segments.ends, strict=True)
 
 
 def _notes_on_map(depth: DepthMap | None, placed: Placed | None, camera: Camera) -> tuple[str, ...]:

@@ -85,6 +85,7 @@ def _line_records(lines: Lines) -> list[dict[str, object]]:
             "role": str(lines.role[row]),
             **({"probability": float(lines.probability[row])} if len(lines.probability) else {}),
             **({"by_depth_map": True} if lines.by_depth_map[row] else {}),
+            **({"by_face": True} if lines.by_face[row] else {}),
             **({"pieces": lines.pieces[row].tolist()} if len(lines.pieces[row]) else {}),
         }
         for row in range(len(lines))

@@ -171,6 +171,7 @@ def _lines(nodes: list[Node], turns: Turns) -> Lines:
         confidence=np.array([node["confidence"].one_of(CONFIDENCES) for node in nodes], str),
         probability=_probabilities(nodes),
         by_depth_map=np.array([optional_boolean(node, "by_depth_map") for node in nodes], bool),
+        by_face=np.array([optional_boolean(node, "by_face") for node in nodes], bool),
         role=np.array([_role(node.get("role")) for node in nodes], str),
         pieces=tuple(_pieces(node) for node in nodes),
     )

@@ -62,14 +62,16 @@ def least_evidence(width: int) -> float:
     return LEAST_EVIDENCE / min(room * SMALL_WIDTH / (WIDE - SMALL_WIDTH), 1.0) if room > 0 else np.inf
 
 
-def find_vanishing_point_lines(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame) -> Segments:
+def find_vanishing_point_lines(
+    grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame, least: float | None = None
+) -> Segments:
     """Segments of a grey photo (H, W) on lines through its vanishing points, labelled by their axis.
 
-    None in photos of WIDE px or more.
+    Each has `least` nats of evidence; None: as many as lines to build on, so that photos of WIDE px or more have none.
     """
-    least = least_evidence(grey.shape[1])
+    least = least_evidence(grey.shape[1]) if least is None else least
     if np.isinf(least):
-        return Segments(np.zeros((0, 2, 2)), np.zeros(0, np.int64))
+        return Segments.none()
     points = vanishing_points(camera.matrix, frame.axes)
     smooth = np.asarray(cv2.GaussianBlur(grey.astype(np.float32), (0, 0), BLUR), np.float32)
     gradient = _derivative(smooth, 1, 0), _derivative(smooth, 0, 1)

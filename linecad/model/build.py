@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int, Text
+from linecad.arrays import Bool, Float, Int, Text, rows_of
 from linecad.decide.decision import Decision
 from linecad.depth.normals import Normals
 from linecad.errors import ReconstructionError
 from linecad.graph.connectivity import components, spanning_tree
-from linecad.line_graph import LineGraph, ManhattanFrame, Solution
+from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
 from linecad.model.clean.roles import with_roles
@@ -31,6 +31,7 @@ from linecad.model.frames import (
     sight_in,
 )
 from linecad.model.lifting import Lifted
+from linecad.model.on_faces.add import add_lines
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
@@ -56,6 +57,7 @@ class View:
     lines: int  # that were found in it, also those that are not in the solved graph
     notes: tuple[str, ...]  # what is known so far
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) RGB, as straight as the lines; None: nothing to look at
+    details: Segments | None = None  # edges along the axes that faces can place; None: faces add no lines
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,13 +134,18 @@ def build_scene(
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
-    framed = _drawn(framed, planes, holes.openings, sight)
+    whole = planes
     planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
+    count = len(framed.lines)
+    if view.details is not None:
+        added = add_lines(framed, planes, view.details, view.camera, sight)
+        framed, planes = added.lines, added.planes
+    framed = _drawn(framed, whole, holes.openings, sight)
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
     lines = framed.in_world()
     notes = (
-        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines)]), regions.note,
-        *holes.notes,
+        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(rows_of(framed.lines, np.arange(count)))]),
+        regions.note, *holes.notes,
     )  # fmt: skip
     scene = Scene(
         photo=view.photo,

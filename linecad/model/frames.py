@@ -44,7 +44,7 @@ class FramedLines:
         rows = [self.of(frame) for frame in self.frames if len(self.of(frame))]
         parts = [change(rows_of(self.lines, own), int(self.frame[own[0]])) for own in rows]
         order = np.argsort(np.concatenate(rows))
-        return replace(self, lines=rows_of(_together(parts), order))
+        return replace(self, lines=rows_of(together(parts), order))
 
     def in_world(self) -> Lines:
         """The lines in the world, along the directions of all frames."""
@@ -154,7 +154,7 @@ def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) ->
         parts.append(replace(part, shared=shared, lines=replace(part.lines, id=ids)))
         frames.append(np.full(len(part.lines), frame))
         count += len(part.lines)
-    lines = _together([part.lines for part in parts])
+    lines = together([part.lines for part in parts])
     cleaned = Cleaned(
         lines=lines,
         intersections=joined_crossings(crossings, framed.lines.id, row, count),
@@ -180,8 +180,8 @@ def planes_of(framed: FramedLines, shared: Int) -> tuple[Plane, ...]:
     return tuple(replace(plane, id=number) for number, plane in enumerate(found))
 
 
-def _together(parts: list[Lines]) -> Lines:
-    """The lines of several records."""
+def together(parts: list[Lines]) -> Lines:
+    """The lines of several records, which tell the same of each."""
     values: dict[str, Any] = {}
     for each in fields(Lines):
         found = [getattr(part, each.name) for part in parts]

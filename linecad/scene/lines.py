@@ -24,6 +24,7 @@ class Lines:
     probability: Float | tuple[()] = ()
     by_depth_map: Bool | tuple[()] = ()  # (N,) a depth map alone says where the line's body stands; left out: of none
     role: Text | tuple[()] = ()  # (N,) one of ROLES; left out: all are outlines
+    by_face: Bool | tuple[()] = ()  # (N,) no crossing placed it: it lies on a face; left out: crossings placed all
     # N: the segments (K, 2, 2) px that a line was joined from, (0, 2, 2) where it has one; left out: all have one
     pieces: tuple[Float, ...] = ()
 
@@ -35,15 +36,16 @@ class Lines:
         freeze(self, "is_boundary", np.bool_, (None,))
         freeze(self, "confidence", np.str_, (None,))
         freeze(self, "probability", np.float64, (None,))
-        if len(self.by_depth_map) == 0:
-            object.__setattr__(self, "by_depth_map", np.zeros(len(self.id), bool))
-        freeze(self, "by_depth_map", np.bool_, (None,))
+        for name in ("by_depth_map", "by_face"):
+            if len(getattr(self, name)) == 0:
+                object.__setattr__(self, name, np.zeros(len(self.id), bool))
+            freeze(self, name, np.bool_, (None,))
         if len(self.role) == 0:
             object.__setattr__(self, "role", np.full(len(self.id), ROLES[0]))
         freeze(self, "role", np.str_, (None,))
         self._freeze_pieces()
-        same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map", "role", "pieces"]
-        check_lengths(self, len(self.id), same + ["probability"] * (len(self.probability) > 0))
+        same = ["axis", "segment", "ends", "is_boundary", "component", "confidence", "by_depth_map", "by_face", "role"]
+        check_lengths(self, len(self.id), [*same, "pieces", *["probability"] * (len(self.probability) > 0)])
         check_not_negative(self, ["id", "axis", "component"])
         check_words(self, "confidence", CONFIDENCES)
         check_words(self, "role", ROLES)

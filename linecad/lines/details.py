@@ -1,0 +1,90 @@
+"""Edges too faint or too short to build on, which faces can place once they are known.
+
+A crossing of such an edge tells little of depth, and joins as often what is apart: so no graph is made of them. On the
+face that the photo shows around it, an edge needs no crossing.
+"""
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from linecad.arrays import Float
+from linecad.geometry import PhotoLength, lengths, resized_camera, segment_coordinates
+from linecad.line_graph import ManhattanFrame, Segments
+from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
+from linecad.scene import Camera
+
+WIDTH = 1920  # px; wider photos are made smaller first, where a faint edge stands out from the grain
+WIDTH_OF_WHOLE = 1280  # px, the same for whole lines through vanishing points
+EVIDENCE = 40.0  # nats, of such a line
+ERROR = 1.0  # grey levels, by which the detector takes brightness to be off; half of what it usually does
+LEAST = 10.0  # px, of a fragment in the smaller photo
+DETECTOR_SCALE = 0.8
+TWIN = PhotoLength(4.0, floor=2.0)  # px across, within which a segment repeats another
+LEAST_STRETCH = PhotoLength(20.0, floor=8.0)  # px; what is left of a segment beside others is not worth less
+
+
+def find_details(grey: NDArray[np.uint8]) -> Segments:
+    """The straight segments of a grey photo (H, W) down to the faint ones, not labelled yet."""
+    small, size = _smaller(grey, WIDTH)
+    detector = cv2.createLineSegmentDetector(cv2.LSD_REFINE_STD, scale=DETECTOR_SCALE, quant=ERROR)
+    found = detector.detect(small)[0]
+    ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
+    ends = ends[lengths(ends[:, 1] - ends[:, 0]) >= LEAST]
+    return Segments((ends + 0.5) * size - 0.5, np.full(len(ends), -1))
+
+
+def find_whole_details(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame) -> Segments:
+    """The lines through vanishing points of a grey photo (H, W), labelled, also where it is large.
+
+    A long edge stands out by its length alone, though none of its fragments does.
+    """
+    small, size = _smaller(grey, WIDTH_OF_WHOLE)
+    matrix = resized_camera(camera.matrix, 1 / size)
+    camera = replace(camera, width=small.shape[1], height=small.shape[0], matrix=matrix)
+    found = find_vanishing_point_lines(small, camera, frame, EVIDENCE)
+    return Segments((found.ends + 0.5) * size - 0.5, found.axis)
+
+
+def _smaller(grey: NDArray[np.uint8], width: int) -> tuple[NDArray[np.uint8], Float]:
+    """A photo of at most that width, px, and how many of its own pixels (2,) one of that is, across and down."""
+    scale = min(1.0, width / grey.shape[1])
+    if scale == 1.0:
+        return grey, np.ones(2)
+    small = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, np.uint8), np.array([grey.shape[1] / small.shape[1], grey.shape[0] / small.shape[0]])
+
+
+def apart_from(segments: Segments, others: Segments, width: int) -> Segments:
+    """What is left of the segments in a photo of that width where none of the others of their axis repeats them.
+
+    A segment may leave several stretches.
+    """
+    across, least = TWIN.px(width), LEAST_STRETCH.px(width)
+    ends: list[Float] = []
+    axes: list[int] = []
+    for own, axis in zip(segments.ends, segments.axis.tolist(), strict=True):
+        along = (own[1] - own[0]) / max(float(np.linalg.norm(own[1] - own[0])), np.finfo(float).tiny)
+        for low, high in _left(own, others.ends[others.axis == axis], across):
+            if high - low >= least:
+                ends.append(own[0] + np.array([[low], [high]]) * along)
+                axes.append(axis)
+    return Segments(np.array(ends).reshape(-1, 2, 2), np.array(axes, np.int64))
+
+
+def _left(segment: Float, others: Float, across: float) -> Iterable[tuple[float, float]]:
+    """From where to where along a segment (2, 2), px, none of the others (N, 2, 2) runs beside it."""
+    length = float(np.linalg.norm(segment[1] - segment[0]))
+    place, beside = segment_coordinates(others, segment)
+    low, high = np.sort(place, axis=1).T
+    runs = (np.abs(beside) <= across).all(axis=1) & (high > 0) & (low < length)
+    at = 0.0
+    for start, end in sorted(zip(low[runs].tolist(), high[runs].tolist(), strict=True)):
+        if start > at:
+            yield at, start
+        at = max(at, end)
+    if at < length:
+        yield at, length

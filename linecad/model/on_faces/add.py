@@ -1,0 +1,122 @@
+"""The lines that faces place, beside those that crossings placed.
+
+What crossings placed comes first: a stretch of the photo along which such a line runs gets no other of its axis. Then
+come the edges of faces, then what the photo shows on them.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.directions import Turns, frame_axes
+from linecad.line_graph import Segments
+from linecad.lines.details import apart_from
+from linecad.model.clean.sight import Sight
+from linecad.model.frames import FramedLines, together
+from linecad.model.on_faces.edges import edges_of
+from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
+from linecad.model.on_faces.seen import NO_FACE, SeenFaces
+from linecad.scene import Camera, Lines, Plane
+
+UNKNOWN = 0.5  # the probability of a plane that no line shows
+
+
+@dataclass(frozen=True, eq=False)
+class LinesOnFaces:
+    """What faces add to the lines of a scene."""
+
+    lines: FramedLines  # with those that were there, which come first
+    planes: tuple[Plane, ...]  # with the new lines
+
+
+def add_lines(
+    framed: FramedLines, planes: tuple[Plane, ...], details: Segments, camera: Camera, sight: Sight
+) -> LinesOnFaces:
+    """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings."""
+    turns, rotation = framed.turns, sight.rotation
+    seen = SeenFaces.of(planes, camera, rotation, turns)
+    taken = _as_drawn(framed, sight)
+    edges, face = edges_of(seen, rotation, turns)
+    edges, face = _one_by_one(edges, face, taken, camera)
+    taken = taken.joined(edges)
+    found, on = _on_faces(apart_from(details, taken, camera.width), seen)
+    segments, face = edges.joined(found), np.concatenate([face, on])
+    ends, frame = in_space(segments, face, seen, rotation, turns)
+    lines = _records(framed, segments, face, ends, frame, seen)
+    number = {plane.id: [] for plane in planes}
+    for row, each in zip(lines.id.tolist(), face.tolist(), strict=True):
+        number[seen.plane[each].id].append(row)
+    return LinesOnFaces(
+        FramedLines(together([framed.lines, lines]), np.concatenate([framed.frame, frame]), turns),
+        tuple(replace(plane, lines=(*plane.lines, *number[plane.id])) for plane in planes),
+    )
+
+
+def _as_drawn(framed: FramedLines, sight: Sight) -> Segments:
+    """The lines in the photo: the segments that show them, and from end to end."""
+    lines = framed.in_world()
+    drawn = sight.pixels(lines.ends)
+    visible = np.isfinite(drawn).all(axis=(1, 2))
+    shown = [lines.segments_of(row) for row in range(len(lines))]
+    axis = np.repeat(lines.axis, [len(each) for each in shown])
+    segments = Segments(np.concatenate([np.zeros((0, 2, 2)), *shown]), axis)
+    return segments.joined(Segments(drawn[visible], lines.axis[visible]))
+
+
+def _one_by_one(edges: Segments, face: Int, taken: Segments, camera: Camera) -> tuple[Segments, Int]:
+    """The edges apart from lines `taken` and from each other, the longest first."""
+    kept, faces = Segments.none(), [np.zeros(0, np.int64)]
+    for row in np.argsort(-edges.length, kind="stable").tolist():
+        left = apart_from(edges.subset(np.array([row])), taken.joined(kept), camera.width)
+        kept = kept.joined(left)
+        faces.append(np.full(len(left), face[row]))
+    return kept, np.concatenate(faces)
+
+
+def _on_faces(segments: Segments, seen: SeenFaces) -> tuple[Segments, Int]:
+    """The stretches of segments with one face on both sides that they can lie in, and that face (P,)."""
+    samples = Samples.of(segments.ends, seen.camera.width)
+    first, second = seen.beside(samples.pixel, samples.along)
+    lies = (first == second) & can_lie(segments.axis[samples.row], seen.axis[first])
+    found = stretches(samples, np.where(lies, first, NO_FACE), segments, seen.camera.width)
+    return found.segments(segments), found.face
+
+
+def _records(framed: FramedLines, segments: Segments, face: Int, ends: Float, frame: Int, seen: SeenFaces) -> Lines:
+    """The new lines, in the axes of their frames; what is no geometry they have from the lines of their plane."""
+    lines = framed.lines
+    row = {number: index for index, number in enumerate(lines.id.tolist())}
+    first = int(lines.id.max(initial=-1)) + 1
+    members = [np.array([row[line] for line in plane.lines], np.int64) for plane in seen.plane]
+    component = np.array([int(np.bincount(lines.component[own]).argmax()) if len(own) else 0 for own in members])
+    probability = np.array([_typical(lines, own) for own in members])
+    count = len(segments)
+    return Lines(
+        id=first + np.arange(count),
+        axis=_in_frame(segments.axis, frame, framed.turns),
+        segment=segments.ends,
+        ends=ends,
+        is_boundary=np.zeros(count, bool),
+        component=component[face] if count else np.zeros(0, np.int64),
+        confidence=np.where(component[face] == 0, "supported", "weak") if count else np.zeros(0, "U9"),
+        probability=probability[face] if count and len(lines.probability) else (),
+        by_face=np.ones(count, bool),
+    )
+
+
+def _typical(lines: Lines, own: Int) -> float:
+    """The middle of the probabilities of some lines (rows), each as often as it is long in the photo."""
+    if len(own) == 0 or len(lines.probability) == 0:
+        return UNKNOWN
+    probability = np.asarray(lines.probability)[own]
+    weight = np.linalg.norm(lines.segment[own, 1] - lines.segment[own, 0], axis=1)
+    order = np.argsort(probability, kind="stable")
+    upto = np.cumsum(weight[order])
+    return float(probability[order][np.searchsorted(upto, upto[-1] / 2)])
+
+
+def _in_frame(axis: Int, frame: Int, turns: Turns) -> Int:
+    """x, y or z of each direction (N,) in its frame (N,)."""
+    axes = np.array([frame_axes(number) for number in range(len(turns) + 1)])
+    return np.asarray((axes[frame] == axis[:, None]).argmax(axis=1))

@@ -1,0 +1,69 @@
+"""Which face the photo shows where."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from linecad.arrays import Float, Int
+from linecad.directions import Turns, components
+from linecad.geometry import PhotoLength, project, world_rays
+from linecad.scene import Camera, Face, Plane
+
+NO_FACE = -1
+BESIDE = PhotoLength(6.0, floor=3.0)  # px to either side of a line, where what it lies on is looked at
+
+
+@dataclass(frozen=True, eq=False)
+class SeenFaces:
+    """F faces as the photo shows them, each without what hides it; no place shows two."""
+
+    plane: tuple[Plane, ...]  # F
+    face: tuple[Face, ...]  # F
+    polygon: NDArray[np.object_]  # (F,) px
+    camera: Camera
+    axes: Float  # (3, K) directions in the camera frame
+
+    @classmethod
+    def of(cls, planes: tuple[Plane, ...], camera: Camera, rotation: Float, turns: Turns = ()) -> "SeenFaces":
+        """Those of all planes; `rotation` (3, 3) takes world to camera, `turns` are of further frames."""
+        faces = [(plane, face) for plane in planes for face in plane.faces]
+        polygons = np.array([_seen(face, camera, rotation) for _, face in faces], object)
+        shapely.prepare(polygons)
+        planes, shown = (tuple(each) for each in zip(*faces, strict=True)) if faces else ((), ())
+        return cls(planes, shown, polygons, camera, components(rotation, turns))
+
+    def at(self, pixels: Float) -> Int:
+        """The face (M,) that each pixel (M, 2) shows, NO_FACE for none."""
+        found = np.full(len(pixels), NO_FACE)
+        for number, polygon in enumerate(self.polygon):
+            found[shapely.contains_xy(polygon, pixels)] = number
+        return found
+
+    @property
+    def axis(self) -> Int:
+        """(F + 1,) the normal of each face; -1 at the end, for NO_FACE."""
+        return np.array([*(plane.axis for plane in self.plane), -1])
+
+    def depths(self, face: Int, pixels: Float) -> Float:
+        """Camera depth (M,) of the plane of each face (M,) at a pixel (M, 2); infinite for NO_FACE."""
+        offset = np.array([*(plane.offset for plane in self.plane), np.nan])
+        normal = np.maximum(self.axis[face], 0)
+        rays = world_rays(pixels, self.camera.matrix, self.axes)[np.arange(len(pixels)), normal]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depth = offset[face] / rays
+        return np.where(depth > 0, depth, np.inf)
+
+    def beside(self, pixels: Float, along: Float) -> tuple[Int, Int]:
+        """The faces (M,) on both sides of lines that run through pixels (M, 2) in directions (M, 2)."""
+        across = np.column_stack([-along[:, 1], along[:, 0]])
+        across = across * (BESIDE.px(self.camera.width) / np.maximum(np.linalg.norm(along, axis=1), 1e-9))[:, None]
+        return self.at(pixels + across), self.at(pixels - across)
+
+
+def _seen(face: Face, camera: Camera, rotation: Float) -> shapely.Geometry:
+    outline, *others = (project(ring, camera.matrix, rotation) for ring in (face.outline, *face.holes, *face.hidden))
+    whole = shapely.make_valid(shapely.Polygon(outline, others[: len(face.holes)]))
+    hidden = [shapely.make_valid(shapely.Polygon(ring)) for ring in others[len(face.holes) :]]
+    return shapely.difference(whole, shapely.union_all(hidden)) if hidden else whole
