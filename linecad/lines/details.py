@@ -18,7 +18,7 @@ from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
 from linecad.scene import Camera
 
 WIDTH = 1920  # px; wider photos are made smaller first, where a faint edge stands out from the grain
-WIDTH_OF_WHOLE = 1280  # px, the same for whole lines through vanishing points
+WIDTH_OF_WHOLE = 960  # px, the same for whole lines through vanishing points
 EVIDENCE = 40.0  # nats, of such a line
 ERROR = 1.0  # grey levels, by which the detector takes brightness to be off; half of what it usually does
 LEAST = 10.0  # px, of a fragment in the smaller photo

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int, Text, rows_of
+from linecad.arrays import Bool, Float, Int, Text
 from linecad.decide.decision import Decision
 from linecad.depth.normals import Normals
 from linecad.errors import ReconstructionError
@@ -136,23 +136,20 @@ def build_scene(
     holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
     whole = planes
     planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
-    count = len(framed.lines)
-    if view.details is not None:
-        added = add_lines(framed, planes, view.details, view.camera, sight)
-        framed, planes = added.lines, added.planes
-    framed = _drawn(framed, whole, holes.openings, sight)
-    pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
+    on_faces = add_lines(framed, planes, view.details, view.camera, sight)
+    framed, planes = _drawn(on_faces.lines, whole, holes.openings, sight), on_faces.planes
+    pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     lines = framed.in_world()
     notes = (
-        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(rows_of(framed.lines, np.arange(count)))]),
-        regions.note, *holes.notes,
+        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines, on_faces.kept)]),
+        regions.note, *holes.notes, *on_faces.notes,
     )  # fmt: skip
     scene = Scene(
         photo=view.photo,
         camera=view.camera,
         rotation=view.frame.rotation,
         lines=lines,
-        intersections=cleaned.intersections,
+        intersections=on_faces.crossings(cleaned.intersections),
         planes=planes,
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,

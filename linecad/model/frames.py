@@ -32,6 +32,10 @@ class FramedLines:
         """Rows of the lines of a frame."""
         return np.flatnonzero(self.frame == frame)
 
+    def of_rows(self, rows: Int) -> "FramedLines":
+        """Some of the lines."""
+        return FramedLines(rows_of(self.lines, rows), self.frame[rows], self.turns)
+
     @property
     def frames(self) -> range:
         """The numbers of all frames."""

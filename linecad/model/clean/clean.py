@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.graph.connectivity import group_numbers
 from linecad.model.clean.ends import NEAR, close_ends, missed_offsets
 from linecad.model.clean.gaps import continued
@@ -35,11 +35,15 @@ class Cleaned:
     depth: Float  # (M, 2) of both ends
     reach: Float  # (M, 2) from where to where the pieces of each line reached along it before any end was moved
 
-    def note(self, lines: Lines) -> str:
-        """What became of the lines on the way to these (M), for people; "" where nothing did."""
+    def note(self, lines: Lines, kept: Bool) -> str:
+        """What became of the lines on the way to those `kept` (M,) of them, for people; "" where nothing did.
+
+        These are the first of `lines`.
+        """
         joined = len(self.row) - len(self.lines)
-        along = np.sort(lines.ends[np.arange(len(lines))[:, None], np.arange(2), lines.axis[:, None]], axis=1)
-        ends = np.abs(along - self.reach) / self.depth
+        rows = np.arange(int(kept.sum()))
+        along = np.sort(lines.ends[rows[:, None], np.arange(2), lines.axis[rows, None]], axis=1)
+        ends = np.abs(along - self.reach[kept]) / self.depth[kept]
         parts = []
         if joined:
             parts.append(f"{joined} lines that continue or repeat others were joined to them")

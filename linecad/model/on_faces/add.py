@@ -8,35 +8,74 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int, rows_of
 from linecad.directions import Turns, frame_axes
+from linecad.graph.connectivity import spanning_forest
 from linecad.line_graph import Segments
 from linecad.lines.details import apart_from
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, together
 from linecad.model.on_faces.edges import edges_of
+from linecad.model.on_faces.better import better_placed
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
-from linecad.scene import Camera, Lines, Plane
+from linecad.scene import Camera, Intersections, Lines, Plane
 
 UNKNOWN = 0.5  # the probability of a plane that no line shows
 
 
 @dataclass(frozen=True, eq=False)
 class LinesOnFaces:
-    """What faces add to the lines of a scene."""
+    """The lines of a scene, K of which crossings placed and faces the others."""
 
-    lines: FramedLines  # with those that were there, which come first
-    planes: tuple[Plane, ...]  # with the new lines
+    lines: FramedLines  # the K first
+    planes: tuple[Plane, ...]  # with their lines
+    kept: Bool  # (N,) which of the lines that were there are among the K; ids were rows
+
+    def crossings(self, crossings: Intersections) -> Intersections:
+        """The crossings of lines that stayed; the tree is one again."""
+        if self.kept.all():
+            return crossings
+        rest = rows_of(crossings, self.kept[crossings.lines].all(axis=1))
+        real = np.flatnonzero(rest.real)
+        real = real[np.argsort(~rest.in_tree[real], kind="stable")]
+        tree = np.zeros(len(rest), bool)
+        tree[real[spanning_forest(len(self.kept), rest.lines[real])]] = True
+        return replace(rest, in_tree=tree)
+
+    def renumbered(self, pairs: Int) -> Int:
+        """The pairs (P, 3) of lines that stayed, with their new rows."""
+        row = np.cumsum(self.kept) - 1
+        rest = pairs[self.kept[pairs[:, :2]].all(axis=1)]
+        return np.column_stack([row[rest[:, :2]], rest[:, 2]])
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What faces did, for people."""
+        moved, added = int((~self.kept).sum()), len(self.lines.lines) - int(self.kept.sum())
+        notes = [f"{added} lines lie on faces and no crossing placed them: edges of faces and what the photo shows there"]
+        if moved:
+            notes.append(f"{moved} lines in doubtful places lie on a face in the photo and were put onto it")
+        return tuple(notes) if added else ()
 
 
 def add_lines(
-    framed: FramedLines, planes: tuple[Plane, ...], details: Segments, camera: Camera, sight: Sight
+    framed: FramedLines, planes: tuple[Plane, ...], details: Segments | None, camera: Camera, sight: Sight
 ) -> LinesOnFaces:
-    """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings."""
+    """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
+
+    Of the lines that were there, whose ids are their rows, those go that faces place better, to come back as details
+    do. Nothing changes where `details` are None.
+    """
+    if details is None:
+        return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool))
     turns, rotation = framed.turns, sight.rotation
     seen = SeenFaces.of(planes, camera, rotation, turns)
+    kept = ~better_placed(framed, _typical_of(framed.lines, seen), seen)
+    gone = framed.of_rows(np.flatnonzero(~kept))
+    framed = framed.of_rows(np.flatnonzero(kept))
     taken = _as_drawn(framed, sight)
+    details = details.joined(Segments(gone.lines.segment, gone.axis))
     edges, face = edges_of(seen, rotation, turns)
     edges, face = _one_by_one(edges, face, taken, camera)
     taken = taken.joined(edges)
@@ -44,12 +83,14 @@ def add_lines(
     segments, face = edges.joined(found), np.concatenate([face, on])
     ends, frame = in_space(segments, face, seen, rotation, turns)
     lines = _records(framed, segments, face, ends, frame, seen)
-    number = {plane.id: [] for plane in planes}
-    for row, each in zip(lines.id.tolist(), face.tolist(), strict=True):
-        number[seen.plane[each].id].append(row)
+    staying = set(framed.lines.id.tolist())
+    members = {plane.id: [line for line in plane.lines if line in staying] for plane in planes}
+    for number, each in zip(lines.id.tolist(), face.tolist(), strict=True):
+        members[seen.plane[each].id].append(number)
     return LinesOnFaces(
         FramedLines(together([framed.lines, lines]), np.concatenate([framed.frame, frame]), turns),
-        tuple(replace(plane, lines=(*plane.lines, *number[plane.id])) for plane in planes),
+        tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes),
+        kept,
     )
 
 
@@ -86,9 +127,8 @@ def _on_faces(segments: Segments, seen: SeenFaces) -> tuple[Segments, Int]:
 def _records(framed: FramedLines, segments: Segments, face: Int, ends: Float, frame: Int, seen: SeenFaces) -> Lines:
     """The new lines, in the axes of their frames; what is no geometry they have from the lines of their plane."""
     lines = framed.lines
-    row = {number: index for index, number in enumerate(lines.id.tolist())}
     first = int(lines.id.max(initial=-1)) + 1
-    members = [np.array([row[line] for line in plane.lines], np.int64) for plane in seen.plane]
+    members = _members(lines, seen)
     component = np.array([int(np.bincount(lines.component[own]).argmax()) if len(own) else 0 for own in members])
     probability = np.array([_typical(lines, own) for own in members])
     count = len(segments)
@@ -103,6 +143,17 @@ def _records(framed: FramedLines, segments: Segments, face: Int, ends: Float, fr
         probability=probability[face] if count and len(lines.probability) else (),
         by_face=np.ones(count, bool),
     )
+
+
+def _members(lines: Lines, seen: SeenFaces) -> list[Int]:
+    """The rows of the lines in the plane of each face, those that are there."""
+    row = {number: index for index, number in enumerate(lines.id.tolist())}
+    return [np.array([row[line] for line in plane.lines if line in row], np.int64) for plane in seen.plane]
+
+
+def _typical_of(lines: Lines, seen: SeenFaces) -> Float:
+    """(F,) how likely the plane of each face is where it should be."""
+    return np.array([_typical(lines, own) for own in _members(lines, seen)])
 
 
 def _typical(lines: Lines, own: Int) -> float:
