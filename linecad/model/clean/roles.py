@@ -52,6 +52,7 @@ def with_roles(lines: Lines, planes: tuple[Plane, ...], forward: Float, openings
     free = ~ends_that_meet(strokes)
     is_short = np.ptp(strokes.reach, axis=1) < LEAST_FREE * np.abs(strokes.depth)
     is_loose = free.all(axis=1) | (free.any(axis=1) & is_short)
+    is_loose &= ~(lines.by_face & lie_on(strokes, edges))  # the edge of a face ends where the face does
     role = np.select([is_loose, is_opening, is_outline], [DETAIL, OPENING, OUTLINE], DETAIL)
     role[_doubles(strokes, role != DETAIL)] = DETAIL
     return replace(with_ends(lines, strokes), role=role)

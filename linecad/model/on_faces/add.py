@@ -15,8 +15,8 @@ from linecad.line_graph import Segments
 from linecad.lines.details import apart_from
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, together
-from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.better import better_placed
+from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.scene import Camera, Intersections, Lines, Plane
@@ -53,7 +53,9 @@ class LinesOnFaces:
     def notes(self) -> tuple[str, ...]:
         """What faces did, for people."""
         moved, added = int((~self.kept).sum()), len(self.lines.lines) - int(self.kept.sum())
-        notes = [f"{added} lines lie on faces and no crossing placed them: edges of faces and what the photo shows there"]
+        notes = [
+            f"{added} lines lie on faces and no crossing placed them: edges of faces and what the photo shows there"
+        ]
         if moved:
             notes.append(f"{moved} lines in doubtful places lie on a face in the photo and were put onto it")
         return tuple(notes) if added else ()

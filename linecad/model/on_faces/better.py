@@ -8,7 +8,7 @@ from linecad.geometry import depths_beside, middles, world_rays
 from linecad.line_graph import Segments
 from linecad.model.frames import FramedLines
 from linecad.model.on_faces.places import Samples, can_lie
-from linecad.model.on_faces.seen import NO_FACE, SeenFaces
+from linecad.model.on_faces.seen import SeenFaces
 
 DOUBTFUL = 0.5  # probability; what is more likely right than wrong stays
 LEAST_SHARE = 0.6  # of a line that must lie on the face

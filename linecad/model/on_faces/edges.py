@@ -7,7 +7,7 @@ something stands before the face, the edge is that thing's, and where the photo 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.directions import Turns, components, directions_of
+from linecad.directions import Turns, directions_of
 from linecad.geometry import project, ring_sides
 from linecad.line_graph import Segments
 from linecad.model.on_faces.places import Samples, Stretches, can_lie, stretches
