@@ -67,6 +67,8 @@ class Options:
     # Place rigid bodies as wholes; None: unless something is asked for that only programs over crossings know.
     over_bodies: bool | None = None
     faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
+    # Draw the edges of faces and what lies on them also where no crossing placed it; where bodies are placed.
+    face_lines: bool = True
     # How a depth map that is given with the photo is read (linecad.depth); they mean nothing without one.
     depth_kind: DepthKind | None = None  # None: as the file tells, else the one that makes walls flat
     depth_array: str | None = None  # which array of an .npz; None: found by its name
@@ -240,6 +242,8 @@ SWITCHES: tuple[Switch, ...] = (
            "more, or any crossing", _word(JOINS)),
     Switch("faint", "off", "on or off", "look a second time, for segments that the grain hides: more depths, and more "
            "wrong ones", _switched),
+    Switch("face-lines", "on", "on or off", "also draw edges of faces and lines on them that no crossing placed (not "
+           "with gain and paper)", _switched),
     Switch("largest-component", "off", "on or off", "only the largest connected group of lines", _switched),
     Switch("depth-kind", "as the file tells", _listed(DEPTH_KINDS), "what the depth map measures: along the optical "
            "axis, along the ray of a pixel, 1 / z but for its scale, or but for scale and shift; where the file does "

@@ -76,7 +76,9 @@ def reconstruct_lines(
     Raises ReconstructionError, SolverError or, where annotations cannot all be true, ContradictionError. The scale of
     known lengths is not set (`corrections.lengths.measured`).
     """
-    details = found.details_for_faces(_taken_away(found.segments, corrected)) if options.uses_bodies else None
+    details = None
+    if options.uses_bodies and options.face_lines:
+        details = found.details_for_faces(_taken_away(found.segments, corrected))
     if corrected is not None:
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)

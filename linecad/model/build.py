@@ -18,6 +18,7 @@ from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
+from linecad.model.face_lines import add_lines
 from linecad.model.faces import find_faces
 from linecad.model.frames import (
     FramedLines,
@@ -31,7 +32,6 @@ from linecad.model.frames import (
     sight_in,
 )
 from linecad.model.lifting import Lifted
-from linecad.model.on_faces.add import add_lines
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
@@ -151,17 +151,21 @@ def build_scene(
         lines=lines,
         intersections=on_faces.crossings(cleaned.intersections),
         planes=planes,
-        solve=SolveReport(
-            solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
-            solution.cuts, solution.nodes,
-        ),
+        solve=_solve_report(solution),
         notes=(*notes, *disagreements(planes, lines, pairs, graph.turns)),
         certainty=view.certainty,
         depth_map=depth_map,
         openings=openings,
         turns=graph.turns,
-    )  # fmt: skip
+    )
     return scene if graph.turns else without_ticks(scene, sight, MIN_COMPONENT)
+
+
+def _solve_report(solution: Solution) -> SolveReport:
+    return SolveReport(
+        solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
+        solution.cuts, solution.nodes,
+    )  # fmt: skip
 
 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:

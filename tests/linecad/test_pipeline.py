@@ -268,6 +268,7 @@ def test_stages_are_reported_in_order(drawn):
         "finding the Manhattan frame",
         "finding faint",
         "following lines",
+        "finding details",
         "fitting depths",
         "finding what ties",
         "placing",

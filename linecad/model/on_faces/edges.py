@@ -48,9 +48,7 @@ def shown(segments: Segments, owner: Int, seen: SeenFaces) -> Stretches:
     sides = seen.beside(samples.pixel, samples.along)
     nearest = np.minimum(*(seen.depths(side, samples.pixel) for side in sides))
     own = seen.depths(face, samples.pixel)
-    is_nearest = np.abs(nearest / own - 1) <= BESIDE_EDGE
-    inside = _inside(samples.pixel, seen.camera)
-    shows = np.where(is_nearest & inside, face, NO_FACE)
+    shows = np.where(_inside(samples.pixel, seen.camera) & (np.abs(nearest / own - 1) <= BESIDE_EDGE), face, NO_FACE)
     return stretches(samples, shows, segments, seen.camera.width)
 
 
@@ -58,5 +56,4 @@ def _inside(pixels: Float, camera: Camera) -> Bool:
     """Which pixels (M, 2) lie so far inside the photo that both sides of a line there are seen."""
     margin = BESIDE.px(camera.width)
     last = np.array([camera.width - 1, camera.height - 1]) - margin
-    inside: Bool = ((pixels > margin) & (pixels < last)).all(axis=1)
-    return inside
+    return np.asarray(((pixels > margin) & (pixels < last)).all(axis=1))

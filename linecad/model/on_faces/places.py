@@ -1,6 +1,7 @@
 """Stretches of image lines on faces, and where they are in space."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -9,7 +10,6 @@ from linecad.directions import Turns, components, frame_axes, frame_of, lies_acr
 from linecad.geometry import PhotoLength, lengths, world_rays
 from linecad.line_graph import Segments
 from linecad.lines.details import LEAST_STRETCH
-from linecad.model.frames import in_frame
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 
 STEP = PhotoLength(16.0, floor=4.0)  # px between the places of a line that are looked at
@@ -55,8 +55,8 @@ def stretches(samples: Samples, face: Int, segments: Segments, width: int) -> St
     rows, faces, shares = [], [], []
     half = 0.5 / np.bincount(samples.row, minlength=len(segments))
     length = segments.length
-    starts = np.flatnonzero(np.r_[True, np.diff(samples.row) != 0])
-    for first, last in zip(starts, np.r_[starts[1:], len(samples.row)], strict=True):
+    starts = np.unique(samples.row, return_index=True)[1]
+    for first, last in pairwise([*starts.tolist(), len(samples.row)]):
         row, own = int(samples.row[first]), face[first:last]
         for number in np.unique(own[own != NO_FACE]).tolist():
             for low, high in _runs(own == number):
@@ -94,7 +94,7 @@ def in_space(segments: Segments, face: Int, seen: SeenFaces, rotation: Float, tu
         plane, along = axes.index(int(normal[row])), axes.index(int(segments.axis[row]))
         offset = seen.plane[face[row]].offset
         reach = offset / components(rays[row], turns)[:, normal[row]]
-        points = in_frame(rays[row] * reach[:, None], int(frame[row]), turns)
+        points = components(rays[row] * reach[:, None], turns)[:, axes]
         points[:, plane] = offset
         third = 3 - plane - along
         points[:, third] = points[:, third].mean()

@@ -51,7 +51,8 @@ def test_details_are_in_the_pixels_of_the_photo(width):
     grey = np.full((height, width), 90, np.uint8)
     grey[:, width // 4 :] = 180
     found = find_details(grey)
-    assert len(found) and (found.axis == -1).all()
+    assert len(found)
+    assert (found.axis == -1).all()
     np.testing.assert_allclose(found.ends[..., 0], width // 4 - 0.5, atol=width / 1000)
 
 

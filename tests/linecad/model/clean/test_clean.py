@@ -157,7 +157,7 @@ def test_the_note_says_what_moved_and_how_far(lines):
         (Z, (-1, DEPTH, -1), (-1, DEPTH, 0.95)),
     ]
     found = cleaned(lines, rows)
-    assert found.note(found.lines) == (
+    assert found.note(found.lines, np.ones(len(found.lines), bool)) == (
         "1 lines that continue or repeat others were joined to them; planes that were nearly one became one, which "
         "moved lines by up to 0.04% of their depth; ends were moved along their lines to where "
         "these stop, 0 of 4 by more than 1%, at most by 0.5%"
@@ -166,8 +166,8 @@ def test_the_note_says_what_moved_and_how_far(lines):
 
 def test_where_nothing_happens_nothing_is_said(lines):
     found = cleaned(lines, [(X, (-2, DEPTH, 1), (0, DEPTH, 1))])
-    assert found.note(found.lines) == ""
-    assert clean_lines(lines([]), NONE, SIGHT).note(lines([])) == ""
+    assert found.note(found.lines, np.ones(len(found.lines), bool)) == ""
+    assert clean_lines(lines([]), NONE, SIGHT).note(lines([]), np.zeros(0, bool)) == ""
 
 
 # --- properties ----------------------------------------------------------------------------------------------------

@@ -103,7 +103,8 @@ def test_a_smooth_part_with_lines_in_it_is_no_sky(house):
     lines = replace(
         house.lines, id=np.arange(count), axis=np.zeros(count, int), segment=across,
         ends=np.resize(house.lines.ends, (count, 2, 3)), is_boundary=np.zeros(count, bool),
-        component=np.zeros(count, int), confidence=np.full(count, "proven"), by_depth_map=(), role=(), pieces=(),
+        component=np.zeros(count, int), confidence=np.full(count, "proven"), by_depth_map=(), role=(),
+        by_face=(), pieces=(),
     )  # fmt: skip
     assert not look_up(take_raster(lines, house.camera, house.rotation, photo)).is_sky
 

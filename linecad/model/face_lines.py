@@ -36,7 +36,7 @@ class LinesOnFaces:
         """The crossings of lines that stayed; the tree is one again."""
         if self.kept.all():
             return crossings
-        rest = rows_of(crossings, self.kept[crossings.lines].all(axis=1))
+        rest = rows_of(crossings, np.flatnonzero(self.kept[crossings.lines].all(axis=1)))
         real = np.flatnonzero(rest.real)
         real = real[np.argsort(~rest.in_tree[real], kind="stable")]
         tree = np.zeros(len(rest), bool)
@@ -53,9 +53,7 @@ class LinesOnFaces:
     def notes(self) -> tuple[str, ...]:
         """What faces did, for people."""
         moved, added = int((~self.kept).sum()), len(self.lines.lines) - int(self.kept.sum())
-        notes = [
-            f"{added} lines lie on faces and no crossing placed them: edges of faces and what the photo shows there"
-        ]
+        notes = [f"{added} lines lie on faces, where no crossing placed them: edges of faces and what is seen there"]
         if moved:
             notes.append(f"{moved} lines in doubtful places lie on a face in the photo and were put onto it")
         return tuple(notes) if added else ()
@@ -73,7 +71,7 @@ def add_lines(
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool))
     turns, rotation = framed.turns, sight.rotation
     seen = SeenFaces.of(planes, camera, rotation, turns)
-    kept = ~better_placed(framed, _typical_of(framed.lines, seen), seen)
+    kept = ~better_placed(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
     gone = framed.of_rows(np.flatnonzero(~kept))
     framed = framed.of_rows(np.flatnonzero(kept))
     taken = _as_drawn(framed, sight)
