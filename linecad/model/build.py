@@ -136,7 +136,7 @@ def build_scene(
     holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
     whole = planes
     planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
-    on_faces = add_lines(framed, planes, view.details, view.camera, sight)
+    on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections)
     framed, planes = _drawn(on_faces.lines, whole, holes.openings, sight), on_faces.planes
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     lines = framed.in_world()

@@ -15,7 +15,7 @@ from linecad.line_graph import Segments
 from linecad.lines.details import apart_from
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, together
-from linecad.model.on_faces.better import better_placed
+from linecad.model.on_faces.better import better_faces
 from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
@@ -52,37 +52,50 @@ class LinesOnFaces:
     @property
     def notes(self) -> tuple[str, ...]:
         """What faces did, for people."""
-        moved, added = int((~self.kept).sum()), len(self.lines.lines) - int(self.kept.sum())
-        notes = [f"{added} lines lie on faces, where no crossing placed them: edges of faces and what is seen there"]
+        moved = int((~self.kept).sum())
+        added = len(self.lines.lines) - len(self.kept)
+        notes = []
+        if added:
+            notes.append(
+                f"{added} more lines lie on faces: their edges, and what is seen on them and no crossing placed"
+            )
         if moved:
             notes.append(f"{moved} lines in doubtful places lie on a face in the photo and were put onto it")
-        return tuple(notes) if added else ()
+        return tuple(notes)
 
 
 def add_lines(
-    framed: FramedLines, planes: tuple[Plane, ...], details: Segments | None, camera: Camera, sight: Sight
+    framed: FramedLines,
+    planes: tuple[Plane, ...],
+    details: Segments | None,
+    camera: Camera,
+    sight: Sight,
+    crossings: Intersections,
 ) -> LinesOnFaces:
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
-    Of the lines that were there, whose ids are their rows, those go that faces place better, to come back as details
-    do. Nothing changes where `details` are None.
+    The ids of the lines that were there are their rows. Those that faces place better are put onto these, but for lines
+    of which a person said something at one of their `crossings`. Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool))
     turns, rotation = framed.turns, sight.rotation
     seen = SeenFaces.of(planes, camera, rotation, turns)
-    kept = ~better_placed(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
-    gone = framed.of_rows(np.flatnonzero(~kept))
-    framed = framed.of_rows(np.flatnonzero(kept))
-    taken = _as_drawn(framed, sight)
-    details = details.joined(Segments(gone.lines.segment, gone.axis))
+    better = better_faces(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
+    better[crossings.lines[np.asarray(crossings.reason) == "annotated"]] = NO_FACE
+    kept = better == NO_FACE
+    moved, framed = framed.of_rows(np.flatnonzero(~kept)), framed.of_rows(np.flatnonzero(kept))
+    taken = _as_drawn(framed, sight).joined(_as_shown(moved))
     edges, face = edges_of(seen, rotation, turns)
     edges, face = _one_by_one(edges, face, taken, camera)
     taken = taken.joined(edges)
     found, on = _on_faces(apart_from(details, taken, camera.width), seen)
-    segments, face = edges.joined(found), np.concatenate([face, on])
+    segments = Segments(moved.lines.segment, moved.axis).joined(edges).joined(found)
+    face = np.concatenate([better[~kept], face, on])
     ends, frame = in_space(segments, face, seen, rotation, turns)
     lines = _records(framed, segments, face, ends, frame, seen)
+    pieces = (*moved.lines.pieces, *(np.zeros((0, 2, 2)),) * (len(lines) - len(moved.lines)))
+    lines = replace(lines, pieces=pieces)
     staying = set(framed.lines.id.tolist())
     members = {plane.id: [line for line in plane.lines if line in staying] for plane in planes}
     for number, each in zip(lines.id.tolist(), face.tolist(), strict=True):
@@ -99,10 +112,14 @@ def _as_drawn(framed: FramedLines, sight: Sight) -> Segments:
     lines = framed.in_world()
     drawn = sight.pixels(lines.ends)
     visible = np.isfinite(drawn).all(axis=(1, 2))
-    shown = [lines.segments_of(row) for row in range(len(lines))]
-    axis = np.repeat(lines.axis, [len(each) for each in shown])
-    segments = Segments(np.concatenate([np.zeros((0, 2, 2)), *shown]), axis)
-    return segments.joined(Segments(drawn[visible], lines.axis[visible]))
+    return _as_shown(framed).joined(Segments(drawn[visible], lines.axis[visible]))
+
+
+def _as_shown(framed: FramedLines) -> Segments:
+    """The segments that show the lines, all their pieces."""
+    shown = [framed.lines.segments_of(row) for row in range(len(framed.lines))]
+    axis = np.repeat(framed.axis, [len(each) for each in shown])
+    return Segments(np.concatenate([np.zeros((0, 2, 2)), *shown]), axis)
 
 
 def _one_by_one(edges: Segments, face: Int, taken: Segments, camera: Camera) -> tuple[Segments, Int]:

@@ -2,25 +2,27 @@
 
 import numpy as np
 
-from linecad.arrays import Bool, Float
+from linecad.arrays import Float, Int
 from linecad.directions import Turns, components
 from linecad.geometry import depths_beside, middles, world_rays
 from linecad.line_graph import Segments
 from linecad.model.on_faces.places import Samples, can_lie
-from linecad.model.on_faces.seen import SeenFaces
+from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.scene import Lines
 
 DOUBTFUL = 0.5  # probability; what is more likely right than wrong stays
 LEAST_SHARE = 0.6  # of a line that must lie on the face
+FURTHEST = 3.0  # times the depth of its middle that an end may have there; further off lies the horizon of the face
 APART = 0.01  # of the depth; what is nearer to the face is relief of it
 
 
-def better_placed(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) -> Bool:
-    """Which lines (N,) are doubtful and lie, before or behind it, on a face that is more `likely` (F,) in its place.
+def better_faces(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) -> Int:
+    """The face (N,) that places a line better: the line is doubtful and lies before or behind it; else NO_FACE.
 
-    The lines are in the world, along the directions of all frames, of which `turns` are the further ones.
+    `likely` (F,) is how probably each face is in its place, which must be more than the line is. The lines are in the
+    world, along the directions of all frames, of which `turns` are the further ones.
     """
-    better = np.zeros(len(lines), bool)
+    better = np.full(len(lines), NO_FACE)
     if len(lines.probability) == 0 or len(likely) == 0:
         return better
     rows = np.flatnonzero(np.asarray(lines.probability) < DOUBTFUL)
@@ -32,9 +34,13 @@ def better_placed(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) ->
     np.add.at(count, (samples.row[lies], first[lies]), 1)
     face = count.argmax(axis=1)
     share = count.max(axis=1) / np.bincount(samples.row, minlength=len(rows))
-    apart = np.abs(seen.depths(face, middles(segments.ends)) / _depths(lines.ends[rows, 0], segments, seen, turns) - 1)
+    depth = seen.depths(face, middles(segments.ends))
+    apart = np.abs(depth / _depths(lines.ends[rows, 0], segments, seen, turns) - 1)
+    furthest = np.maximum(*(seen.depths(face, segments.ends[:, end]) for end in range(2)))
     sure = likely[face] > np.asarray(lines.probability)[rows]
-    better[rows] = (share >= LEAST_SHARE) & sure & (apart > APART)
+    better[rows] = np.where(
+        (share >= LEAST_SHARE) & sure & (apart > APART) & (furthest <= FURTHEST * depth), face, NO_FACE
+    )
     return better
 
 

@@ -1,0 +1,190 @@
+"""Lines that faces place: of a made house, whose walls are known, with what the photo shows on them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linecad.arrays import rows_of
+from linecad.geometry import project
+from linecad.line_graph import Segments
+from linecad.model.clean.sight import Sight
+from linecad.model.face_lines import UNKNOWN, add_lines
+from linecad.model.faces import find_faces
+from linecad.model.frames import FramedLines
+from linecad.scene import Intersections
+
+X, Y, Z = range(3)
+NONE = Intersections([], [], [], [], [], [])
+SIDE, FRONT, GROUND = 2.0, 8.0, -2.0
+
+
+@pytest.fixture(scope="module")
+def planes(house, house_regions):
+    return find_faces(house.planes, house.lines, house_regions, house.camera, house.rotation)
+
+
+@pytest.fixture(scope="module")
+def sight(house):
+    return Sight(house.camera.matrix, house.rotation, None)
+
+
+@pytest.fixture(scope="module")
+def add(house, planes, sight):
+    """What faces add to lines of the house, given edges (axis, ends) in the world that the photo shows."""
+
+    def added(edges, lines=house.lines, crossings=NONE):
+        ends = np.array([each for _, each in edges], float).reshape(-1, 2, 3)
+        details = Segments(
+            project(ends, house.camera.matrix, house.rotation), np.array([axis for axis, _ in edges], np.int64)
+        )
+        framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+        return add_lines(framed, planes, details, house.camera, sight, crossings)
+
+    return added
+
+
+def new(found):
+    """The new lines by axis and ends, rounded."""
+    lines = found.lines.lines
+    rows = np.flatnonzero(lines.by_face)
+    return [(int(lines.axis[row]), lines.ends[row].round(6).tolist()) for row in rows]
+
+
+SILL = (X, [[3.0, FRONT, -1.2], [4.5, FRONT, -1.2]])
+PIPE = (Z, [[SIDE, 8.4, -1.5], [SIDE, 8.4, 1.2]])
+KERB = (Y, [[3.0, 6.0, GROUND], [3.0, 7.5, GROUND]])
+
+
+@pytest.mark.parametrize("edge", [SILL, PIPE, KERB], ids=["front", "side", "ground"])
+def test_an_edge_on_a_face_comes_back_where_it_is(add, edge):
+    axis, ends = edge
+    found = [each for each in new(add([edge])) if each not in new(add([]))]
+    assert [each for each, _ in found] == [axis]
+    np.testing.assert_allclose(np.sort(np.array(found[0][1]), axis=0), np.sort(np.array(ends), axis=0), atol=2e-3)
+
+
+def test_the_coordinate_of_the_plane_is_exact(add):
+    lines = add([SILL, PIPE, KERB]).lines.lines
+    own = lines.by_face
+    for axis, normal, offset in ((X, Y, FRONT), (Z, X, SIDE), (Y, Z, GROUND)):
+        there = lines.ends[own & (lines.axis == axis)][:, :, normal]
+        assert (np.abs(there - offset).max(axis=1) == 0).any()
+
+
+def test_the_feet_of_walls_are_lines_though_no_crossing_placed_the_ground(house, planes, sight):
+    rows = np.flatnonzero(~(house.lines.ends[:, :, Z] == GROUND).all(axis=1))
+    lines = replace(rows_of(house.lines, rows), id=np.arange(len(rows)))
+    bare = tuple(replace(plane, lines=()) for plane in planes)
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
+    feet = [np.array(ends) for axis, ends in new(found) if axis != Z and (np.array(ends)[:, Z] == GROUND).all()]
+    assert sum((ends[:, Y] == FRONT).all() for ends in feet) == 1
+    assert sum((ends[:, X] == SIDE).all() for ends in feet) == 1
+
+
+def test_where_a_line_runs_there_is_no_second(add, house):
+    before = add([])
+    known = [(int(axis), ends) for axis, ends in zip(house.lines.axis, house.lines.ends, strict=True)]
+    assert new(add(known)) == new(before)
+    seen = np.array([ends for _, ends in new(before)])
+    again = [(axis, ends) for axis, ends in new(before)]
+    assert len(new(add(again))) == len(seen)
+
+
+def test_what_crosses_two_faces_is_parted(add):
+    """A level line of the front that goes on over the side is one of the front up to the corner."""
+    long = (X, [[3.0, FRONT, 0.0], [1.2, FRONT, 0.0]])
+    found = [each for each in new(add([long])) if each not in new(add([]))]
+    assert all(np.array(ends)[:, X].min() > SIDE - 0.05 for _, ends in found)
+
+
+def test_new_lines_are_like_those_of_their_plane(add, house):
+    lines = replace(
+        house.lines,
+        component=np.full(len(house.lines), 1),
+        confidence=np.full(len(house.lines), "weak"),
+        probability=np.where(house.lines.ends[:, 0, Y] == house.lines.ends[:, 1, Y], 0.8, 0.7),
+    )
+    found = add([SILL, KERB], lines)
+    after = found.lines.lines
+    by_id = dict(zip(after.id.tolist(), range(len(after)), strict=True))
+    for plane in found.planes:
+        rows = [by_id[line] for line in plane.lines if after.by_face[by_id[line]]]
+        old = [by_id[line] for line in plane.lines if not after.by_face[by_id[line]]]
+        for row in rows:
+            assert after.component[row] == (1 if old else 0)
+            assert after.confidence[row] == ("weak" if old else "supported")
+            assert after.probability[row] in (set(after.probability[old].tolist()) if old else {UNKNOWN})
+    assert sorted(line for plane in found.planes for line in plane.lines if after.by_face[by_id[line]]) == [
+        int(line) for line in after.id[after.by_face]
+    ]
+    assert after.id.tolist() == list(range(len(after)))
+
+
+def doubtful(house, row, factor, probability):
+    """The lines of the house with one at `factor` times its depth along its rays, so that it looks the same."""
+    ends = house.lines.ends.copy()
+    ends[row] *= factor
+    sure = np.full(len(house.lines), 0.9)
+    sure[row] = probability
+    return replace(house.lines, ends=ends, probability=sure)
+
+
+def inner_row(house):
+    """A level line of the front that is no edge of its face."""
+    ends = house.lines.ends
+    level = (house.lines.axis == X) & (ends[:, 0, Y] == FRONT) & (np.abs(ends[:, 0, Z]) < 1.2)
+    return int(np.flatnonzero(level)[0])
+
+
+@pytest.mark.parametrize(
+    ("factor", "probability", "moves"), [(1.3, 0.2, True), (0.8, 0.2, True), (1.3, 0.6, False), (1.004, 0.2, False)]
+)
+def test_a_doubtful_line_goes_to_the_face_that_it_lies_on(add, house, factor, probability, moves):
+    row = inner_row(house)
+    found = add([], doubtful(house, row, factor, probability))
+    assert found.kept.tolist() == [each != row or not moves for each in range(len(house.lines))]
+    assert [note[:8] for note in found.notes if "doubtful" in note] == ["1 lines "] * moves
+    if moves:
+        wanted = house.lines.ends[row]
+        back = [np.array(ends) for axis, ends in new(found) if axis == X]
+        nearest = min(np.abs(np.sort(ends, axis=0) - np.sort(wanted, axis=0)).max() for ends in back)
+        assert nearest < 0.05
+        assert row not in {line for plane in found.planes for line in plane.lines}
+
+
+def test_a_line_that_a_person_said_something_of_stays(add, house):
+    row = inner_row(house)
+    said = Intersections(
+        lines=[[0, row]], kind=["X"], pixel=[[0, 0]], real=[True], in_tree=[True], weight=[1], reason=["annotated"]
+    )
+    assert add([], doubtful(house, row, 1.3, 0.1), said).kept.all()
+    assert not add([], doubtful(house, row, 1.3, 0.1), replace(said, reason=["chosen"])).kept.all()
+
+
+def test_crossings_of_lines_that_went_go_too_and_the_tree_stays_one(add, house):
+    row = inner_row(house)
+    found = add([], doubtful(house, row, 1.3, 0.1))
+    others = [each for each in range(len(house.lines)) if each != row][:3]
+    one, two, three = others
+    pairs = np.array([[one, row], [row, two], [one, two], [two, three]])
+    count = len(pairs)
+    crossings = Intersections(
+        lines=pairs, kind=["X"] * count, pixel=np.zeros((count, 2)), real=[True] * count,
+        in_tree=[True, True, False, True], weight=np.ones(count),
+    )  # fmt: skip
+    rest = found.crossings(crossings)
+    assert rest.lines.tolist() == [[one, two], [two, three]]
+    assert rest.in_tree.tolist() == [True, True]
+    triples = np.array([[one, row, 2], [one, two, 2]])
+    assert found.renumbered(triples).tolist() == [[one - (one > row), two - (two > row), 2]]
+
+
+def test_without_details_nothing_changes(house, planes, sight):
+    framed = FramedLines(house.lines, np.zeros(len(house.lines), np.int64), ())
+    found = add_lines(framed, planes, None, house.camera, sight, NONE)
+    assert found.lines is framed
+    assert found.planes is planes
+    assert found.kept.all()
+    assert found.notes == ()
