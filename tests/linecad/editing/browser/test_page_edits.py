@@ -173,6 +173,7 @@ def test_a_key_goes_through_the_frames(new_screen, start, two_frames):
     screen.page.mouse.move(*end_at, steps=3)
     screen.press("x")
     screen.press("q")
+    screen.wait("linecad.draft.proposal?.axis === 'x2'")
     assert "Along x2, fixed" in screen.page.locator("#inspector").inner_text()
     screen.page.mouse.up()
     screen.settle()
