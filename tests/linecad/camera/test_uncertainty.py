@@ -40,7 +40,8 @@ def along(rotation, counts, seed=0, length=80.0):
 
 def frames_of(main, others=()):
     """A main frame and others."""
-    return HorizontalFrames(main, (HorizontalFrame(0.0, 0.005, 0.6, 100.0), *others), np.full(4, 0.25))
+    shares = np.full(4 + 2 * len(others), 1 / (4 + 2 * len(others)))
+    return HorizontalFrames(main, (HorizontalFrame(0.0, 0.005, 0.6, 100.0), *others), shares)
 
 
 def judged(
