@@ -205,6 +205,35 @@ check_faults() {
     check_fault "wrong-bounds, Khronos" "${by_khronos[@]}" "$broken" "$folder/expectation.json"
 }
 
+# Houses that stand turned against each other. FreeCAD measures the angles between their walls.
+check_turned() {
+    local folder=$out/turned made=$out/turned/turned expected=$out/turned/expectation.json suffix outputs=()
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    "$python" "$checkers/turned_houses.py" "$made.json"
+    for suffix in dxf step glb usda usdc usdz; do
+        outputs+=(-o "$made.$suffix")
+    done
+    if ! "${linecad[@]}" export "$made.json" "${outputs[@]}" >"$log" 2>&1 ||
+        ! "$python" "$checkers/expectation.py" "$made.json" "$expected" >"$log" 2>&1; then
+        report_failure "turned houses: linecad export"
+        return
+    fi
+    check "turned.dxf, ezdxf" "$python" "$checkers/check_dxf.py" "$made.dxf" "$expected"
+    for suffix in usda usdc usdz; do
+        check "turned.$suffix, usd-core" "$python" "$checkers/check_usd.py" "$made.$suffix" "$expected"
+    done
+    check "turned.glb, Khronos" "${by_khronos[@]}" "$made.glb" "$expected"
+    check "turned.glb, Blender" "${in_blender[@]}" "$made.glb" "$expected"
+    check "turned.step, FreeCAD" "${in_freecad[@]}" "$made.step" "$expected" --gui
+    check "turned.dxf, FreeCAD" "${in_freecad[@]}" "$made.dxf" "$expected"
+    if [ -n "$bpy" ]; then
+        check "turned.usdc, bpy" "${in_bpy[@]}" "$made.usdc" "$expected"
+    fi
+    "$python" "$checkers/faults.py" wrong-turn "$expected" "$folder/wrong.json"
+    check_fault "wrong-turn, FreeCAD" "${in_freecad[@]}" "$made.step" "$folder/wrong.json"
+}
+
 shopt -s nullglob
 photos=("$@")
 if [ $# = 0 ]; then
@@ -215,6 +244,7 @@ for photo in "${photos[@]}"; do
 done
 check_metric "${photos[0]}"
 check_faults "${photos[0]}"
+check_turned
 
 echo "clients: $passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

@@ -10,7 +10,7 @@ from itertools import permutations
 
 import numpy as np
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.directions import across
 
 REFERENCE_WIDTH = 3840.0  # px, the paper's photos; lengths in px are meant there and scaled with the photo's width
@@ -111,6 +111,13 @@ def angles_to(ends: Float, vanishing: Float) -> Float:
     length = np.maximum(np.sqrt(x * x + y * y), np.finfo(float).tiny)
     sines: Float = np.abs(x / length * along[:, 1] - y / length * along[:, 0])
     return sines
+
+
+def reach_across(ends: Float, vanishing: Float) -> Bool:
+    """Which segments (N, 2, 2) have points (V, 3) between their ends, or at one, (V, N)."""
+    away = ends[None] * vanishing[:, None, None, 2:] - vanishing[:, None, None, :2]
+    across: Bool = np.asarray((away[:, :, 0] * away[:, :, 1]).sum(axis=2) <= 0)
+    return across
 
 
 def plane_normals(ends: Float, K: Float) -> Float:

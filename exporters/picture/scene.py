@@ -1,6 +1,8 @@
 """PNG: the photo with its lines and faces coloured by axis and its crossings, beside three views of them in space."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,6 +35,7 @@ _TITLE, _TEXT = 42, 27  # px of text
 
 _LINE_WIDTH, _THIN_LINE_WIDTH = {True: 5, False: 2}, {True: 4, False: 2}  # px, by boundary
 _CASING_WIDTH, _THIN_CASING_WIDTH = 3, 1  # px that the casing of a line is wider than the line
+_APART = 34  # px between entries of the legend
 _RIM_WIDTH = 5  # px that the rim of a line is wider than its casing
 _FEW_LINES = 600  # from there on they are drawn thin
 _MARK_RADIUS, _SMALLEST_MARK = 7.0, 3.0  # px, of crossings
@@ -53,14 +56,15 @@ def write(model: Model, path: Path, photo: NDArray[np.uint8] | None) -> None:
     scene = model.scene
     top = _TOP if scene.depth_map is None else _TOP + _ROW
     shape, views, height = _layout(scene.camera.width / scene.camera.height, top)
-    canvas = Canvas(_WIDTH, height, _PAPER)
+    legend = _legend(words_of(scene.lines)[1], count_of(scene.turns))
+    canvas = Canvas(_WIDTH, height + _ROW * (len(legend) - 1), _PAPER)
     _draw_title(canvas, scene)
     if scene.depth_map is not None:
         _draw_depth_map(canvas, scene.depth_map, scene.lines)
     _draw_photo(canvas.window(*shape), scene, photo)
     for box, (name, right, up) in zip(views, VIEWS, strict=True):
         draw_view(canvas.window(*box), scene, name, right, up)
-    _draw_legend(canvas, words_of(scene.lines)[1], count_of(scene.turns))
+    _draw_legend(canvas, legend)
     canvas.image().save(path, format="PNG")
 
 
@@ -195,33 +199,70 @@ def _draw_fake(panel: Canvas, centre: list[float], radius: float) -> None:
     panel.cross(centre, radius + 1.5, _FAKE, 3)
 
 
-def _draw_legend(canvas: Canvas, words: Sequence[str], directions: int) -> None:
-    x, y = float(_MARGIN), canvas.height - 48
-    for axis in range(MAIN):
-        for is_boundary in (True, False):
-            width = _LINE_WIDTH[is_boundary]
-            canvas.line((x, y), (x + 50, y), line_colour(axis, True), width)
-            x = _label(canvas, x + 62, y, f"{axis_name(axis)} {'boundary' if is_boundary else 'other'}")
-    for axis in range(MAIN, directions):  # short, for there may be many
-        canvas.line((x, y), (x + 20, y), line_colour(axis, True), _LINE_WIDTH[True])
-        x = _label(canvas, x + 28, y, axis_name(axis)) - 14
-    _draw_real(canvas, [x + 8, y], _MARK_RADIUS)
-    x = _label(canvas, x + 26, y, "real crossing")
-    _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)
-    x = _label(canvas, x + 26, y, "fake crossing")
+@dataclass(frozen=True)
+class _Entry:
+    """One sample of the legend with its label, from `x`, the middle of its row."""
+
+    label: str
+    indent: int  # px from the start of the sample to that of the label
+    after: int  # px from the end of the label to the next entry
+    draw: Callable[[Canvas, float, float], None]  # the sample
+
+    @property
+    def width(self) -> float:
+        """From the start of the sample to the end of the label, px."""
+        return self.indent + text_width(self.label, _TEXT)
+
+
+def _legend(words: Sequence[str], directions: int) -> list[list[_Entry]]:
+    """The entries of the legend, row by row, so that each row fits the picture."""
+    rows: list[list[_Entry]] = [[]]
+    left = float(_MARGIN)
+    for entry in _entries(words, directions):
+        if rows[-1] and left + entry.width > _WIDTH - _MARGIN:
+            rows.append([])
+            left = float(_MARGIN)
+        rows[-1].append(entry)
+        left += entry.width + entry.after
+    return rows
+
+
+def _entries(words: Sequence[str], directions: int) -> list[_Entry]:
+    def line(axis: int, length: int, is_boundary: bool) -> Callable[[Canvas, float, float], None]:
+        colour, width = line_colour(axis, True), _LINE_WIDTH[is_boundary]
+        return lambda canvas, x, y: canvas.line((x, y), (x + length, y), colour, width)
+
+    entries = [
+        _Entry(f"{axis_name(axis)} {'boundary' if is_boundary else 'other'}", 62, _APART, line(axis, 50, is_boundary))
+        for axis in range(MAIN)
+        for is_boundary in (True, False)
+    ]
+    # Short, for there may be many.
+    entries += [_Entry(axis_name(axis), 28, 20, line(axis, 20, True)) for axis in range(MAIN, directions)]
+    entries += [
+        _Entry("real crossing", 26, _APART, lambda canvas, x, y: _draw_real(canvas, [x + 8, y], _MARK_RADIUS)),
+        _Entry("fake crossing", 26, _APART, lambda canvas, x, y: _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)),
+    ]
     for word in words:
-        canvas.tint([[_swatch(x, y)]], _INK, 2 * OPACITY[word])
-        if word in LEAST:
-            draw_line(canvas, ([x, y], [x + 60, y]), word, _INK, 3)
-        x = _label(canvas, x + (70 if word in LEAST else 46), y, _MEANING.get(word, word))
+        entries.append(_Entry(_MEANING.get(word, word), 70 if word in LEAST else 46, _APART, partial(_draw_word, word)))
+    return entries
+
+
+def _draw_word(word: str, canvas: Canvas, x: float, y: float) -> None:
+    canvas.tint([[_swatch(x, y)]], _INK, 2 * OPACITY[word])
+    if word in LEAST:
+        draw_line(canvas, ([x, y], [x + 60, y]), word, _INK, 3)
+
+
+def _draw_legend(canvas: Canvas, rows: list[list[_Entry]]) -> None:
+    for number, entries in enumerate(rows):
+        x, y = float(_MARGIN), canvas.height - 48 - _ROW * (len(rows) - 1 - number)
+        for entry in entries:
+            entry.draw(canvas, x, y)
+            canvas.text(x + entry.indent, y, entry.label, _TEXT, _INK, "lm")
+            x = x + entry.indent + text_width(entry.label, _TEXT) + entry.after
 
 
 def _swatch(x: float, y: float) -> Float:
     """The sample of a face in the legend."""
     return np.array([[x, y - 13], [x + 36, y - 13], [x + 36, y + 13], [x, y + 13]])
-
-
-def _label(canvas: Canvas, x: float, y: float, text: str) -> float:
-    """Write a label of the legend; where the next entry starts."""
-    canvas.text(x, y, text, _TEXT, _INK, "lm")
-    return x + text_width(text, _TEXT) + 34

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from linecad.arrays import Float, Int
 from linecad.camera.frame_mixture import Observed
 from linecad.camera.horizontal_frames import HorizontalFrames
+from linecad.geometry import reach_across, vanishing_points
 from linecad.line_graph import Segments
 from linecad.lines.segments import label_angle
 from linecad.scene import Camera
@@ -25,7 +26,10 @@ def label_by_frames(segments: Segments, camera: Camera, frames: HorizontalFrames
         return frames.labelled(segments, camera)
     seen = Observed(segments.ends, camera.focal, camera.matrix[:2, 2], camera.width, camera.height)
     directions = frames.directions
-    density = np.vstack([seen.density(directions), np.full(len(segments), 1 / np.pi)])
+    # What goes on beyond a vanishing point is no line along its direction.
+    points = vanishing_points(camera.matrix, directions.T)
+    along = np.where(reach_across(segments.ends, points), 0.0, seen.density(directions))
+    density = np.vstack([along, np.full(len(segments), 1 / np.pi)])
     share = _local_shares(segments, density, frames.shares)
     label = (share * density).argmax(axis=0)
     is_along = label < len(directions)

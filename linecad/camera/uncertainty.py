@@ -107,7 +107,12 @@ def _frames_note(frames: HorizontalFrames) -> str:
         for frame in frames.further
     ]
     first = f"{frames.frames[0].share:.0%} of the segment length runs level along the first"
-    return f"{len(frames.frames)} horizontal frames: {first}; {', '.join(further)}; lines of the others are left out"
+    told = f"{len(frames.frames)} horizontal frames: {first}; {', '.join(further)}"
+    unsound = len(frames.further) - len(frames.sound.further)
+    if not unsound:
+        return told
+    which = "the others" if unsound == len(further) else f"{unsound} of them, seen on little of the photo or not well,"
+    return f"{told}; lines of {which} are left out"
 
 
 def _whole_errors(fit: Fit, lines: Int, is_told: bool, other: Other | None) -> Float:

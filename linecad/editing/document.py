@@ -39,6 +39,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "camera": None if now.found.certainty is None else summary(camera, now.found.certainty),
         "K": camera.matrix.tolist(),
         "R_cam_from_world": now.found.frame.rotation.tolist(),
+        "frames": 1 + len(now.found.frame.turns),
         "metres_per_unit": None if scene is None else scene.metres_per_unit,
         "lines": _lines(now),
         "crossings": _crossings(now),

@@ -130,7 +130,8 @@ def _found_shapes(scene: Scene, kind: OpeningKind, everywhere: bool) -> list[sha
     """The found openings of one kind in the photo: those on planes of component 0, or all."""
     component = dict(zip(scene.lines.id.tolist(), scene.lines.component.tolist(), strict=True))
     planes = {plane.id: plane for plane in scene.planes if everywhere or _is_of_first(plane, component)}
-    corners = [rectangle_in_space(o, planes[o.plane]) for o in scene.openings if o.kind == kind and o.plane in planes]
+    own = [each for each in scene.openings if each.kind == kind and each.plane in planes]
+    corners = [rectangle_in_space(each, planes[each.plane], scene.turns) for each in own]
     return [
         shapely.Polygon(project(ring, scene.camera.matrix, scene.rotation))
         for ring in corners

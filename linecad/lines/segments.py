@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.geometry import PhotoLength, angles_to, directions_to, lengths, middles, vanishing_points
+from linecad.geometry import PhotoLength, angles_to, directions_to, lengths, middles, reach_across, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.options import SHORT_REACH
 from linecad.scene import Camera
@@ -57,8 +57,12 @@ def find_faint_segments(grey: NDArray[np.uint8]) -> Segments:
 
 
 def label_segments(segments: Segments, camera: Camera, frame: ManhattanFrame) -> Segments:
-    """The segments that point to one of the three vanishing points, labelled by it (the paper's D_i)."""
-    sines = angles_to(segments.ends, vanishing_points(camera.matrix, frame.rotation))
+    """The segments that point to one of the three vanishing points, labelled by it (the paper's D_i).
+
+    One that goes on beyond a vanishing point, such as a mast before the end of a street, is not of that axis.
+    """
+    points = vanishing_points(camera.matrix, frame.rotation)
+    sines = np.where(reach_across(segments.ends, points), 1.0, angles_to(segments.ends, points))
     return Segments(segments.ends, sines.argmin(axis=0)).subset(sines.min(axis=0) < np.sin(label_angle(camera.width)))
 
 

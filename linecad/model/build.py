@@ -18,22 +18,20 @@ from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
-from linecad.model.face_lines import add_lines
+from linecad.model.face_lines import add_lines, without_repeats
 from linecad.model.faces import find_faces
 from linecad.model.frames import (
     FramedLines,
     clean_frames,
     in_frame,
     in_frames,
-    main_planes,
-    of_main,
     planes_in,
     planes_of,
     sight_in,
 )
 from linecad.model.lifting import Lifted
 from linecad.model.openings.cutting import with_openings
-from linecad.model.openings.find import find_openings
+from linecad.model.openings.find import FrameView, find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet
@@ -133,11 +131,12 @@ def build_scene(
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
-    holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
-    whole = planes
-    planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
+    holes = find_openings(_frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
+    whole, at_homes = planes, at_home(holes.openings, planes, view.camera, view.frame.rotation, graph.turns)
+    planes, openings = with_openings(planes, at_homes, graph.turns)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections)
-    framed, planes = _drawn(on_faces.lines, whole, holes.openings, sight), on_faces.planes
+    drawn = _drawn(on_faces.lines, whole, holes.openings, sight)
+    framed, planes = without_repeats(drawn, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     lines = framed.in_world()
     notes = (
@@ -179,6 +178,15 @@ def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Openi
         return with_roles(ends_there, own, own_sight.forward, _rectangles(openings, own))
 
     return framed.each(draw)
+
+
+def _frame_views(framed: FramedLines, planes: tuple[Plane, ...], rotation: Float) -> list[FrameView]:
+    """Planes, lines and `rotation` (3, 3), world to camera, in the axes of each frame."""
+    turns = framed.turns
+    return [
+        FrameView(planes_in(planes, frame, turns), framed.along(frame), in_frame(rotation, frame, turns))
+        for frame in framed.frames
+    ]
 
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:

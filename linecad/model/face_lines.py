@@ -13,8 +13,9 @@ from linecad.directions import Turns, frame_axes
 from linecad.graph.connectivity import spanning_forest
 from linecad.line_graph import Segments
 from linecad.lines.details import apart_from
+from linecad.model.clean.absorbing import absorbed
 from linecad.model.clean.sight import Sight
-from linecad.model.frames import FramedLines, together
+from linecad.model.frames import FramedLines, sight_in, together
 from linecad.model.on_faces.better import better_faces
 from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
@@ -96,15 +97,35 @@ def add_lines(
     lines = _records(framed, segments, face, ends, frame, seen)
     pieces = (*moved.lines.pieces, *(np.zeros((0, 2, 2)),) * (len(lines) - len(moved.lines)))
     lines = replace(lines, pieces=pieces)
-    staying = set(framed.lines.id.tolist())
-    members = {plane.id: [line for line in plane.lines if line in staying] for plane in planes}
+    every = FramedLines(together([framed.lines, lines]), np.concatenate([framed.frame, frame]), turns)
+    members = {plane.id: list(plane.lines) for plane in planes}
     for number, each in zip(lines.id.tolist(), face.tolist(), strict=True):
         members[seen.plane[each].id].append(number)
-    return LinesOnFaces(
-        FramedLines(together([framed.lines, lines]), np.concatenate([framed.frame, frame]), turns),
-        tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes),
-        kept,
-    )
+    full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)
+    return LinesOnFaces(*without_repeats(every, full, sight), kept)
+
+
+def without_repeats(
+    framed: FramedLines, planes: tuple[Plane, ...], sight: Sight
+) -> tuple[FramedLines, tuple[Plane, ...]]:
+    """The lines without those by faces that go on from others or repeat them in space, and planes without theirs."""
+    framed = _without_repeats(framed, sight)
+    left = set(framed.lines.id.tolist())
+    return framed, tuple(replace(plane, lines=tuple(line for line in plane.lines if line in left)) for plane in planes)
+
+
+def _without_repeats(framed: FramedLines, sight: Sight) -> FramedLines:
+    parts, rows = [], []
+    for frame in framed.frames:
+        own = framed.of(frame)
+        if len(own):
+            lines = rows_of(framed.lines, own)
+            found, left = absorbed(lines, np.asarray(lines.by_face), sight_in(sight, frame, framed.turns).forward)
+            parts.append(found)
+            rows.append(own[left])
+    order = np.concatenate(rows)
+    lines = rows_of(together(parts), np.argsort(order))
+    return FramedLines(lines, framed.frame[np.sort(order)], framed.turns)
 
 
 def _as_drawn(framed: FramedLines, sight: Sight) -> Segments:

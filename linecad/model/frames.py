@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from linecad.arrays import Float, Int, rows_of
-from linecad.directions import MAIN, UP, Turns, components, directions_of, frame_axes
+from linecad.directions import UP, Turns, components, directions_of, frame_axes
 from linecad.model.clean.clean import Cleaned, clean_lines
 from linecad.model.clean.joining import by_size, joined_crossings
 from linecad.model.clean.sight import Sight
@@ -56,6 +56,17 @@ class FramedLines:
             return self.lines
         return replace(self.lines, axis=self.axis, ends=_turned_back(self.lines.ends, self.frame, self.turns))
 
+    def along(self, frame: int) -> Lines:
+        """The lines that run along the axes of a frame, in these; uprights are those of all frames."""
+        if not self.turns:
+            return self.lines
+        axes = frame_axes(frame)
+        rows = np.flatnonzero(np.isin(self.axis, axes))
+        ends = in_frame(_turned_back(self.lines.ends[rows], self.frame[rows], self.turns), frame, self.turns)
+        own = self.frame[rows] == frame
+        ends = np.where(own[:, None, None], self.lines.ends[rows], ends)
+        return replace(rows_of(self.lines, rows), ends=ends)
+
     @property
     def axis(self) -> Int:
         """(N,) the direction of each line."""
@@ -86,16 +97,6 @@ def planes_in(planes: tuple[Plane, ...], frame: int, turns: Turns) -> tuple[Plan
         for plane in planes
         if plane.axis in axes
     )
-
-
-def main_planes(planes: tuple[Plane, ...]) -> tuple[Plane, ...]:
-    """The planes whose normal is an axis of the world."""
-    return tuple(plane for plane in planes if plane.axis < MAIN)
-
-
-def of_main(lines: Lines) -> Lines:
-    """The lines that run along an axis of the world."""
-    return lines if (lines.axis < MAIN).all() else rows_of(lines, np.flatnonzero(lines.axis < MAIN))
 
 
 def in_frames(lines: Lines, offset: Float, home: Int, turns: Turns) -> FramedLines:

@@ -147,7 +147,7 @@ function checkFace(file, face, primitive, matrix) {
     const [a, b, c] = [0, 1, 2].map((step) => points[indices[at + step]]);
     const normal = cross(minus(b, a), minus(c, a));
     area += Math.hypot(...normal) / 2;
-    away += normal["xyz".indexOf(face.axis)] * face.looks <= 0;
+    away += dot(normal, face.normal) <= 0;
     for (const step of [0, 1, 2]) edges.add(`${corner[at + step]} ${corner[at + ((step + 1) % 3)]}`);
   }
   need(edges.size === indices.length, `${name}: neighbouring triangles are turned differently`);

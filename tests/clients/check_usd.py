@@ -130,7 +130,7 @@ def check_mesh(findings, mesh, cache, face):
     wanted = [face[what] for what in ("id", "kind", "label", "axis", "offset")]
     findings.need(told == wanted, f"{name} says {told}, expected {wanted}")
     normals = set(map(tuple, mesh.GetNormalsAttr().Get()))
-    wanted = tuple(face["looks"] * (axis == face["axis"]) for axis in "xyz")
+    wanted = tuple(face["normal"])
     same = len(normals) == 1 and np.allclose(list(normals), wanted)
     findings.need(same, f"{name}: normals {normals}, expected {wanted}")
 

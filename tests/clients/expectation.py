@@ -16,6 +16,8 @@ UNITARY = 1e-6  # how far the rotation times its transpose may be from the ident
 
 # sRGB. They are part of what users get; whoever changes them in the exporters changes them here, knowingly.
 AXIS_COLOUR = {"x": (0.87, 0.16, 0.16), "y": (0.10, 0.62, 0.22), "z": (0.15, 0.36, 0.92)}
+# Of x2 and y2, then of x3 and y3; after these they begin again.
+FURTHER_COLOUR = [(0.93, 0.55, 0.10), (0.05, 0.60, 0.65), (0.76, 0.20, 0.70), (0.55, 0.60, 0.10)]
 WHITE_WHERE_NO_BOUNDARY = 0.5  # share
 FACE_COLOUR = (0.80, 0.79, 0.74)
 KIND_COLOUR = {"window": (0.49, 0.62, 0.72), "door": (0.56, 0.41, 0.29), "reveal": (0.69, 0.66, 0.60)}
@@ -24,13 +26,14 @@ BANDS = {"sure": 0.9, "likely": 0.5, "guess": 0.0}  # the smallest probability o
 
 
 def build_expectation(scene, by_band=False, by_role=False):
-    """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file of version 1.
+    """The expectation as a dictionary that JSON can hold; ValueError for what is no scene file.
 
     `by_band` is for exports with the option probability=on, which part lines by how sure their depth is, `by_role` for
     those with roles=on, which part them by what they are drawn for.
     """
-    if (scene.get("format"), scene.get("version")) != ("linecad-scene", 1):
-        raise ValueError(f"format {scene.get('format')}, version {scene.get('version')}: not a scene file of version 1")
+    version, turns = scene.get("version"), scene.get("turns", [])
+    if scene.get("format") != "linecad-scene" or version != (2 if turns else 1):
+        raise ValueError(f"format {scene.get('format')}, version {version}, {len(turns)} turns: not a scene file")
     metres = scene.get("metres_per_unit") or 1.0
     camera = {**_camera(scene["camera"]), "eye": [0.0, 0.0, _height(scene)]}
     eye = camera["eye"]
@@ -38,7 +41,7 @@ def build_expectation(scene, by_band=False, by_role=False):
     for line in sorted(scene["lines"], key=lambda line: line["id"]):
         ends = [_placed(end, metres, eye) for end in line["ends"]]
         if math.dist(*ends) > SHORTEST_LINE:
-            group = f"lines_{line['axis']}_{'boundary' if line['boundary'] else 'nonboundary'}"
+            group = f"lines_{_axis(line)}_{'boundary' if line['boundary'] else 'nonboundary'}"
             role = line.get("role", "outline")
             group += f"_{role}" if by_role and role != "outline" else ""  # of outlines the name says nothing
             group += _band(line) if by_band else ""
@@ -46,7 +49,7 @@ def build_expectation(scene, by_band=False, by_role=False):
             lines.append({"id": line["id"], "group": group, "role": role, "ends": ends, "pixels": pixels})
     openings = {opening["id"]: opening for opening in scene.get("openings", [])}
     faces = [
-        _face(plane, face, metres, eye, openings.get(face.get("opening")))
+        _face(plane, face, turns, (metres, eye), openings.get(face.get("opening")))
         for plane in scene["planes"]
         for face in plane.get("faces", [])
     ]
@@ -58,8 +61,9 @@ def build_expectation(scene, by_band=False, by_role=False):
         "frame": _centred_frame(camera),
         "lines": lines,
         "groups": _groups(scene["lines"], lines),
-        "planes": [{"id": p["id"], "axis": p["axis"], "offset": _offset(p, metres, eye)} for p in scene["planes"]],
+        "planes": [{"id": p["id"], "axis": _axis(p), "offset": _offset(p, metres, eye)} for p in scene["planes"]],
         "faces": faces,
+        "turns": turns,
         "openings": _openings(faces, openings),
         "box": [[choose(values) for values in zip(*points, strict=True)] for choose in (min, max)],
     }
@@ -115,7 +119,7 @@ def _centred_frame(camera):
 
 def _groups(told, lines):
     groups = {}
-    kind = {line["id"]: (line["axis"], line["boundary"]) for line in told}
+    kind = {line["id"]: (_axis(line), line["boundary"]) for line in told}
     for line in lines:
         axis, boundary = kind[line["id"]]
         group = groups.setdefault(line["group"], {"axis": axis, "boundary": boundary, "ids": [], "roles": []})
@@ -123,16 +127,37 @@ def _groups(told, lines):
         group["roles"].append(line["role"])
     for group in groups.values():
         white = 0.0 if group["boundary"] else WHITE_WHERE_NO_BOUNDARY
-        group["srgb"] = [white + (1 - white) * value for value in AXIS_COLOUR[group["axis"]]]
+        group["srgb"] = [white + (1 - white) * value for value in _colour(group["axis"])]
         group["linear"] = [_linear(value) for value in group["srgb"]]
     return groups
 
 
-def _face(plane, face, metres, eye, opening):
+def _axis(told):
+    """x, y or z as exports call it: x2 and y2 in the first further frame, x3 and y3 in the second."""
+    frame = told.get("frame") or 0
+    return told["axis"] if told["axis"] == "z" or not frame else f"{told['axis']}{frame + 1}"
+
+
+def _colour(axis):
+    if axis in AXIS_COLOUR:
+        return AXIS_COLOUR[axis]
+    return FURTHER_COLOUR[(2 * (int(axis[1:]) - 2) + "xy".index(axis[0])) % len(FURTHER_COLOUR)]
+
+
+def _normal(plane, turns):
+    """The direction that a plane's axis has in the world."""
+    turn = turns[plane["frame"] - 1] if plane.get("frame") else 0.0
+    level = {"x": (math.cos(turn), math.sin(turn), 0.0), "y": (-math.sin(turn), math.cos(turn), 0.0)}
+    return level.get(plane["axis"], (0.0, 0.0, 1.0))
+
+
+def _face(plane, face, turns, place, opening):
     """A face by its corners, each place once, and its rings as indices of them.
 
-    `looks` is 1 where it looks along its axis, -1 where against it: to the camera, a reveal into its opening.
+    `normal` looks along its axis or against it: to the camera, that of a reveal into its opening. `place` is m per
+    unit of the scene, and where the camera is.
     """
+    metres, eye = place
     rings = [[_placed(point, metres, eye) for point in ring] for ring in (face["outline"], *face.get("holes", []))]
     kind = face.get("kind", "other")
     looks = -1.0 if plane["offset"] > 0 else 1.0
@@ -147,9 +172,10 @@ def _face(plane, face, metres, eye, opening):
         "id": face["id"],
         "name": f"face_{face['id']:04d}",
         "kind": kind,
-        "axis": plane["axis"],
+        "axis": _axis(plane),
+        "frame": None if plane["axis"] == "z" else plane.get("frame") or 0,  # level faces are of all frames
         "offset": _offset(plane, metres, eye),
-        "looks": looks,
+        "normal": [looks * value for value in _normal(plane, turns)],
         "srgb": colour,
         "linear": [_linear(value) for value in colour],
         "opening": opening and opening["id"],

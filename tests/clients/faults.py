@@ -1,6 +1,7 @@
 """Put one fault into an expectation or a GLB, which every checker must notice: faults.py FAULT SOURCE TARGET"""
 
 import json
+import math
 import struct
 import sys
 from pathlib import Path
@@ -49,6 +50,11 @@ def wrong_colour(expected):
     group["srgb"], group["linear"] = ([0.9 * value for value in group[kind]] for kind in ("srgb", "linear"))
 
 
+def wrong_turn(expected):
+    """A frame is turned by a thousandth of a degree more."""
+    expected["turns"][0] += math.radians(0.001)
+
+
 def wrong_bounds(document):
     """An accessor of a GLB says a larger maximum than its numbers have, which only the validator looks at."""
     accessor = next(each for each in document["accessors"] if "max" in each)
@@ -56,6 +62,7 @@ def wrong_bounds(document):
 
 
 IN_EXPECTATION = (moved_line, missing_line, missing_face, missing_hole, wrong_camera, wrong_colour)
+IN_TURNED = (wrong_turn,)
 IN_GLB = (wrong_bounds,)
 
 
@@ -73,7 +80,7 @@ def change_glb(data, fault):
 
 def main(name, source, target):
     """Write `source` with the fault of that name to `target`."""
-    faults = {fault.__name__.replace("_", "-"): fault for fault in (*IN_EXPECTATION, *IN_GLB)}
+    faults = {fault.__name__.replace("_", "-"): fault for fault in (*IN_EXPECTATION, *IN_TURNED, *IN_GLB)}
     fault, data = faults[name], Path(source).read_bytes()
     if fault in IN_GLB:
         Path(target).write_bytes(change_glb(data, fault))

@@ -11,11 +11,12 @@ from pathlib import Path
 import FreeCAD
 import Part
 
-from shapes import apart, check_colour, check_lines, check_names
+from shapes import apart, check_colour, check_lines, check_names, dot
 from verdict import judge
 
 MILLIMETRES = 1000.0  # per metre
 TOLERANCE = 1e-6  # m
+ANGLE_TOLERANCE = 1e-6  # degrees
 COLOUR_TOLERANCE = 5e-3  # FreeCAD keeps a channel in 8 bits
 
 
@@ -73,6 +74,8 @@ def check_step(findings, path, document, expected, gui):
     for name in faces:
         if name in parts:
             check_face(findings, parts[name].Shape, faces[name])
+    if expected["turns"]:
+        check_angles(findings, parts, expected)
     if "camera" in parts:
         corners = [metres(vertex) for vertex in parts["camera"].Shape.Vertexes]
         eye = expected["camera"]["eye"]
@@ -114,7 +117,26 @@ def check_face(findings, shape, face):
     found = [tuple(map(metres, edge.Vertexes)) for edge in only.Edges]
     check_edges(findings, name, found, edges(face))
     normal = only.normalAt(0, 0)
-    findings.need(getattr(normal, face["axis"]) * face["looks"] > 0.999, f"{name} looks along {normal}")
+    findings.need(dot(normal, face["normal"]) > 0.999, f"{name} looks along {normal}")
+
+
+def check_angles(findings, parts, expected):
+    """Need walls of two frames to stand at the angle between these about z, or at right angles to that."""
+    walls = {}
+    for face in expected["faces"]:
+        if face["frame"] is not None and face["name"] in parts:
+            walls.setdefault(face["frame"], parts[face["name"]].Shape.Faces[0].normalAt(0, 0))
+    turns = [0.0, *expected["turns"]]
+    findings.need(len(walls) == len(turns), f"walls of the frames {sorted(walls)}, expected those of {len(turns)}")
+    for frame, normal in walls.items():
+        for other, beside in walls.items():
+            cross, along = normal.x * beside.y - normal.y * beside.x, normal.x * beside.x + normal.y * beside.y
+            angle = math.degrees(math.atan2(cross, along))
+            wanted = math.degrees(turns[other] - turns[frame])
+            findings.need(
+                abs((angle - wanted + 45.0) % 90.0 - 45.0) <= ANGLE_TOLERANCE,
+                f"walls of the frames {frame} and {other} are at {angle:.6f} degrees, expected {wanted:.6f}",
+            )
 
 
 def check_edges(findings, name, found, wanted):

@@ -65,8 +65,7 @@ def check_face(findings, face, points, triangles, tolerance):
     area = sum(math.hypot(*normal_of(*triangle)) / 2 for triangle in corners)
     right = math.isclose(area, face["area"], rel_tol=1e-4, abs_tol=1e-4)
     findings.need(right, f"{name}: area {area} m2, expected {face['area']}")
-    axis = AXES.index(face["axis"])
-    away = sum(normal_of(*triangle)[axis] * face["looks"] <= 0 for triangle in corners)
+    away = sum(dot(normal_of(*triangle), face["normal"]) <= 0 for triangle in corners)
     findings.need(not away, f"{name}: {away} of {len(triangles)} triangles are turned away from where it is seen")
 
 

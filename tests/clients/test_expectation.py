@@ -1,7 +1,11 @@
+import math
+
 import pytest
 
 from expectation import build_expectation
-from faults import IN_EXPECTATION
+from faults import IN_EXPECTATION, IN_TURNED
+from shapes import dot, normal_of
+from turned_houses import TURNS, build_scene
 
 
 def test_lengths_are_metres_from_the_ground_up_and_pixels_count_from_the_corner(expected):
@@ -40,8 +44,26 @@ def test_an_opening_has_its_faces_and_reveals_look_into_it(expected):
     assert (first["label"], second["label"], first["shape"]) == ("window 1", "window 2", second["shape"])
     faces = {face["name"]: face for face in expected["faces"]}
     assert [faces[name]["label"] for name in first["faces"][:2]] == ["window 1", "reveal of window 1"]
-    assert [faces[name]["looks"] for name in first["faces"]] == [-1.0, 1.0, -1.0, 1.0, -1.0]
-    assert [faces[name]["looks"] for name in second["faces"]] == [-1.0, 1.0, -1.0, 1.0, -1.0]
+    for opening in (first, second):
+        assert [sum(faces[name]["normal"]) for name in opening["faces"]] == [-1.0, 1.0, -1.0, 1.0, -1.0]
+
+
+def test_walls_of_further_frames_look_along_their_axes():
+    expected = build_expectation(build_scene())
+    faces = {face["name"]: face for face in expected["faces"]}
+    assert [faces[f"face_{number:04d}"]["axis"] for number in (0, 1, 3, 4, 6, 7, 9)] == [
+        "y", "x", "y2", "x2", "y3", "x3", "z",
+    ]  # fmt: skip
+    assert [faces[f"face_{number:04d}"]["frame"] for number in (1, 4, 7, 9)] == [0, 1, 2, None]
+    for number, turn in ((0, 0.0), (3, TURNS[0]), (6, TURNS[1])):
+        assert faces[f"face_{number:04d}"]["normal"] == pytest.approx([math.sin(turn), -math.cos(turn), 0.0])
+    for face in expected["faces"]:
+        normal = normal_of(*(face["corners"][number] for number in face["rings"][0][:3]))
+        assert abs(dot(normal, face["normal"])) == pytest.approx(math.hypot(*normal))
+    groups = expected["groups"]
+    assert set(groups) == {f"lines_{axis}_boundary" for axis in ("x", "y", "z", "x2", "y2", "x3", "y3")}
+    colours = [tuple(group["srgb"]) for group in groups.values()]
+    assert len(set(colours)) == len(colours)
 
 
 def test_lines_of_a_group_are_red_green_and_blue_or_paler(expected):
@@ -77,6 +99,7 @@ def test_faces_are_called_by_their_kind(document):
     ("change", "reason"),
     [
         (lambda scene: scene.update(version=2), "not a scene file"),
+        (lambda scene: scene.update(turns=[0.1]), "not a scene file"),
         (lambda scene: scene["camera"]["K"][0].__setitem__(1, 0.5), "without skew"),
         (lambda scene: scene["camera"]["R_cam_from_world"][0].__setitem__(0, 0.9), "no rotation"),
         (lambda scene: scene["lines"][0]["ends"][0].__setitem__(1, -1.0), "behind the camera"),
@@ -92,3 +115,10 @@ def test_what_no_program_could_show_is_refused(document, change, reason):
 def test_every_fault_changes_the_expectation(expected, document, fault):
     fault(expected)
     assert expected != build_expectation(document)
+
+
+@pytest.mark.parametrize("fault", IN_TURNED)
+def test_every_fault_of_turned_walls_changes_the_expectation(fault):
+    expected = build_expectation(build_scene())
+    fault(expected)
+    assert expected != build_expectation(build_scene())

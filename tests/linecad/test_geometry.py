@@ -19,6 +19,7 @@ from linecad.geometry import (
     homogeneous,
     plane_normals,
     project,
+    reach_across,
     ring_sides,
     rotation_about,
     segment_coordinates,
@@ -161,3 +162,15 @@ def test_sides_of_rings_lead_from_corner_to_corner_and_back():
     np.testing.assert_array_equal(sides[:3, 1], ring[[1, 2, 0]])
     np.testing.assert_array_equal(sides[3:], sides[:3] + 5)
     assert ring_sides([]).shape == (0, 2, 3)
+
+
+@given(st.integers(0, 2**32 - 1))
+def test_a_segment_reaches_across_a_point_on_it_and_not_across_one_beyond(seed):
+    rng = np.random.default_rng(seed)
+    ends = rng.uniform(-100, 100, (8, 2, 2))
+    share = np.array([-0.5, -0.01, 0.01, 0.3, 0.7, 0.99, 1.01, 2.0])
+    points = ends[:, 0] + share[:, None] * (ends[:, 1] - ends[:, 0])
+    weight = rng.uniform(0.1, 3.0, 8) * rng.choice([-1.0, 1.0], 8)
+    found = reach_across(ends, np.column_stack([points, np.ones(8)]) * weight[:, None])
+    assert np.diag(found).tolist() == [False, False, True, True, True, True, False, False]
+    assert not reach_across(ends, np.array([[1.0, 2.0, 0.0]])).any()  # nothing reaches what is at infinity

@@ -1,5 +1,6 @@
 // What a person can do, as one list of calls for buttons, keys and tools alike.
 
+import { inNextFrame } from "./axes.js";
 import { isReal } from "./store.js";
 
 const ZOOM_STEP = 1.25;
@@ -47,6 +48,11 @@ export class Actions {
 
   axis(axis) {
     return this.#withLine((line) => line.axis !== axis && this.editing.edit({ op: "axis", line: line.id, axis }));
+  }
+
+  /** The same axis of the next frame, for the line. */
+  nextFrame() {
+    return this.#withLine((line) => this.axis(inNextFrame(line.axis, this.store.state.frames)));
   }
 
   remove() {

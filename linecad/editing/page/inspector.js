@@ -1,5 +1,6 @@
 // The strip below the photo: what is selected or under the pointer, and what can be done with it.
 
+import { frameOf, letterOf } from "./axes.js";
 import { counted, element, keyButton } from "./dom.js";
 import { isReal } from "./store.js";
 import { fixesFrame } from "./tools.js";
@@ -121,19 +122,17 @@ export class Inspector {
       ` along ${line.axis} · ${facts.filter(Boolean).join(" · ")}`,
     );
     const locked = { disabled: !this.store.owner };
-    const axis = (name) =>
-      keyButton(name, name.toUpperCase(), () => this.actions.axis(name), {
-        ...locked,
-        class: `axis ${name}`,
-        "aria-pressed": String(line.axis === name),
-        "aria-label": `Axis ${name}`,
-      });
     return [
       text,
       element(
         "div",
         { class: "buttons" },
-        element("span", { class: "together", role: "group", "aria-label": "Axis" }, axis("x"), axis("y"), axis("z")),
+        this.#axes(
+          line.axis,
+          (name) => this.actions.axis(name),
+          () => this.actions.nextFrame(),
+          locked,
+        ),
         keyButton("Length", "M", () => this.actions.openLength(line), locked),
         keyButton("Delete", "Del", () => this.actions.remove(), locked),
       ),
@@ -161,18 +160,31 @@ export class Inspector {
   }
 
   #axisButtons(current, ...more) {
+    const axes = this.#axes(
+      current,
+      (name) => (this.tools.axis(name), this.#renew()),
+      () => (this.tools.nextFrame(), this.#renew()),
+    );
+    return element("div", { class: "buttons" }, axes, ...more);
+  }
+
+  /** Buttons for x, y and z, and one that goes through the frames where there are several. */
+  #axes(current, choose, goOn, attributes = {}) {
+    const { frames } = this.store.state;
     const axis = (name) =>
-      keyButton(name, name.toUpperCase(), () => (this.tools.axis(name), this.#renew()), {
+      keyButton(name, name.toUpperCase(), () => choose(name), {
+        ...attributes,
         class: `axis ${name}`,
-        "aria-pressed": String(current === name),
+        "aria-pressed": String(current !== null && letterOf(current) === name),
         "aria-label": `Axis ${name}`,
       });
-    return element(
-      "div",
-      { class: "buttons" },
-      element("span", { class: "together", role: "group", "aria-label": "Axis" }, axis("x"), axis("y"), axis("z")),
-      ...more,
-    );
+    const buttons = ["x", "y", "z"].map(axis);
+    if (frames > 1 && this.store.tool !== "frame") {
+      const isOfAll = current === null || current === "z";
+      const label = isOfAll ? "any frame" : `frame ${frameOf(current)} of ${frames}`;
+      buttons.push(keyButton(label, "Q", goOn, { ...attributes, "aria-label": "Next frame" }));
+    }
+    return element("span", { class: "together", role: "group", "aria-label": "Axis" }, ...buttons);
   }
 
   #frame() {

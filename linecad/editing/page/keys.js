@@ -26,6 +26,7 @@ export function keyTable({ store, actions, tools, pointer, panels }) {
           text: `The line runs along ${axis}`,
           run: () => tools.axis(axis),
         })),
+        { keys: ["q"], text: "It runs along the same axis of the next frame: x, x2, x3", run: () => tools.nextFrame() },
         { keys: ["delete", "backspace"], text: "Delete the selected line", run: () => actions.remove() },
         { keys: ["m"], text: "Give its length in metres", run: () => actions.length() },
         { keys: ["enter"], text: "Use the lines drawn for the axes", run: () => tools.apply() },

@@ -1,5 +1,6 @@
 // The tools: what a click on the photo means. Each tool is told of presses, moves and releases, in px of the photo.
 
+import { inNextFrame } from "./axes.js";
 import { nearest, thingsAt } from "./picking.js";
 
 /** The tools in the order of their buttons. */
@@ -152,6 +153,17 @@ export class Tools {
       if (points.length > 0 && rubber) this.#propose({ ends: rubber, axis: this.forcedAxis });
       else this.draft.follow(null, null);
     } else this.actions.axis(axis);
+  }
+
+  /** The same axis of the next of several frames; lines for the frame are of the main one. */
+  nextFrame() {
+    if (this.store.state.frames === 1) this.actions.messages.tell("All lines are of one frame: x, y and z are its axes.");
+    else if (this.store.tool === "frame") this.actions.messages.tell("These lines fix the main frame: x, y or z.");
+    else if (this.store.tool !== "draw") this.actions.nextFrame();
+    else {
+      const axis = this.forcedAxis ?? this.draft.proposal?.axis ?? "x";
+      this.axis(inNextFrame(axis, this.store.state.frames));
+    }
   }
 
   /** Enter: the lines for the frame are all there. */

@@ -7,6 +7,7 @@ import shapely
 from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float
+from linecad.directions import across, components
 from linecad.evaluation.draughting.shapes import NO_FACE, Shape, nearest_faces
 from linecad.geometry import project
 from linecad.scene import Scene
@@ -127,12 +128,13 @@ def steps_of(shape: Shape) -> list[Float]:
 
 def _follows_line(scene: Scene, edge: Float) -> bool:
     """Whether a line runs along an edge (2, 3) over half of it."""
-    axis = int(np.abs(edge[1] - edge[0]).argmax())
-    across = [each for each in range(3) if each != axis]
+    turned, ends = components(edge, scene.turns), components(scene.lines.ends, scene.turns)
+    axis = int(np.abs(turned[1] - turned[0]).argmax())
+    sides = np.sort(across(np.array(axis)))
     depth = max(float((edge @ scene.rotation[2]).mean()), 0.0)
-    own = scene.lines.ends[scene.lines.axis == axis]
-    near = np.linalg.norm(own[:, 0][:, across] - edge.mean(axis=0)[across], axis=1) < BESIDE_LINE * depth
-    low, high = np.sort(edge[:, axis])
+    own = ends[scene.lines.axis == axis]
+    near = np.linalg.norm(own[:, 0][:, sides] - turned.mean(axis=0)[sides], axis=1) < BESIDE_LINE * depth
+    low, high = np.sort(turned[:, axis])
     shared = np.minimum(own[:, :, axis].max(axis=1), high) - np.maximum(own[:, :, axis].min(axis=1), low)
     return bool((near & (shared >= 0.5 * (high - low))).any())
 

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int
+from linecad.directions import MAIN, across, components, count_of
 from linecad.evaluation.draughting.shapes import Shape
 from linecad.geometry import project, ring_sides
 from linecad.scene import Scene
@@ -73,11 +74,11 @@ class _Pairs:
 def _parallel(scene: Scene, depth: Float, drawn: Bool) -> _Pairs:
     lines = scene.lines
     tight, found = 0, [np.zeros((0, 2), np.int64)]
-    for axis in range(3):
+    ends = components(lines.ends, scene.turns)
+    for axis in range(count_of(scene.turns)):
         rows = np.flatnonzero(lines.axis == axis)
-        across = [each for each in range(3) if each != axis]
-        place = lines.ends[rows][:, :, across].mean(axis=1)
-        low, high = lines.ends[rows, :, axis].min(axis=1), lines.ends[rows, :, axis].max(axis=1)
+        place = ends[rows][:, :, np.sort(across(np.array(axis)))].mean(axis=1)
+        low, high = ends[rows, :, axis].min(axis=1), ends[rows, :, axis].max(axis=1)
         nearer = np.minimum(depth[rows][:, None], depth[rows][None])
         apart = np.linalg.norm(place[:, None] - place[None], axis=2) / nearer
         overlap = np.minimum(high[:, None], high[None]) - np.maximum(low[:, None], low[None])
@@ -96,13 +97,18 @@ def _gaps(scene: Scene) -> Float:
     gaps = np.full((len(lines), 2), np.inf)
     for component in np.unique(lines.component).tolist():
         own = lines.component == component
-        for axis in range(3):
+        for axis in range(count_of(scene.turns)):
             rows, others = np.flatnonzero(own & (lines.axis == axis)), np.flatnonzero(own & (lines.axis != axis))
+            slanted = others[lines.axis[others] >= MAIN]
+            others = others[lines.axis[others] < MAIN]
             for start in range(0, len(rows) if len(others) else 0, CHUNK):
                 some = rows[start : start + CHUNK]
                 ends = lines.ends[some][:, :, None]  # (R, 2, 1, 3)
                 foot = np.clip(ends, low[others], high[others])  # a line along an axis is a box without width
                 gaps[some] = np.linalg.norm(ends - foot, axis=3).min(axis=2)
+            if len(rows) and len(slanted):
+                away = distances(lines.ends[rows].reshape(-1, 3), lines.ends[slanted])
+                gaps[rows] = np.minimum(gaps[rows], away.reshape(-1, 2))
     return gaps
 
 

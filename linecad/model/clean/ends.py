@@ -125,9 +125,26 @@ def missed_offsets(strokes: Strokes, meets: Bool) -> Int:
 
     `meets` (N, 2) are the ends that meet a line.
     """
+    line, _, other = _missed(strokes, meets)
+    third = 3 - strokes.axis[line] - strokes.axis[other]
+    pairs = np.column_stack([strokes.number[line, third], strokes.number[other, third]])
+    missed: Int = pairs[pairs[:, 0] != pairs[:, 1]]
+    return missed
+
+
+def ends_that_miss(strokes: Strokes, meets: Bool) -> Bool:
+    """Which ends (N, 2) nearly meet a line of another axis and do not, as all but those of `meets` (N, 2) may."""
+    line, end, _ = _missed(strokes, meets)
+    misses = np.zeros(meets.shape, bool)
+    misses[line, end] = True
+    return misses
+
+
+def _missed(strokes: Strokes, meets: Bool) -> tuple[Int, Int, Int]:
+    """Line, end and nearest other line (P,) of the ends that nearly meet one, nearest first."""
     line, end = np.nonzero(~meets)
     if len(line) == 0:
-        return np.zeros((0, 2), np.int64)
+        return line, end, line
     point, depth = strokes.points(strokes.reach)[line, end], np.abs(strokes.end_depth)[line, end]
     rows, others = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
     for axis, other_axis in permutations(range(3), 2):
@@ -148,10 +165,7 @@ def missed_offsets(strokes: Strokes, meets: Bool) -> Int:
     first = order[np.unique(row[order], return_index=True)[1]]  # the nearest line of each end
     first = first[apart[first] <= NEAR]
     first = first[np.argsort(apart[first], kind="stable")]
-    third = 3 - strokes.axis[line[row[first]]] - along[first]
-    pairs = np.column_stack([strokes.number[line[row[first]], third], strokes.number[other[first], third]])
-    missed: Int = pairs[pairs[:, 0] != pairs[:, 1]]
-    return missed
+    return line[row[first]], end[row[first]], other[first]
 
 
 def ends_that_meet(strokes: Strokes) -> Bool:

@@ -44,7 +44,7 @@ def joined_lines(lines: Lines, strokes: Strokes, row: Int) -> Lines:
     segment = lines.segment[lead].copy()
     for number, own in enumerate(pieces):
         if len(own) > 1:
-            segment[number] = _whole(lines.segment[lead[number]], lines.segment[own])
+            segment[number] = whole_segment(lines.segment[lead[number]], lines.segment[own])
     several = [lines.segment[own] if len(own) > 1 else np.zeros((0, 2, 2)) for own in pieces]
     return Lines(
         id=np.arange(len(lead)),
@@ -79,7 +79,7 @@ def _ends(lines: Lines, rows: Int, strokes: Strokes) -> Float:
     return ends
 
 
-def _whole(lead: Float, pieces: Float) -> Float:
+def whole_segment(lead: Float, pieces: Float) -> Float:
     """The segment (2, 2) on the line of `lead` (2, 2) that reaches as far as the pieces (K, 2, 2) along it."""
     place = segment_coordinates(pieces, lead)[0]
     length = float(np.linalg.norm(lead[1] - lead[0]))

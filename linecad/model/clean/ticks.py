@@ -11,14 +11,15 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.confidence import with_lines
 from linecad.graph.connectivity import spanning_forest
-from linecad.model.clean.ends import NEAR, ends_that_meet, nearest_crossings
+from linecad.model.clean.ends import NEAR, ends_that_meet, ends_that_miss, nearest_crossings
 from linecad.model.clean.joining import by_size, with_closed_ends
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import Strokes, strokes_of
-from linecad.scene import DETAIL, Scene
+from linecad.scene import DETAIL, Lines, Scene
 
 LONGEST = 2 * NEAR  # of the depth; whatever its one end meets, the other end of a longer line is no near miss of it
+LEAST_FREE = 0.2  # of the depth; a shorter line that only a face placed is none where both of its ends are in the air
 MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by then
 
 
@@ -43,7 +44,7 @@ def without_ticks(scene: Scene, sight: Sight, least: int = 1) -> Scene:
     shown = {plane.id for plane in scene.planes if not plane.lines}
     planes = tuple(plane for plane in found.planes if plane.lines or plane.faces or plane.id in shown)
     crossings = replace(found.intersections, in_tree=_spanning(found, ~found.intersections.in_tree))
-    note = f"{gone} stubs shorter than {LONGEST:.1%} of their depth end nowhere and are left out"
+    note = f"{gone} stubs of detail that end nowhere are left out"
     return replace(
         found, lines=by_size(found.lines), intersections=crossings, planes=planes, notes=(*scene.notes, note)
     )
@@ -78,7 +79,17 @@ def _ticks(scene: Scene, strokes: Strokes, outlines: Float, sight: Sight) -> Boo
     ticks &= (scene.lines.role == DETAIL) & ~np.isin(scene.lines.id, said)
     ends_well = meets[ticks] | (at_outlines(strokes.of(ticks), outlines, sight) & ~_misses(strokes, ticks))
     ticks[ticks] = ~ends_well.all(axis=1)
-    return ticks
+    return ticks | (_hanging(scene.lines, strokes, meets, outlines, sight) & ~np.isin(scene.lines.id, said))
+
+
+def _hanging(lines: Lines, strokes: Strokes, meets: Bool, outlines: Float, sight: Sight) -> Bool:
+    """Which details (N,) that only a face placed nearly meet a line, or are short and meet nothing."""
+    own: Bool = np.asarray(lines.by_face) & (lines.role == DETAIL)
+    ends_well = meets[own] | at_outlines(strokes.of(own), outlines, sight)
+    is_short = np.ptp(strokes.reach[own], axis=1) < LEAST_FREE * np.abs(strokes.depth[own])
+    hangs = np.zeros(len(lines), bool)
+    hangs[own] = ends_that_miss(strokes, meets)[own].any(axis=1) | (is_short & ~ends_well.any(axis=1))
+    return hangs
 
 
 def _misses(strokes: Strokes, chosen: Bool) -> Bool:

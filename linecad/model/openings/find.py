@@ -6,6 +6,7 @@ missed). The best set of which no two overlap is taken (`choice`), gaps in its r
 all are made regular (`regular`); then windows of one size tell together how deep their panes are (`recess`).
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -30,10 +31,20 @@ SEEN_COVER = 1.2  # of the four sides in sum: with less, an opening was not seen
 
 
 @dataclass(frozen=True, eq=False)
+class FrameView:
+    """What is seen along the axes of one frame, in which its walls stand along x and y."""
+
+    planes: tuple[Plane, ...]
+    lines: Lines
+    rotation: Float  # (3, 3) frame to camera
+
+
+@dataclass(frozen=True, eq=False)
 class _Likely:
     """Rectangles of a wall that are likely openings."""
 
     wall: Wall
+    lines: Lines  # of the frame of the wall
     raster: Raster
     box: Int  # (N, 4)
     odds: Float  # (N,) log-odds
@@ -54,29 +65,27 @@ class Found:
     notes: tuple[str, ...] = ()  # for people
 
 
-def find_openings(
-    planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, pixels: NDArray[np.uint8] | None
-) -> Found:
-    """The openings of the vertical planes, in the order of their planes; none without pixels (H, W, 3) of the photo.
+def find_openings(frames: Sequence[FrameView], camera: Camera, pixels: NDArray[np.uint8] | None) -> Found:
+    """The openings of the vertical planes, frame by frame in the order of their planes, in the axes of their frames.
 
-    `rotation` (3, 3) takes world to camera.
+    `frames` has one of them at least, the main one first; without pixels (H, W, 3) of the photo there are no openings.
     """
     if pixels is None:
         return Found()
     sight = look(pixels)
-    is_inside = any(face.kind == "ceiling" for plane in planes for face in plane.faces)
+    is_inside = any(face.kind == "ceiling" for plane in frames[0].planes for face in plane.faces)
     found = []
-    for wall in find_walls(planes, lines, camera, rotation):
-        raster = build_raster(wall, sight)
-        if raster is not None:
-            likely = _likely(wall, raster, is_inside)
-            if len(likely.box):
+    for frame in frames:
+        for wall in find_walls(frame.planes, frame.lines, camera, frame.rotation):
+            raster = build_raster(wall, sight)
+            likely = None if raster is None else _likely(wall, frame.lines, raster, is_inside)
+            if likely is not None and len(likely.box):
                 found.append(likely)
     if not found:
         return Found()
     taken, choice = _choice(found, LEAST_ODDS)
     taken, more = _filled(taken)
-    ground = _ground_height(planes)
+    ground = _ground_height(frames[0].planes)
     openings: list[Opening] = []
     for likely in taken:
         if len(likely.box):
@@ -91,7 +100,7 @@ def find_openings(
                 ),
                 likely.pool.edges.cover(box).sum(axis=1) < SEEN_COVER,
             )
-            openings += _with_recess(make_regular(likely.wall, lines, seen, len(openings), ground), likely)
+            openings += _with_recess(make_regular(likely.wall, likely.lines, seen, len(openings), ground), likely)
     return Found(tuple(openings), max((choice, more), key=lambda each: each.gap).notes)
 
 
@@ -150,7 +159,7 @@ def _with_recess(openings: list[Opening], likely: _Likely) -> list[Opening]:
     ]
 
 
-def _likely(wall: Wall, raster: Raster, is_inside: bool) -> _Likely:
+def _likely(wall: Wall, lines: Lines, raster: Raster, is_inside: bool) -> _Likely:
     """The rectangles of one wall that may be openings; seen from inside, only those that light comes through."""
     edges = count_edges(raster)
     box = find_rectangles(raster, edges)
@@ -167,4 +176,4 @@ def _likely(wall: Wall, raster: Raster, is_inside: bool) -> _Likely:
     # Once: asked again with what was proposed, rows and columns would support themselves.
     whole = odds(evidence, support(box, raster, others, other_odds))
     likely = may_be(whole, LEAST_ODDS, evidence, is_inside)
-    return _Likely(wall, raster, box[likely], whole[likely], Pool(raster, edges, sums, box, evidence, is_inside))
+    return _Likely(wall, lines, raster, box[likely], whole[likely], Pool(raster, edges, sums, box, evidence, is_inside))

@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float
+from linecad.directions import Turns
 from linecad.geometry import project
 from linecad.model.openings.corners import rectangle_in_space
 from linecad.scene import Camera, Opening, Plane
@@ -21,13 +22,13 @@ MOST_HIDDEN = 0.5  # of an opening that was seen
 
 
 def at_home(
-    openings: tuple[Opening, ...], planes: tuple[Plane, ...], camera: Camera, rotation: Float
+    openings: tuple[Opening, ...], planes: tuple[Plane, ...], camera: Camera, rotation: Float, turns: Turns = ()
 ) -> tuple[Opening, ...]:
     """The openings on the planes whose faces show them, with ids and shapes numbered anew.
 
     Openings that no face shows, such as those behind a tree beside the sky, stay where they are. Left out are those on
     a face that is not parallel to their plane, and those seen where the wall is hidden; what rows and columns ask for
-    stays there. `rotation` (3, 3) takes world to camera.
+    stays there. `rotation` (3, 3) takes world to camera; `turns` are of further frames.
     """
     plane_of = {plane.id: plane for plane in planes}
     faces = [(plane, _polygon(face.outline, face.holes, camera, rotation)) for plane in planes for face in plane.faces]
@@ -38,7 +39,7 @@ def at_home(
     numbers: dict[tuple[int, int], int] = {}
     for opening in openings:
         wall = plane_of[opening.plane]
-        seen = shapely.Polygon(project(rectangle_in_space(opening, wall), camera.matrix, rotation))
+        seen = shapely.Polygon(project(rectangle_in_space(opening, wall, turns), camera.matrix, rotation))
         if not opening.is_completed and clutter.intersection(seen).area > MOST_HIDDEN * seen.area:
             continue
         shared = shapely.area(shapely.intersection(shapes, seen)) if len(shapes) else np.zeros(0)

@@ -10,6 +10,7 @@ from exporters.picture import faces as picture_faces
 from exporters.picture import scene as picture
 from exporters.picture import views as picture_views
 from exporters.picture.canvas import Canvas, drawable, text_width
+from linecad.directions import axis_name
 from linecad.scene import CONFIDENCES, Camera, DepthMapReport, Intersections, Plane
 
 GREY = (0.5, 0.5, 0.5)
@@ -254,10 +255,32 @@ def test_probabilities_are_counted_in_the_title_and_explained_in_the_legend(told
     picture._draw_title(canvas, told)
     assert "depths right within 5 %: 20 sure, 20 likely, 20 guess" in texts(canvas)[1]
     legend = Canvas(2400, 300, GREY)
-    picture._draw_legend(legend, picture_faces.words_of(told.lines)[1], 3)
+    picture._draw_legend(legend, picture._legend(picture_faces.words_of(told.lines)[1], 3))
     assert texts(legend)[-3:] == ["sure (0.9)", "likely (0.5)", "guess"]
     last = legend.texts[-1]
     assert last.x + text_width(last.text, last.size) < 2400
+
+
+@pytest.mark.parametrize(("directions", "rows"), [(3, 1), (5, 2), (13, 2), (43, 3)])
+def test_a_legend_of_many_frames_has_rows_that_fit(told, directions, rows):
+    found = picture._legend(picture_faces.words_of(told.lines)[1], directions)
+    assert len(found) == rows
+    legend = Canvas(2400, 300, GREY)
+    picture._draw_legend(legend, found)
+    names = [axis_name(axis) for axis in range(directions)]
+    assert [text for text in texts(legend) if text.split()[0] in names][6:] == names[3:]
+    assert sorted({each.y for each in legend.texts}) == [300 - 48 - 42 * row for row in reversed(range(rows))]
+    for each in legend.texts:
+        assert each.x + text_width(each.text, each.size) <= 2400 - 44
+
+
+def test_the_picture_grows_with_the_rows_of_its_legend(told, tmp_path):
+    heights = []
+    for turns in ((), (0.2, 0.4, 0.6)):
+        export(replace(told, turns=turns), tmp_path / "a.png")
+        with Image.open(tmp_path / "a.png") as drawn:
+            heights.append(drawn.height)
+    assert heights[1] == heights[0] + picture._ROW
 
 
 def test_lines_have_the_more_gaps_the_less_likely_their_depth_is(scene):

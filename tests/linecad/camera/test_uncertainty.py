@@ -40,7 +40,8 @@ def along(rotation, counts, seed=0, length=80.0):
 
 def frames_of(main, others=()):
     """A main frame and others."""
-    return HorizontalFrames(main, (HorizontalFrame(0.0, 0.005, 0.6, 100.0), *others), np.full(4, 0.25))
+    shares = np.full(4 + 2 * len(others), 1 / (4 + 2 * len(others)))
+    return HorizontalFrames(main, (HorizontalFrame(0.0, 0.005, 0.6, 100.0), *others), shares)
 
 
 def judged(
@@ -186,8 +187,22 @@ def test_further_frames_are_told_with_turn_error_and_share():
     assert notes == [
         "3 horizontal frames: 60% of the segment length runs level along the first; turned by -12.3 ± 0.4 degrees "
         "about the upright (20% of the segment length), turned by 28.6 ± 0.4 degrees about the upright (10% of the "
-        "segment length); lines of the others are left out"
+        "segment length)"
     ]
+
+
+@pytest.mark.parametrize(
+    ("shares", "end"),
+    [
+        ((0.2,), "length)"),
+        ((0.03,), "; lines of the others are left out"),
+        ((0.2, 0.03), "; lines of 1 of them, seen on little of the photo or not well, are left out"),
+    ],
+)
+def test_frames_whose_lines_are_left_out_are_told(shares, end):
+    others = tuple(HorizontalFrame(0.3 + n, 0.007, share, 50.0) for n, share in enumerate(shares))
+    (note,) = judged(others=others, explained=0.77)[1]
+    assert note.endswith(end)
 
 
 def test_a_second_frame_that_explains_much_is_a_doubt():

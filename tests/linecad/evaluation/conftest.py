@@ -10,6 +10,7 @@ from scipy.io import savemat
 
 from linecad.camera.photo import Photo
 from linecad.dataset.truth import NOTHING, Truth
+from linecad.directions import directions_of, frame_axes
 from linecad.evaluation.draughting.shapes import shapes_of
 from linecad.geometry import project, world_rays
 from linecad.graph.build import build_line_graph
@@ -266,3 +267,21 @@ def drawing():
 def outline():
     """A function from two opposite corners to the outline of a rectangle."""
     return corners
+
+
+@pytest.fixture(scope="session")
+def turned():
+    """A function that turns a drawn scene and its camera about the upright, so that it is of a second frame."""
+
+    def turn(scene, angle):
+        axes = frame_axes(1)
+        vectors = directions_of((angle,))[axes]
+
+        def moved(face):
+            return replace(face, outline=face.outline @ vectors, holes=tuple(hole @ vectors for hole in face.holes))
+
+        planes = [replace(each, axis=axes[each.axis], faces=tuple(map(moved, each.faces))) for each in scene.planes]
+        lines = replace(scene.lines, axis=np.array(axes)[scene.lines.axis], ends=scene.lines.ends @ vectors)
+        return replace(scene, lines=lines, planes=tuple(planes), rotation=scene.rotation @ vectors, turns=(angle,))
+
+    return turn

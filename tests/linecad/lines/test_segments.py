@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from linecad.geometry import REFERENCE_WIDTH, angles_to, vanishing_points
+from linecad.geometry import REFERENCE_WIDTH, angles_to, directions_to, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines import segments as segments_module
 from linecad.lines.segments import (
@@ -85,6 +85,16 @@ def test_segments_of_no_axis_are_left_out(made):
     stray = np.array([[[1400.0, 1000.0], [1500.0, 900.0]]])
     labelled = label_segments(Segments(stray, [-1]), made.camera, made.frame)
     assert len(labelled) == 0
+
+
+def test_a_mast_before_the_end_of_a_street_is_upright(made):
+    points = vanishing_points(made.camera.matrix, made.frame.rotation)
+    end = points[1, :2] / points[1, 2]
+    up = directions_to(end, points[2])
+    leaning = up + 0.01 * np.array([-up[1], up[0]])  # it runs through that point exactly, and to the zenith roughly
+    for low, high, axis in ((-80.0, 60.0, 2), (-5.0, 200.0, 2), (5.0, 90.0, 1)):
+        mast = Segments([[end + low * leaning, end + high * leaning]], [-1])
+        assert label_segments(mast, made.camera, made.frame).axis.tolist() == [axis]
 
 
 def test_labelled_ends_stay_as_they_were(made):

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from linecad.directions import components, directions_of
-from linecad.model.frames import FramedLines, in_frame, in_frames, main_planes, of_main, planes_in
+from linecad.directions import components, directions_of, frame_axes
+from linecad.model.frames import FramedLines, in_frame, in_frames, planes_in
 from linecad.scene import Face, Lines, Plane
 
 TURNS = (0.4, -0.2)
@@ -77,11 +77,24 @@ def test_a_frame_has_its_planes_and_the_level_ones_in_its_axes():
     found = planes_in(planes, 1, TURNS)
     assert [(plane.id, plane.axis) for plane in found] == [(1, 1), (2, 2)]
     np.testing.assert_allclose(found[0].faces[0].outline, [[0, 5, 0], [1, 5, 0], [1, 5, 1]], atol=1e-14)
-    assert [plane.id for plane in main_planes(planes)] == [0, 2]
+    assert [plane.id for plane in planes_in(planes, 0, TURNS)] == [0, 2]
 
 
-def test_lines_along_the_worlds_axes_alone():
-    assert of_main(lines()).id.tolist() == [0, 1, 3]
+@pytest.mark.parametrize(
+    ("frame", "ids", "axis"), [(0, [0, 1, 3], [0, 2, 2]), (1, [1, 2, 3, 4], [2, 0, 2, 1]), (2, [1, 3, 5], [2, 2, 0])]
+)
+def test_lines_along_a_frame_are_its_own_to_the_last_bit_and_all_uprights(frame, ids, axis):
+    found = framed().along(frame)
+    assert found.id.tolist() == ids
+    assert found.axis.tolist() == axis
+    own = framed().lines.ends
+    np.testing.assert_array_equal(found.ends[HOME[ids] == frame], own[ids][HOME[ids] == frame])
+    np.testing.assert_allclose(found.ends, lines().ends[ids] @ VECTORS[frame_axes(frame)].T, atol=1e-14)
+
+
+def test_without_further_frames_all_lines_are_the_worlds():
+    own = lines()
+    assert FramedLines(own, HOME, ()).along(0) is own
 
 
 def test_points_of_the_main_frame_are_those_of_the_world():

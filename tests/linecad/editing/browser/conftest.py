@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import cv2
+import numpy as np
 import pytest
 
 if TYPE_CHECKING:
@@ -86,6 +87,33 @@ def long_search(tmp_path_factory) -> Path:
     calibration = {"width": size[0], "height": size[1], "K": K, "distortion": []}
     (folder / "room.json").write_text(json.dumps(calibration), encoding="utf-8")
     return folder / "room.png"
+
+
+@pytest.fixture(scope="session")
+def two_frames(tmp_path_factory) -> Path:
+    """A photo of two facades that stand at 0.65 rad to each other, with its calibration."""
+    folder = tmp_path_factory.mktemp("facades")
+    focal, centre = 900.0, (639.5, 479.5)
+    picture = np.full((960, 1280, 3), (235, 225, 215), np.uint8)
+
+    def fill(turn, x, y, z, shade):
+        """A rectangle of a wall that stands at y in the axes of its frame."""
+        flat = np.array([(x[0], z[0]), (x[1], z[0]), (x[1], z[1]), (x[0], z[1])])
+        right, away = flat[:, 0] * np.cos(turn) - y * np.sin(turn), flat[:, 0] * np.sin(turn) + y * np.cos(turn)
+        pixels = np.column_stack([focal * right / away + centre[0], -focal * flat[:, 1] / away + centre[1]])
+        cv2.fillPoly(picture, [np.rint(16 * pixels).astype(np.int32)], shade, cv2.LINE_AA, shift=4)
+
+    for turn, start, y in ((-0.4, -11.0, 10.0), (0.25, 4.5, 12.0)):
+        fill(turn, (start, start + 6.2), y, (-1.6, 5.0), (150, 160, 170))
+        for column in range(4):
+            for row in range(3):
+                x, z = start + 0.5 + 1.4 * column, -0.8 + 1.9 * row
+                fill(turn, (x, x + 0.9), y, (z, z + 1.3), (60, 50, 45))
+    cv2.imwrite(str(folder / "facades.png"), picture)
+    K = [[focal, 0, centre[0]], [0, focal, centre[1]], [0, 0, 1]]
+    calibration = {"width": 1280, "height": 960, "K": K, "distortion": []}
+    (folder / "facades.json").write_text(json.dumps(calibration), encoding="utf-8")
+    return folder / "facades.png"
 
 
 @pytest.fixture(scope="session")

@@ -138,6 +138,60 @@ def test_keys_change_the_axis_of_a_line_and_delete_it(screen):
     assert by_id(screen.state, "lines", line["id"])["axis"] == "z"
 
 
+def test_a_key_goes_through_the_frames(new_screen, start, two_frames):
+    screen = new_screen(start(photo=two_frames))
+    screen.open()
+    assert screen.state["frames"] == screen.served.ask("state")["frames"] == 2
+    # The rightmost, since no line reaches across the vanishing point of its axis, as one in the middle would along y.
+    level = [each for each in screen.state["lines"] if each["axis"] == "x2" and each["ends"]]
+    line = max(level, key=lambda each: np.mean(each["segment"], axis=0)[0])
+    screen.press("v")
+    screen.click(free_place(screen.state, line))
+    assert screen.run("linecad.store.selection") == {"kind": "line", "id": line["id"]}
+    next_frame = screen.button("Next frame")
+    for axis, label in (("x", "frame 1 of 2"), ("x2", "frame 2 of 2")):
+        screen.press("q")
+        assert by_id(screen.served.ask("state"), "lines", line["id"])["axis"] == axis
+        assert label in next_frame.inner_text()
+    next_frame.click()
+    screen.settle()
+    assert by_id(screen.state, "lines", line["id"])["axis"] == "x"
+    screen.press("y")
+    screen.press("q")
+    assert by_id(screen.served.ask("state"), "lines", line["id"])["axis"] == "y2"
+    assert screen.button("Axis y").get_attribute("aria-pressed") == "true"
+    screen.press("z")
+    screen.press("q")
+    assert by_id(screen.served.ask("state"), "lines", line["id"])["axis"] == "z"
+    assert "any frame" in next_frame.inner_text()
+    # A line that is being drawn: x, then the x of the second frame.
+    screen.press("d")
+    below = np.array([0.0, 12.0])  # px
+    start_at, end_at = (screen.on_screen(end + below) for end in np.array(line["segment"]))
+    screen.page.mouse.move(*start_at)
+    screen.page.mouse.down()
+    screen.page.mouse.move(*end_at, steps=3)
+    screen.press("x")
+    screen.press("q")
+    screen.wait("linecad.draft.proposal?.axis === 'x2'")
+    assert "Along x2, fixed" in screen.page.locator("#inspector").inner_text()
+    screen.page.mouse.up()
+    screen.settle()
+    assert [each["axis"] for each in screen.state["lines"] if each["origin"] == "drawn"] == ["x2"]
+
+
+def test_a_photo_of_one_frame_has_no_next_one(screen):
+    line = longest(screen.state, "x")
+    screen.press("v")
+    screen.click(free_place(screen.state, line))
+    assert screen.state["frames"] == 1
+    assert screen.button("Next frame").count() == 0
+    screen.press("q")
+    assert by_id(screen.state, "lines", line["id"])["axis"] == "x"
+    assert screen.served.ask("state")["undo"] == 0
+    assert "All lines are of one frame" in screen.page.locator("body").inner_text()
+
+
 def test_a_line_is_split_where_it_is_clicked_and_joined_again(screen):
     line = longest(screen.state, "z")
     place = free_place(screen.state, line)

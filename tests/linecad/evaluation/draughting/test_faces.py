@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.evaluation.draughting.faces import count_faces, steps_of
+from linecad.evaluation.draughting.shapes import shapes_of
 
 WALL = ((-5, -2), (5, 3))
 STAIR = [(0, 0), (10, 0), (10, 5), (9.8, 5), (9.8, 5.2), (9.6, 5.2), (9.6, 5.4), (0, 5.4)]
@@ -88,6 +89,19 @@ def test_a_step_that_a_line_draws_has_one(drawing):
     assert counted(drawing, [(1, 10.0, STAIR)]).steps_without_line == 4
     assert counted(drawing, [(1, 10.0, STAIR)], [step]).steps_without_line == 3
     assert counted(drawing, [(1, 10.0, STAIR)], [other]).steps_without_line == 4
+
+
+@pytest.mark.parametrize(
+    ("line", "without"),
+    [
+        (((9.6, 10.0, 5.2), (9.8, 10.0, 5.2)), 3),  # level
+        (((9.8, 10.0, 5.0), (9.8, 10.0, 5.2)), 3),  # upright
+        (((9.6, 10.0, 5.3), (9.8, 10.0, 5.3)), 4),  # 1 % above it
+    ],
+)
+def test_a_step_in_another_frame_that_a_line_draws_has_one(drawing, turned, line, without):
+    scene = turned(drawing([line], [(1, 10.0, STAIR)])[0], 0.4)
+    assert count_faces(scene, shapes_of(scene), np.zeros(1, bool)).steps_without_line == without
 
 
 def test_slivers_and_small_faces(drawing, outline):

@@ -1,8 +1,11 @@
 """Each kind of bad line in a scene where it can be counted by hand. The walls are 10 away: 1 % is 0.1."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from linecad.directions import MAIN
 from linecad.evaluation.draughting.lines import count_lines, distances
 
 
@@ -111,3 +114,37 @@ def test_a_point_is_as_far_from_a_segment_as_from_its_nearest_point():
     segments = np.array([[[0, 0, 0], [2, 0, 0]], [[0, 5, 0], [0, 9, 0]]], float)
     points = np.array([[1, 1, 0], [4, 0, 0], [3, 6, 4]], float)
     assert distances(points, segments) == pytest.approx([1, 2, 5])
+
+
+def street(rng, count):
+    """Lines at random on two walls, many of them near each other and near another's end."""
+    lines = []
+    for number in range(count):
+        x, z = rng.integers(-2, 2, 2) + rng.choice([0.0, 0.02, 0.05], 2)
+        y = float(rng.choice([10.0, 11.0]))
+        ends = level(x, x + 1, z, y), upright(x, z, z + 1, y), ((x, y, z), (x, y + 1, z))
+        lines.append(ends[number % 3])
+    return lines
+
+
+@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("angle", [0.1, 0.7])
+def test_a_scene_turned_into_another_frame_has_the_same_counts(drawing, turned, seed, angle):
+    scene, _ = drawing(street(np.random.default_rng(seed), 60))
+    none = np.zeros(len(scene.lines), bool)
+    found = count_lines(scene, [], none)
+    assert found == count_lines(turned(scene, angle), [], none)
+    assert min(found.parallel_pairs, found.too_many, found.missing, found.in_air) > 0
+
+
+@pytest.mark.parametrize(("gap", "missing"), [(0.0, 0), (0.05, 1), (0.15, 0)])
+def test_an_end_misses_a_line_of_another_frame(drawing, gap, missing):
+    angle = 0.3
+    along = np.array([np.cos(angle), np.sin(angle), 0.0])
+    scene, _ = drawing([level(-1, 1, 0), level(0, 1, 0)])
+    start = np.array([0.2, 10.0, 0.0])
+    # The second runs along x of the second frame, and begins `gap` off the first.
+    ends = np.stack([scene.lines.ends[0], [start + gap / np.sin(angle) * along, start + 2 * along]])
+    scene = replace(scene, lines=replace(scene.lines, axis=np.array([0, MAIN]), ends=ends), turns=(angle,))
+    found = count_lines(scene, [], np.zeros(2, bool))
+    assert (found.missing, found.parallel_pairs, found.too_many) == (missing, 0, 0)

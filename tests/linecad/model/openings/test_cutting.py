@@ -9,6 +9,7 @@ import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
+from linecad.directions import directions_of, frame_axes
 from linecad.model.openings.cutting import with_openings
 from linecad.scene import Face, Opening, Plane
 
@@ -111,6 +112,26 @@ def test_a_door_stands_on_the_foot_of_its_wall(v0):
     assert wall.holes == ()
     assert {tuple(corner) for corner in pane.outline.tolist()} < {tuple(corner) for corner in wall.outline.tolist()}
     assert area(plane, wall) + area(plane, pane) == pytest.approx(72.0)
+
+
+@pytest.mark.parametrize("opening", [WINDOW, recessed(WINDOW), DOOR])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_turned_wall_is_opened_like_one_of_the_main_frame(axis, opening):
+    turns, axes = (0.3,), frame_axes(1)
+    vectors = directions_of(turns)[axes]
+    wall = wall_of(axis=axis)
+    turned = replace(wall, axis=axes[axis], faces=(replace(wall.faces[0], outline=wall.faces[0].outline @ vectors),))
+    planes, found = with_openings((turned,), (opening,), turns)
+    expected, _ = with_openings((wall,), (opening,))
+    assert found[0].v0 == (-2.0 if opening.kind == "door" else opening.v0)
+    assert [(plane.axis, plane.offset) for plane in planes] == [(axes[each.axis], each.offset) for each in expected]
+    for (_, face), (_, like) in zip(faces_of(planes).values(), faces_of(expected).values(), strict=True):
+        assert (face.kind, face.opening, len(face.hidden)) == (like.kind, like.opening, len(like.hidden))
+        for ring, own in zip((face.outline, *face.holes), (like.outline, *like.holes), strict=True):
+            np.testing.assert_allclose(ring, own @ vectors, atol=1e-13)
+    # What stays of the outline is the same to the last digit.
+    corners = {tuple(corner) for corner in planes[0].faces[0].outline.tolist()}
+    assert {tuple(corner) for corner in turned.faces[0].outline.tolist()} <= corners
 
 
 def test_a_door_above_the_foot_is_a_hole():

@@ -1,5 +1,7 @@
 """Windows of painted facades are found where they are, made regular, and nothing is found where there is nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -56,21 +58,32 @@ def test_bare_wall_has_no_openings(facade):
 
 
 def test_without_a_photo_nothing_is_found(facade):
-    assert find_openings(facade.planes, facade.lines, facade.camera, facade.rotation, None).openings == ()
+    assert find_openings([facade.view()], facade.camera, None).openings == ()
 
 
 def test_without_planes_nothing_is_found(facade):
-    assert find_openings((), facade.lines, facade.camera, facade.rotation, facade.pixels).openings == ()
+    assert find_openings([facade.view(())], facade.camera, facade.pixels).openings == ()
 
 
 def test_choice_that_ended_at_its_limit_is_told(facade, monkeypatch):
-    args = (facade.planes, facade.lines, facade.camera, facade.rotation, facade.pixels)
+    args = ([facade.view()], facade.camera, facade.pixels)
     assert find_openings(*args).notes == ()
     first = find.choose
     monkeypatch.setattr(find, "choose", lambda *each: Choice(first(*each).taken, 0.0123))
     assert find_openings(*args).notes == (
         "windows and doors: another choice of them may be up to 1.2% better; not proven",
     )
+
+
+def test_walls_of_two_frames_have_their_windows_in_their_own_axes(facade):
+    # The same wall in both frames: each window is found once, in the frame that comes first.
+    other = replace(facade.view(), planes=(replace(facade.planes[0], id=9),))
+    both = find_openings([facade.view(), other], facade.camera, facade.pixels).openings
+    assert sorted(which(each, facade) for each in both) == list(range(len(facade.boxes)))
+    # No wall in the first: all windows are those of the second, with its coordinates.
+    nothing = facade.view(())
+    found = find_openings([nothing, other], facade.camera, facade.pixels).openings
+    assert found == tuple(replace(each, plane=9) for each in facade.openings())
 
 
 def test_the_same_photo_gives_the_same_openings(facade):
@@ -96,8 +109,8 @@ def with_level(facade, kind, height):
 
 def test_from_inside_what_is_darker_than_the_wall_is_no_window(facade):
     planes = with_level(facade, "ceiling", 4.0)
-    dark = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels).openings
-    bright = find_openings(planes, facade.lines, facade.camera, facade.rotation, 255 - facade.pixels).openings
+    dark = find_openings([facade.view(planes)], facade.camera, facade.pixels).openings
+    bright = find_openings([facade.view(planes)], facade.camera, 255 - facade.pixels).openings
     assert dark == ()
     assert len(bright) == len(facade.boxes)
 
@@ -105,7 +118,7 @@ def test_from_inside_what_is_darker_than_the_wall_is_no_window(facade):
 def test_what_stands_on_the_ground_is_a_door(facade, monkeypatch):
     monkeypatch.setattr(regular, "TALL", 1.3)  # these are 1.5 times as tall as wide
     planes = with_level(facade, "ground", min(box[2] for box in facade.boxes))
-    found = find_openings(planes, facade.lines, facade.camera, facade.rotation, facade.pixels).openings
+    found = find_openings([facade.view(planes)], facade.camera, facade.pixels).openings
     assert {(each.kind, each.v0 < 0) for each in found} == {("door", True), ("window", False)}
 
 

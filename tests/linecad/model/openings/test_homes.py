@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linecad.directions import directions_of, frame_axes
 from linecad.geometry import project
 from linecad.model.openings.corners import panel_in_space, rectangle_in_space
 from linecad.model.openings.homes import at_home
@@ -59,6 +60,21 @@ def test_equal_openings_stay_equal_and_those_of_two_walls_part():
     assert [each.plane for each in found] == [3, 3, 8]
     assert [each.shape for each in found] == [0, 0, 2]
     assert found[0].u1 - found[0].u0 == pytest.approx(9 / 8, rel=1e-12)
+
+
+def test_an_opening_of_a_turned_wall_goes_to_a_parallel_one_of_its_frame():
+    turns, axes = (0.3,), frame_axes(1)
+    vectors = directions_of(turns)[axes]
+
+    def turned(plane):
+        faces = tuple(replace(face, outline=face.outline @ vectors) for face in plane.faces)
+        return replace(plane, axis=axes[plane.axis], faces=faces)
+
+    planes = [turned(plane) for plane in (NEAR, wall(3, 9.0))]
+    found = at_home((WINDOW,), tuple(planes), CAMERA, AHEAD @ vectors, turns)
+    assert found == homes((WINDOW,), NEAR, wall(3, 9.0))
+    # A wall of the main frame shows it: it is none of the turned wall.
+    assert at_home((WINDOW,), (planes[0], wall(3, 9.0)), CAMERA, AHEAD @ vectors, turns) == ()
 
 
 def test_without_faces_all_stay():
