@@ -24,7 +24,23 @@ def made_folder(drawn, made_truth, tmp_path_factory):
 def test_a_made_dataset_gives_all_tables(made_folder, tmp_path, capsys):
     out = tmp_path / "a.json"
     pictures = ["--turned", str(tmp_path)]
-    assert main(["evaluate", str(made_folder), "--json", str(out), *pictures, "--time-limit", "20", "--quiet"]) == 0
+    assert (
+        main(
+            [
+                "evaluate",
+                str(made_folder),
+                "--json",
+                str(out),
+                *pictures,
+                "--time-limit",
+                "20",
+                "--option",
+                "face-lines=off",
+                "--quiet",
+            ]
+        )
+        == 0
+    )
     photo = json.loads(out.read_text())["photos"][0]
     assert photo["error"] is None
     assert photo["statistics"]["real"] > 20

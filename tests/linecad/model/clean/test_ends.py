@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from linecad.model.clean.ends import close_ends, ends_that_meet, missed_offsets, without_new_twins
+from linecad.model.clean.ends import (
+    close_ends,
+    ends_that_meet,
+    ends_that_miss,
+    missed_offsets,
+    without_new_twins,
+)
 from linecad.model.clean.strokes import strokes_of
 
 X, Y, Z = range(3)
@@ -76,6 +82,7 @@ def test_planes_that_keep_an_end_from_its_line_are_named_nearest_first(strokes):
     assert meets.tolist() == [[False, False]] * 3
     depths = [found.number[row, Y] for row in range(3)]
     assert missed_offsets(after, meets).tolist() == [[depths[2], depths[0]], [depths[1], depths[0]]]
+    assert ends_that_miss(after, meets).tolist() == [[True, True], [False, False], [False, False]]
 
 
 def test_which_ends_meet(strokes):

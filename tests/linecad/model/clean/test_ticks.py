@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from linecad.model.clean.sight import Sight
-from linecad.model.clean.ticks import LONGEST, without_ticks
+from linecad.model.clean.ticks import without_ticks
 from linecad.scene import Face, Plane, Scene, SolveReport
 
 X, Y, Z = range(3)
@@ -24,9 +24,10 @@ def tick(height, x=0.0):
 def drawn(lines, crossings, camera, rotation):
     """The scene, without ticks, of rows of detail behind SILL and LEFT, in one wall."""
 
-    def draw(rows, planes=None, roles=None, reason=""):
+    def draw(rows, planes=None, roles=None, reason="", by_face=False):
         rows = [SILL, LEFT, *rows]
-        found = replace(lines(rows), role=roles or ["outline"] * 2 + ["detail"] * (len(rows) - 2))
+        on_face = np.arange(len(rows)) >= (2 if by_face else len(rows))
+        found = replace(lines(rows), by_face=on_face, role=roles or ["outline"] * 2 + ["detail"] * (len(rows) - 2))
         scene = Scene(
             photo="wall.jpg", camera=camera, rotation=rotation, lines=found,
             intersections=crossings([(0, row) for row in range(1, len(rows))], reason=reason),
@@ -43,7 +44,7 @@ def test_a_tick_goes_with_its_crossing_and_a_note_counts_it(drawn):
     assert found.lines.id.tolist() == [0, 1, 3]
     assert found.intersections.lines.tolist() == [[0, 1], [0, 3]]
     assert found.planes[0].lines == (0, 1, 3)
-    assert found.notes == ("before", f"1 stubs shorter than {LONGEST:.1%} of their depth end nowhere and are left out")
+    assert found.notes == ("before", "1 stubs of detail that end nowhere are left out")
 
 
 def test_a_scene_without_ticks_is_the_scene_as_it_is(drawn):
@@ -107,3 +108,21 @@ def test_a_tick_that_alone_connects_another_line_stays(drawn, crossings, camera,
 def test_a_component_keeps_as_many_lines_as_it_must_have(drawn, camera, rotation, least, left):
     scene, _ = drawn([tick(0.07), tick(0.3, 1)])
     assert len(without_ticks(scene, Sight.of(camera, rotation, None), least).lines) == left
+
+
+@pytest.mark.parametrize(
+    ("row", "stays"),
+    [
+        ((Z, (0, DEPTH, 0), (0, DEPTH, 1)), True),
+        ((Z, (0, DEPTH, 0.5), (0, DEPTH, 1.5)), False),
+        ((Z, (0, DEPTH, 0.5), (0, DEPTH, 3.5)), True),
+        ((Z, (0, DEPTH + 0.05, 0), (0, DEPTH + 0.05, 1.5)), False),
+        ((Z, (0, DEPTH + 0.05, 0.5), (0, DEPTH + 0.05, 3.5)), True),
+    ],
+    ids=["on the sill", "short in the air", "long in the air", "just behind the sill", "long behind the sill"],
+)
+def test_details_that_a_face_placed_hang_nowhere(drawn, row, stays):
+    _, found = drawn([row], by_face=True)
+    assert (2 in found.lines.id) == stays
+    before, after = drawn([row])
+    assert len(after.lines) == len(before.lines)
