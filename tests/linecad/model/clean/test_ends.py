@@ -82,7 +82,7 @@ def test_planes_that_keep_an_end_from_its_line_are_named_nearest_first(strokes):
     assert meets.tolist() == [[False, False]] * 3
     depths = [found.number[row, Y] for row in range(3)]
     assert missed_offsets(after, meets).tolist() == [[depths[2], depths[0]], [depths[1], depths[0]]]
-    assert ends_that_miss(after, meets).tolist() == [[True, True], [False, False], [False, False]]
+    assert ends_that_miss(after, meets).tolist() == [[False, False], [False, True], [False, True]]
 
 
 def test_which_ends_meet(strokes):
