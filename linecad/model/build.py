@@ -23,6 +23,7 @@ from linecad.model.faces import find_faces
 from linecad.model.frames import (
     FramedLines,
     clean_frames,
+    frame_views,
     in_frame,
     in_frames,
     planes_in,
@@ -31,7 +32,7 @@ from linecad.model.frames import (
 )
 from linecad.model.lifting import Lifted
 from linecad.model.openings.cutting import with_openings
-from linecad.model.openings.find import find_openings, frame_views
+from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet

@@ -14,7 +14,6 @@ import shapely
 from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
-from linecad.model.frames import FramedLines, in_frame, planes_in
 from linecad.model.openings.choice import Choice, choose, not_overlapping
 from linecad.model.openings.evidence import Sums, measure
 from linecad.model.openings.gaps import Pool, are_odd, find_gaps, may_be
@@ -64,15 +63,6 @@ class Found:
 
     openings: tuple[Opening, ...] = ()
     notes: tuple[str, ...] = ()  # for people
-
-
-def frame_views(framed: FramedLines, planes: tuple[Plane, ...], rotation: Float) -> list[FrameView]:
-    """Lines, planes and `rotation` (3, 3), world to camera, in the axes of each frame, the main one first."""
-    turns = framed.turns
-    return [
-        FrameView(planes_in(planes, frame, turns), framed.along(frame), in_frame(rotation, frame, turns))
-        for frame in framed.frames
-    ]
 
 
 def find_openings(frames: Sequence[FrameView], camera: Camera, pixels: NDArray[np.uint8] | None) -> Found:
