@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from linecad.arrays import Bool, Float, Int, Text
 from linecad.decide.decision import Decision
 from linecad.depth.normals import Normals
+from linecad.directions import Turns
 from linecad.errors import ReconstructionError
 from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
@@ -23,6 +24,7 @@ from linecad.model.faces import find_faces
 from linecad.model.frames import (
     FramedLines,
     clean_frames,
+    frame_views,
     in_frame,
     in_frames,
     planes_in,
@@ -31,7 +33,7 @@ from linecad.model.frames import (
 )
 from linecad.model.lifting import Lifted
 from linecad.model.openings.cutting import with_openings
-from linecad.model.openings.find import FrameView, find_openings
+from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.surfaces import GroundOfFeet
@@ -131,9 +133,9 @@ def build_scene(
     look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
-    holes = find_openings(_frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
-    whole, at_homes = planes, at_home(holes.openings, planes, view.camera, view.frame.rotation, graph.turns)
-    planes, openings = with_openings(planes, at_homes, graph.turns)
+    holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
+    whole = planes
+    planes, openings = _opened(planes, holes.openings, view, graph.turns)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections)
     drawn = _drawn(on_faces.lines, whole, holes.openings, sight)
     framed, planes = without_repeats(drawn, on_faces.planes, sight)
@@ -180,13 +182,11 @@ def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Openi
     return framed.each(draw)
 
 
-def _frame_views(framed: FramedLines, planes: tuple[Plane, ...], rotation: Float) -> list[FrameView]:
-    """Planes, lines and `rotation` (3, 3), world to camera, in the axes of each frame."""
-    turns = framed.turns
-    return [
-        FrameView(planes_in(planes, frame, turns), framed.along(frame), in_frame(rotation, frame, turns))
-        for frame in framed.frames
-    ]
+def _opened(
+    planes: tuple[Plane, ...], openings: tuple[Opening, ...], view: View, turns: Turns
+) -> tuple[tuple[Plane, ...], tuple[Opening, ...]]:
+    """The planes with their openings cut out, and the openings in the walls that the photo shows around them."""
+    return with_openings(planes, at_home(openings, planes, view.camera, view.frame.rotation, turns), turns)
 
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:

@@ -16,6 +16,7 @@ from linecad.directions import UP, Turns, components, directions_of, frame_axes
 from linecad.model.clean.clean import Cleaned, clean_lines
 from linecad.model.clean.joining import by_size, joined_crossings
 from linecad.model.clean.sight import Sight
+from linecad.model.openings.find import FrameView
 from linecad.model.planes import find_planes
 from linecad.scene import Face, Intersections, Lines, Plane
 
@@ -97,6 +98,15 @@ def planes_in(planes: tuple[Plane, ...], frame: int, turns: Turns) -> tuple[Plan
         for plane in planes
         if plane.axis in axes
     )
+
+
+def frame_views(framed: FramedLines, planes: tuple[Plane, ...], rotation: Float) -> list[FrameView]:
+    """Lines, planes and `rotation` (3, 3), world to camera, in the axes of each frame, the main one first."""
+    turns = framed.turns
+    return [
+        FrameView(planes_in(planes, frame, turns), framed.along(frame), in_frame(rotation, frame, turns))
+        for frame in framed.frames
+    ]
 
 
 def in_frames(lines: Lines, offset: Float, home: Int, turns: Turns) -> FramedLines:
