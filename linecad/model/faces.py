@@ -5,7 +5,7 @@ border. Their rays meet the planes in space, and what is a line's or a plane's c
 exactly, so that neighbours share corners and lines lie on the edges they made.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -34,6 +34,7 @@ class _Part:
     surface: Surface
     rings: list[Float]  # (V, 3) each
     holes: int
+    measured: list[Float]  # the same rings before coordinates that differ by rounding became one number
 
 
 def find_faces(
@@ -99,7 +100,7 @@ def _lifted(
         if surface.axis < MAIN:
             points[:, surface.axis] = surface.offset
         rings.append(points)
-    return _Part(surface, rings, len(region.interiors))
+    return _Part(surface, rings, len(region.interiors), rings)
 
 
 def _snapped(parts: list[_Part], planes: tuple[Plane, ...], lines: Lines) -> list[_Part]:
@@ -117,7 +118,7 @@ def _snapped(parts: list[_Part], planes: tuple[Plane, ...], lines: Lines) -> lis
         snapped[:, axis] = _joined(points[:, axis], known, tolerance)
     starts = np.cumsum([len(ring) for ring in rings])[:-1]
     new = iter(np.split(snapped, starts))
-    return [_Part(part.surface, [next(new) for _ in part.rings], part.holes) for part in parts]
+    return [replace(part, rings=[next(new) for _ in part.rings]) for part in parts]
 
 
 def _joined(values: Float, known: Float, tolerance: float) -> Float:
@@ -139,16 +140,33 @@ def _joined(values: Float, known: Float, tolerance: float) -> Float:
 def _face(number: int, part: _Part, turns: Turns) -> Face | None:
     """A face; None for a region that has no area in space."""
     flat = sorted(across(np.array(part.surface.axis)).tolist())
-    rings = [ring[(ring != np.roll(ring, 1, axis=0)).any(axis=1)] for ring in part.rings]
-    outline, *others = rings
-    holes = [ring for ring in others[: part.holes] if len(ring) >= LEAST_CORNERS]
-    hidden = [ring for ring in others[part.holes :] if len(ring) >= LEAST_CORNERS]
-    if len(outline) < LEAST_CORNERS:
-        return None
-    shell, *inner = (components(ring, turns)[:, flat] for ring in (outline, *holes))
-    if not shapely.Polygon(shell, inner).is_valid:
-        return None
-    return Face(number, outline, tuple(holes), KINDS[part.surface.kind], tuple(hidden))
+    for rings in (part.rings, part.measured):
+        outline, *others = [without_spikes(ring) for ring in rings]
+        if len(outline) < LEAST_CORNERS:
+            return None
+        holes = [ring for ring in others[: part.holes] if len(ring) >= LEAST_CORNERS]
+        hidden = [ring for ring in others[part.holes :] if len(ring) >= LEAST_CORNERS]
+        shell, *inner = (components(ring, turns)[:, flat] for ring in (outline, *holes))
+        if shapely.Polygon(shell, inner).is_valid:
+            return Face(number, outline, tuple(holes), KINDS[part.surface.kind], tuple(hidden))
+    return None
+
+
+def without_spikes(ring: Float) -> Float:
+    """A ring (V, 3) without corners that are the one before, and without edges there and back.
+
+    A strip of the photo that is thinner than rounding becomes such an edge.
+    """
+    while True:
+        before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
+        idle = (ring == before).all(axis=1)
+        tips = np.flatnonzero((before == after).all(axis=1))
+        if idle.any():
+            ring = ring[~idle]
+        elif len(tips):
+            ring = np.delete(ring, tips[0], axis=0)  # one at a time: its neighbours are one corner now
+        else:
+            return ring
 
 
 def _with_faces(planes: tuple[Plane, ...], surfaces: list[Surface], faces: dict[int, list[Face]]) -> tuple[Plane, ...]:

@@ -1,8 +1,8 @@
 """What stands behind trees, cars and people: the walls and the ground between their visible parts.
 
 Clutter that surfaces surround is given to them, cut along the lines in which they meet; what the sky or the photo's
-border surrounds as well stays clutter, since nothing tells what is behind it. Regions too small for a face go the same
-way.
+border surrounds as well stays clutter, since nothing tells what is behind it. Outdoors no wall goes on behind them
+beyond where the photo shows it somewhere; a room is closed. Regions too small for a face go the same way.
 """
 
 from dataclasses import dataclass, replace
@@ -11,19 +11,25 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Bool, Float
+from linecad.directions import UP, components, partner
+from linecad.geometry import directions_to, vanishing_points, world_rays
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, expand
 from linecad.model.regions.evidence import sums
 from linecad.model.regions.labelling import UNIT, Labels
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
+from linecad.model.regions.segments import View
 from linecad.scene import Camera
 
 SURROUNDED = 0.5  # share of the outline of clutter that is along surfaces
 LEAST_AREA = 0.0015  # of the photo, of a region that becomes a face
 NEVER = 10**7  # cost of a label that a cell may not take
 TOUCH = 1e-3  # px
-UNREACHED = 10.0  # cost a sample, from which on a good part of a cell lies where a surface is not seen
+UNREACHED, BEYOND = 10.0, 50.0  # cost a sample, from which on a good part of a cell lies where a surface is not seen
+LARGE = 0.1  # of the largest part of a wall, of those that tell how far it goes
+SLACK = 0.01  # of its offset, by which samples may be beyond
+UPRIGHT = 0.02  # of the photo's width, of the piece of an upright that is drawn out
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,13 +48,17 @@ class Filled:
         return f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"
 
 
-def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
+def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     """Labels of cells that are cut along `meets` (N, 2, 2) px of surfaces too, with clutter between them filled in."""
+    camera = view.camera
     clutter = shapely.union_all([region for number, region in found.regions if number == found.clutter])
     open_regions = _to_fill(found, camera)
     if not open_regions:
         return Filled(found, clutter)
-    cells = _cut_along(found, meets, open_regions, camera, raster)
+    ends = _ends_of_walls(found, view)
+    uprights = [upright for _, _, two in ends.values() for upright in two]
+    cuts = np.concatenate([meets, np.array(uprights).reshape(-1, 2, 2)])
+    cells = _cut_along(found, cuts, open_regions, camera, raster)
     inside = _inside(cells, open_regions)
     cell = partition.draw(cells, raster.shape, raster.step)
     middle = shapely.point_on_surface(np.array(cells, object))
@@ -57,7 +67,7 @@ def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
     point, region = tree.query(middle, predicate="within")
     label = np.full(len(cells), found.clutter)
     label[point] = numbers[region]
-    own = sums(cell, len(cells), found.of_samples)
+    own = sums(cell, len(cells), _not_beyond(found, ends, raster))
     whole = np.full(own.shape, NEVER, np.int64)
     whole[np.arange(len(cells)), label] = 0
     count = np.maximum(np.bincount(cell, minlength=len(cells)), 1)[:, None]
@@ -74,6 +84,41 @@ def fill(found: Labels, meets: Float, raster: Raster, camera: Camera) -> Filled:
     gap = max(found.gap, proof.gap)
     filled = replace(found, cells=cells, cell=cell, label=proof.label, costs=whole, borders=borders, gap=gap)
     return Filled(filled, clutter)
+
+
+def _ends_of_walls(found: Labels, view: View) -> dict[int, tuple[float, float, Float]]:
+    """For each wall the components along it from and to which the photo shows it, and uprights (2, 2, 2) px there."""
+    camera = view.camera
+    axes = components(view.rotation, view.turns)
+    upward = vanishing_points(camera.matrix, view.rotation)[UP]
+    is_room = any(surface.kind == "ceiling" for surface in found.surfaces)
+    ends = {}
+    for number, surface in enumerate(() if is_room else found.surfaces):
+        parts = [region for own, region in found.regions if own == number]
+        if surface.kind != "wall" or not parts:
+            continue
+        largest = max(part.area for part in parts)
+        corners = np.concatenate([shapely.get_coordinates(part) for part in parts if part.area >= LARGE * largest])
+        rays = world_rays(corners, camera.matrix, axes)
+        along = surface.offset * rays[:, int(partner(surface.axis))] / rays[:, surface.axis]
+        last = corners[[along.argmin(), along.argmax()]]
+        half = UPRIGHT * camera.width * directions_to(last, np.stack([upward, upward]))
+        ends[number] = (float(along.min()), float(along.max()), np.stack([last - half, last + half], axis=1))
+    return ends
+
+
+def _not_beyond(found: Labels, ends: dict[int, tuple[float, float, Float]], raster: Raster) -> Float:
+    """Costs (S, K + 2) of samples with those of walls beyond their ends; one that is not shown is nowhere."""
+    costs = found.of_samples.copy(order="F")
+    for number, surface in enumerate(found.surfaces):
+        if surface.kind != "wall" or not ends:
+            continue
+        low, high, _ = ends.get(number, (np.inf, -np.inf, None))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            along = surface.offset * raster.rays[:, int(partner(surface.axis))] / raster.rays[:, surface.axis]
+        slack = SLACK * abs(surface.offset)
+        costs[~((along > low - slack) & (along < high + slack)), number] += BEYOND
+    return costs
 
 
 def _to_fill(found: Labels, camera: Camera) -> list[shapely.Polygon]:

@@ -38,5 +38,5 @@ def find_regions(
     found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
-    filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, camera)
+    filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)
     return with_hidden(on_ground(filled, raster, view), raster)

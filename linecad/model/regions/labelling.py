@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
 from linecad.model.regions import partition
+from linecad.model.regions.corners import Known, Side, find_ends, find_sides, with_sides
 from linecad.model.regions.cuts import Borders, energy, expand
 from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
 from linecad.model.regions.proof import Program, prove
@@ -34,6 +35,7 @@ DOUBTFUL = 3.0  # times that; surfaces that win more are kept without a question
 FEWEST_WINS = 6  # surfaces asked in one turn
 RUNS = (0.02, 0.04, 0.06, 0.08, 0.10)  # of the photo's width; lines of which no longer piece is a border are left out
 CORNER = 0.0012  # cost of one more corner of an outline, in samples of all
+LEAST_SHOWN = 0.5  # share of where a side may be, that must show it
 ON_BORDER = 1e-3  # px
 STRAIGHT = 1e-6  # px; a corner nearer to the straight outline is none
 
@@ -88,15 +90,36 @@ def find_labels(
     found = _labels(partition.cut(border), costs, drawn, surfaces, raster)
     shown = np.unique(found.label[found.label < len(surfaces)])
     costs, surfaces = costs[:, [*shown.tolist(), SKY, CLUTTER]], [surfaces[number] for number in shown.tolist()]
-    meets = _meets_of_neighbours(found, shown, find_meets(lines, surfaces, view))
-    segments, count = np.concatenate([meets, segments]), len(meets)
-    answers = []
-    for run in (*RUNS, np.inf):
-        border, rows = partition.extended(segments, camera.width, camera.height, raster.step, count)
-        answers.append(_labels(partition.cut(border), costs, drawn, surfaces, raster))
+    label = np.searchsorted(shown, found.label) + (found.label == found.clutter)
+    known = Known(label[found.cell], surfaces, lines, raster)
+    sides = find_sides(find_ends(known), known)
+    while True:
+        all_costs = with_sides(costs, sides, known)
+        surfaces = [*known.surfaces, *(side.surface for side in sides)]
+        meets = _meets_of_neighbours(found, shown, sides, find_meets(lines, surfaces, view))
+        every, count = np.concatenate([meets, segments]), len(meets)
+        border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
+        answer = _labels(partition.cut(border), all_costs, drawn, surfaces, raster)
+        taken = _shown_sides(answer, sides)
+        if len(taken) == len(sides):
+            break
+        sides = taken
+    answers = [answer]
+    for run in RUNS:
         used = np.unique(rows[_bordering(answers[-1], border, run * camera.width) & (rows >= 0)])
-        segments, count = segments[used], int((used < count).sum())
+        every, count = every[used], int((used < count).sum())
+        border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
+        answers.append(_labels(partition.cut(border), all_costs, drawn, surfaces, raster))
     return _proven(min(answers, key=lambda answer: answer.price), raster)
+
+
+def _shown_sides(found: Labels, sides: list[Side]) -> list[Side]:
+    """The sides, last of the surfaces, that the photo shows in most of where they may be and their wall is not."""
+    label, shown = found.label[found.cell], []
+    for row, side in enumerate(sides, len(found.surfaces) - len(sides)):
+        beside = label[side.hides & (label != side.wall)]
+        shown += [side] if (beside == row).sum() > LEAST_SHOWN * len(beside) else []
+    return shown
 
 
 def _proven(found: Labels, raster: Raster) -> Labels:
@@ -108,12 +131,18 @@ def _proven(found: Labels, raster: Raster) -> Labels:
     return replace(found, label=_like_neighbours(found.cells, found.cell, proof.label), gap=proof.gap)
 
 
-def _meets_of_neighbours(found: Labels, shown: Int, meets: Meets) -> Float:
-    """The lines (M, 2, 2) px in which surfaces meet that are neighbours in the photo, by surfaces that are `shown`."""
+def _meets_of_neighbours(found: Labels, shown: Int, sides: list[Side], meets: Meets) -> Float:
+    """The lines (M, 2, 2) px in which surfaces meet that are neighbours in the photo, by surfaces that are `shown`.
+
+    A side, which comes behind these, is a neighbour of the walls that tell of it and of the ground.
+    """
     labels = np.sort(found.label[found.borders.cells], axis=1)
+    labels = np.searchsorted(shown, labels[labels[:, 1] < len(found.surfaces)])
     beside = {(int(one), int(other)) for one, other in np.unique(labels, axis=0)}
-    pairs = np.sort(shown[meets.surfaces], axis=1).tolist()
-    kept = np.array([tuple(pair) in beside for pair in pairs], bool)
+    for number, side in enumerate(sides, len(shown)):
+        beside |= {(side.wall, number), (side.behind, number)}
+        beside |= {(k, number) for k, each in enumerate(shown.tolist()) if found.surfaces[each].kind != "wall"}
+    kept = np.array([tuple(pair) in beside for pair in np.sort(meets.surfaces, axis=1).tolist()], bool)
     ends: Float = meets.ends[kept]
     return ends
 

@@ -114,9 +114,7 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
     walls = [index for index, surface in enumerate(surfaces) if surface.kind == "wall"][:MOST_WALLS]
     levels = [index for index, surface in enumerate(surfaces) if surface.kind in ("ground", "ceiling")]
     ends = components(lines.ends, view.turns)
-    boxes = {
-        index: np.percentile(ends[surfaces[index].lines].reshape(-1, ends.shape[2]), [2, 98], axis=0) for index in walls
-    }
+    boxes = {index: _box(surfaces[index], ends) for index in walls}
     found: list[tuple[Float, tuple[int, int]]] = []
     for index in walls:
         low, high = boxes[index]
@@ -147,6 +145,12 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
         np.array([pixels for pixels, _ in shown]).reshape(-1, 2, 2),
         np.array([pair for _, pair in shown], np.int64).reshape(-1, 2),
     )
+
+
+def _box(wall: Surface, ends: Float) -> Float:
+    """Low and high components (2, K) of a wall, by the components (N, 2, K) of the ends of all lines."""
+    own = ends[wall.lines].reshape(-1, ends.shape[2])
+    return np.asarray(np.percentile(own, [2, 98], axis=0)) if wall.box is None else wall.box
 
 
 def _in_world(normal: int, offset: float, along: int, reach: Float, height: Float, turns: Turns) -> Float:

@@ -33,7 +33,8 @@ class Surface:
     axis: int
     offset: float
     lines: Int  # (M,) rows of the scene's lines
-    plane: int | None  # id of the plane that stands for it; None for a ground or ceiling without lines of its own
+    plane: int | None  # id of the plane that stands for it; None for one without lines of its own
+    box: Float | None = None  # (2, K) low and high components of a wall without lines
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linecad.geometry import central_camera, project
-from linecad.model.faces import FURTHEST, LEAST_AREA, LEAST_HIDDEN, find_faces
+from linecad.model.faces import FURTHEST, LEAST_AREA, LEAST_HIDDEN, find_faces, without_spikes
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
@@ -169,6 +169,36 @@ def test_what_hides_a_part_of_a_face_is_told():
     assert (hidden[:, 1] == 10).all()
     assert face.holes == ()
     assert in_photo(face.outline).area == pytest.approx(150 * 150)
+
+
+def test_a_region_with_a_hair_is_a_face_without_it():
+    # Thinner than what counts as rounding, as strips beside the foot of a wall can be.
+    body = shapely.box(90, 170, 130, 200)
+    hair = shapely.Polygon([(100, 170), (100, 150), (100 + 1e-6, 150), (100 + 1e-6, 170)])
+    region = shapely.union(body, hair)
+    assert region.is_valid
+    ((_, face),) = every(faces_of([WALL], [(0, region)]))
+    assert in_photo(face.outline).symmetric_difference(body).area < 1e-6
+    assert shapely.hausdorff_distance(in_photo(face.outline), body) < 1e-6
+
+
+@pytest.mark.parametrize(
+    ("ring", "kept"),
+    [
+        ("abca", "abc"),
+        ("abcbad", ""),
+        ("abacde", "acde"),
+        ("aab", ""),
+        ("bcdab", "bcda"),
+        ("abcdc", "abc"),
+        ("aaa", ""),
+    ],
+)
+def test_edges_there_and_back_are_left_out(ring, kept):
+    places = {letter: np.array([number, number**2, 1.0]) for number, letter in enumerate("abcde")}
+    found = without_spikes(np.array([places[letter] for letter in ring]))
+    assert len(found) == len(kept)
+    assert {tuple(place) for place in found} == {tuple(places[letter]) for letter in kept}
 
 
 def test_a_surface_ends_before_its_horizon_with_one_straight_cut():

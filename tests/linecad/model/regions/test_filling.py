@@ -9,6 +9,7 @@ from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import fill
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import take_raster
+from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
 
 WALL, OTHER, GROUND, SKY, CLUTTER = range(5)
@@ -19,6 +20,7 @@ SURFACES = [
     Surface("wall", 0, 9.0, NO_LINES, 1),
     Surface("ground", 2, -2.0, NO_LINES, None),
 ]
+ROOM = [*SURFACES[:GROUND], Surface("ceiling", 2, 2.0, NO_LINES, None)]  # its ceiling is where the ground would be
 MEET = np.array([[[100, FOOT], [800, FOOT]]])
 NO_MEETS = np.zeros((0, 2, 2))
 
@@ -32,7 +34,7 @@ def raster(house):
 def filled(house, raster):
     """A function of a tree or other thing (x, y, x, y) px before the three bands of the photo, and what it is."""
 
-    def build(*things, meets=MEET):
+    def build(*things, meets=MEET, surfaces=SURFACES, hint=None):
         frame = shapely.box(-0.5, -0.5, 959.5, 719.5)
         bands = [(SKY, -0.5, EAVES), (WALL, EAVES, FOOT), (GROUND, FOOT, 719.5)]
         boxes = [(shapely.box(*box), label) for label, box in things]
@@ -51,9 +53,12 @@ def filled(house, raster):
             of_samples[(row > top) & (row < bottom), number] = 0
         cell = partition.draw(cells, raster.shape, raster.step)
         of_samples[label[cell] == OTHER, OTHER] = -1  # what it shows speaks for it
+        if hint is not None:
+            of_samples[label[cell] == CLUTTER, hint] = -1
         borders = Borders(np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
         costs = np.zeros((len(cells), 5), np.int64)
-        return fill(Labels(SURFACES, cells, cell, label, of_samples, costs, borders), meets, raster, house.camera)
+        labels = Labels(surfaces, cells, cell, label, of_samples, costs, borders)
+        return fill(labels, meets, raster, View(house.camera, house.rotation, None))
 
     return build
 
@@ -92,6 +97,20 @@ def test_what_is_hidden_is_cut_along_the_meets_alone(filled):
 
 def test_a_tree_before_a_wall_alone_is_filled(filled):
     assert areas(filled((CLUTTER, (300, 250, 360, 350)))) == pytest.approx(areas(filled()))
+
+
+def test_a_wall_does_not_go_on_behind_a_tree_beyond_its_end(filled):
+    tree, beside = (420, 250, 600, 500), (500, EAVES, 959.5, FOOT)
+    shown = 500.5 * (FOOT - EAVES)
+    assert areas(filled((CLUTTER, tree), (SKY, beside)))[WALL] == pytest.approx(shown)
+    in_room = areas(filled((CLUTTER, tree), (SKY, beside), surfaces=ROOM))
+    assert in_room[WALL] == pytest.approx(shown + (600 - 500) * (FOOT - 250))
+
+
+def test_a_wall_that_is_shown_nowhere_is_behind_no_tree(filled):
+    tree = (600, 250, 660, 380)
+    assert areas(filled((CLUTTER, tree), hint=OTHER)) == pytest.approx(areas(filled()))
+    assert areas(filled((CLUTTER, tree), hint=OTHER, surfaces=ROOM))[OTHER] == pytest.approx(60 * 130)
 
 
 def test_a_tree_before_the_sky_is_not_filled(filled):

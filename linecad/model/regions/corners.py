@@ -1,0 +1,192 @@
+"""Corners of buildings: what follows for the labels from walls that end.
+
+A building is no screen. Where the photo shows an end of a wall that is the nearer one to the camera, the side of the
+building begins there, at right angles, though it may have no line of its own: what is seen beside the end is that side,
+and no wall that is farther away.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.directions import UP, components, partner
+from linecad.model.regions.raster import Raster
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Lines
+
+LEAST_HEIGHT = 0.05  # of the photo's height, of an upright border between two walls
+LEAST_SEEN = 0.002  # of the photo; a side that is hardly seen from beside is none
+STEP = 1.05  # times the depth of a wall's end, from which on what is beside it is behind it
+SAME = 1.5  # samples, within which borders are one upright
+IN_PLANE = 0.03  # of the offset; cornices are that far before their wall
+APART = 1.2  # times the offset of a side, of a wall behind that faces as it does; one nearer is that side itself
+GOES_ON = 0.05  # share of the lines of a wall that may lie beyond its end
+SIDE_COST = 0.75  # of a side, which has no lines to be near to; that of a ground
+ABOVE_COST, MOST_ABOVE = 4.0, 1.5  # for each height of a wall by which its side is higher
+BEHIND_COST = 0.5  # of a wall that would be seen through a side
+UNBELIEVED = 1.6  # the least cost of that wall there, if it is placed by other ties than the one that ends
+NEVER = 50.0
+
+
+@dataclass(frozen=True, eq=False)
+class Known:
+    """What the photo shows as far as it is known."""
+
+    shown: Int  # (S,) a surface, the sky or clutter, in this order
+    surfaces: list[Surface]
+    lines: Lines
+    raster: Raster
+
+    def box(self, number: int) -> Float:
+        """Low and high components (2, K) of the lines of a surface."""
+        ends = components(self.lines.ends[self.surfaces[number].lines], self.raster.turns)
+        return np.asarray(np.percentile(ends.reshape(-1, ends.shape[2]), [1, 99], axis=0))
+
+    def on_lines(self, number: int) -> Bool:
+        """Which points (T,) lie on the lines of a surface."""
+        return np.isin(self.raster.line, self.surfaces[number].lines)
+
+
+@dataclass(frozen=True)
+class End:
+    """An upright in the photo where a wall ends that is before another one."""
+
+    wall: int
+    other: int
+    place: float  # component along the wall
+    inwards: float  # 1 where the wall is at larger components, else -1
+    top: float  # height up to which both border on each other
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """A wall that begins where another one ends, and what it hides."""
+
+    surface: Surface
+    cost: Float  # (S,)
+    wall: int  # the surface that ends there
+    behind: int  # the one that is seen beside the end
+    hides: Bool  # (S,) where that is shown as yet
+
+
+def find_sides(ends: list[End], known: Known) -> list[Side]:
+    """The sides that begin at ends of walls and that the camera sees."""
+    sides = [_side(end, known) for end in ends if end.inwards * end.place > 0]
+    return [
+        side for side in sides
+        if side.hides.mean() > LEAST_SEEN and (
+            known.surfaces[side.behind].axis != side.surface.axis
+            or known.surfaces[side.behind].offset / side.surface.offset > APART
+        )
+    ]  # fmt: skip
+
+
+def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
+    """Costs (S, K + N + 2) of K surfaces, N sides, sky and clutter, from those (S, K + 2) without the sides."""
+    costs = costs.copy(order="F")
+    for side in sides:
+        depth = _depth(side.surface, known.raster)
+        for number, surface in enumerate(known.surfaces):
+            through = side.hides & (_depth(surface, known.raster) > STEP * depth)
+            if surface.kind == "wall" and through.any():
+                least = 0.0 if _is_tied(number, side.wall, through, known) else UNBELIEVED
+                costs[through, number] = np.maximum(costs[through, number] + BEHIND_COST, least)
+    return np.column_stack([costs[:, :-2], *(side.cost for side in sides), costs[:, -2:]])
+
+
+def find_ends(known: Known) -> list[End]:
+    """The ends of walls before others, beyond which hardly a line of theirs lies."""
+    raster = known.raster
+    image, rays = known.shown.reshape(raster.shape), raster.rays.reshape(*raster.shape, -1)
+    is_wall = np.array([*(surface.kind == "wall" for surface in known.surfaces), False, False])
+    border = is_wall[image[:, :-1]] & is_wall[image[:, 1:]] & (image[:, :-1] != image[:, 1:])
+    left, right = image[:, :-1][border], image[:, 1:][border]
+    before, after = rays[:, :-1][border], rays[:, 1:][border]
+    least = LEAST_HEIGHT * raster.shape[0]
+    found = []
+    for one, other in np.unique(np.column_stack([left, right]), axis=0).tolist():
+        own = (left == one) & (right == other)
+        if own.sum() >= least:
+            found += _ends_at(known.surfaces, (one, other), before[own], after[own], least)
+            found += _ends_at(known.surfaces, (other, one), after[own], before[own], least)
+    return [end for end in found if _ends_there(end, known)]
+
+
+def _ends_at(surfaces: list[Surface], pair: tuple[int, int], inner: Float, outer: Float, least: float) -> list[End]:
+    """The end of the first wall of a pair, by rays (P, K) beside their border, inside and outside of that wall.
+
+    None where the other one is not behind it.
+    """
+    wall, other = (surfaces[number] for number in pair)
+    along = int(partner(wall.axis))
+    places = wall.offset * np.stack([rays[:, along] / rays[:, wall.axis] for rays in (inner, outer)])
+    middle = places.mean(axis=0)
+    width = float(np.median(np.abs(places[0] - places[1])))
+    same = np.abs(middle[:, None] - middle) < SAME * width
+    best = int(same.sum(axis=1).argmax())
+    if same[best].sum() < least:
+        return []
+    rays = (inner + outer)[same[best]] / 2
+    depth = wall.offset / rays[:, wall.axis]
+    ratio = float(np.median(other.offset / rays[:, other.axis] / depth))
+    top = float((rays[:, UP] * depth).max())
+    if top < 0 or ratio < STEP:
+        return []  # what ends below the eye is a van or a fence
+    place = float(np.median(middle[same[best]]))
+    inwards = float(np.sign(np.median(places[0] - places[1])))
+    return [End(*pair, place, inwards, top)]
+
+
+def _ends_there(end: End, known: Known) -> bool:
+    """Whether hardly a line of a wall goes on beyond its end."""
+    wall, raster = known.surfaces[end.wall], known.raster
+    own = known.on_lines(end.wall)
+    reach = raster.line_rays[own, int(partner(wall.axis))] * raster.line_depth[own] - end.place
+    return bool((reach * end.inwards < -IN_PLANE * abs(wall.offset)).mean() < GOES_ON)
+
+
+def _is_tied(number: int, wall: int, there: Bool, known: Known) -> bool:
+    """Whether most lines that a surface has in a part of the photo (S,) are placed with a wall, by crossings."""
+    line = known.raster.line[known.on_lines(number) & there[known.raster.at]]
+    own = np.bincount(known.lines.component[known.surfaces[wall].lines]).argmax()
+    return len(line) > 0 and bool((known.lines.component[line] == own).mean() > 1 / 2)
+
+
+def _side(end: End, known: Known) -> Side:
+    """The side that begins at the end of a wall and goes back, to the wall behind it where that is parallel."""
+    wall, behind, raster = known.surfaces[end.wall], known.surfaces[end.other], known.raster
+    axis = int(partner(wall.axis))
+    box, far = known.box(end.wall), known.box(end.other)[:, wall.axis]
+    box[:, axis] = _furthest(end, known)
+    box[:, wall.axis] = np.sort([wall.offset, behind.offset if behind.axis == wall.axis else far[np.abs(far).argmax()]])
+    ground = next((each.offset for each in known.surfaces if each.kind == "ground"), box[0, UP])
+    box[:, UP] = ground, max(box[1, UP], end.top)
+    surface = Surface("wall", axis, float(box[0, axis]), np.zeros(0, np.int64), None, box)
+    depth = _depth(surface, raster)
+    back, height = raster.rays[:, wall.axis] * np.sign(wall.offset) * depth, raster.rays[:, UP] * depth
+    most = abs(behind.offset) * STEP if behind.axis == wall.axis else np.inf
+    reached = (depth > 0) & (back > abs(wall.offset)) & (back < most) & (height > ground)
+    hides = reached & (known.shown == end.other)
+    above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / (box[1, UP] - ground), 0.0, MOST_ABOVE))
+    cost = np.where(reached, SIDE_COST + above, NEVER)
+    return Side(surface, cost, end.wall, end.other, hides)
+
+
+def _furthest(end: End, known: Known) -> float:
+    """Where a wall ends, by lines along it that go on beyond the border: the edge of a plain corner may be missed."""
+    wall, lines = known.surfaces[end.wall], known.lines
+    along = int(partner(wall.axis))
+    ends = components(lines.ends[lines.axis == along], known.raster.turns)
+    ends = ends[np.abs(ends[:, 0, wall.axis] / wall.offset - 1) < IN_PLANE]
+    reach = np.sort((ends[:, :, along] - end.place) * end.inwards, axis=1)
+    goes_on = (reach[:, 0] < 0) & (reach[:, 1] > -reach[:, 0])
+    beyond = end.place + end.inwards * float(reach[goes_on, 0].min(initial=0.0))
+    return beyond if beyond * end.place > 0 else end.place
+
+
+def _depth(surface: Surface, raster: Raster) -> Float:
+    """Depth (S,) of a surface, 0 where it is not seen."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = surface.offset / raster.rays[:, surface.axis]
+    return np.where(np.isfinite(depth) & (depth > 0), depth, 0.0)

@@ -1,0 +1,140 @@
+"""Sides of buildings that begin at ends of walls, by boxes before a wall, told by rays."""
+
+import numpy as np
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from linecad.directions import directions_of, partner
+from linecad.geometry import central_camera, project
+from linecad.model.regions.corners import APART, NEVER, UNBELIEVED, End, Known, find_ends, find_sides, with_sides
+from linecad.model.regions.raster import take_raster
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Camera, Lines
+
+CAMERA = Camera(480, 360, central_camera(300.0, 480, 360), "file")
+AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+TURNS = (0.4,)
+GROUND, TOP = -1.5, 2.5
+FRONT, BACK, GROUND_ROW, SKY = 0, 1, 2, 3
+
+
+def photo_of(walls, turns=(), components=(0, 0)):
+    """Walls (axis, offset, from, to) as surfaces, each with the two level lines along it, and the ground; a raster."""
+    vectors = directions_of(turns)
+    ends, axes = [], []
+    for axis, offset, low, high in walls:
+        along = int(partner(axis))
+        for height in (GROUND, TOP):
+            ends.append([offset * vectors[axis] + at * vectors[along] + [0, 0, height] for at in (low, high)])
+            axes.append(along)
+    ends = np.array(ends)
+    segment = project(ends.reshape(-1, 3), CAMERA.matrix, AHEAD).reshape(-1, 2, 2)
+    count = len(ends)
+    lines = Lines(
+        id=np.arange(count), axis=np.array(axes), segment=segment, ends=ends, is_boundary=np.zeros(count, bool),
+        component=np.repeat(components, 2), confidence=np.full(count, "proven"),
+    )  # fmt: skip
+    surfaces = [
+        Surface("wall", axis, offset, np.array([2 * k, 2 * k + 1]), k) for k, (axis, offset, *_) in enumerate(walls)
+    ]
+    surfaces.append(Surface("ground", 2, GROUND, np.zeros(0, np.int64), None))
+    return surfaces, lines, take_raster(lines, CAMERA, AHEAD, None, turns=turns)
+
+
+def known_of(walls, turns=(), components=(0, 0)):
+    """What is known where the nearest of some walls, the ground or else the sky is shown."""
+    surfaces, lines, raster = photo_of(walls, turns, components)
+    nearest, shown = np.full(raster.size, np.inf), np.full(raster.size, SKY)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        level = np.where(raster.rays[:, 2] < 0, GROUND / raster.rays[:, 2], np.inf)
+        shown[np.isfinite(level)], nearest = GROUND_ROW, np.minimum(nearest, level)
+        for row, (axis, offset, low, high) in enumerate(walls):
+            depth = offset / raster.rays[:, axis]
+            at = raster.rays[:, int(partner(axis))] * depth
+            hit = (depth > 0) & (depth < nearest) & (at >= low) & (at <= high) & (raster.rays[:, 2] * depth < TOP)
+            shown[hit], nearest[hit] = row, depth[hit]
+    return Known(shown, surfaces, lines, raster)
+
+
+def sides_of(known):
+    return find_sides(find_ends(known), known)
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.floats(4, 7), st.floats(-3, 1.5), st.floats(1.5, 3), st.floats(1.4, 3))
+def test_a_side_begins_at_each_end_that_the_camera_sees_from_beside(near, left, width, behind):
+    ends = np.array([left, left + width])
+    facing = ends * [1, -1] / near  # 0 where a side is seen from its edge
+    assume((np.abs(facing - 0.05) > 0.05).all() and (np.abs(np.abs(ends) / near - 0.8) > 0.1).all())
+    expected = ends[(facing > 0) & (np.abs(ends) / near < 0.8)]  # the photo reaches so far to either side
+    sides = sides_of(known_of([(1, near, left, left + width), (1, near * behind, -40, 40)]))
+    assert [side.surface.axis for side in sides] == [0] * len(expected)
+    assert sorted(side.surface.offset for side in sides) == pytest.approx(expected.tolist(), abs=0.01 * near)
+
+
+def test_a_side_goes_back_to_the_wall_behind_and_hides_it():
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 9.0, -40, 40)])
+    (side,) = sides_of(known)
+    raster = known.raster
+    at = side.surface.offset / raster.rays[:, 0]
+    true = (at > 5) & (at < 9) & (raster.rays[:, 2] * at > GROUND) & (known.shown == BACK)
+    assert (side.hides != true).mean() < 0.02 * true.mean() + 0.002
+    assert (side.cost[side.hides] < 1).all()
+    assert (side.cost[raster.rays[:, 0] <= 0] == NEVER).all()
+    assert (side.wall, side.behind) == (FRONT, BACK)
+    assert side.surface.box[:, 1].tolist() == [5.0, 9.0]
+
+
+def test_a_side_ends_where_lines_of_its_wall_end_though_the_border_is_elsewhere():
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 9.0, -40, 40)])
+    end = min(find_ends(known), key=lambda end: end.place)
+    assert end.place == pytest.approx(1.0, abs=0.03)
+    (side,) = find_sides([End(end.wall, end.other, 1.3, end.inwards, end.top)], known)
+    assert side.surface.offset == pytest.approx(1.0, abs=0.03)
+
+
+def test_a_wall_behind_at_nearly_the_depth_of_a_side_is_that_side():
+    for place, count in ((1.0 * (2 * APART - 1), 1), (1.0 * (1 + APART) / 2, 0)):
+        known = known_of([(1, 5.0, 1.0, 3.0), (0, place, 5.0, 40)])
+        assert len(sides_of(known)) == count
+
+
+def test_walls_that_meet_have_no_side_there():
+    assert sides_of(known_of([(1, 5.0, 1.0, 3.0), (0, 1.0, 5.0, 40)])) == []
+
+
+def test_what_ends_below_the_eye_has_no_side():
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 9.0, -40, 40)])
+    level = known.raster.rays[:, 2] * 5 / known.raster.rays[:, 1]
+    shown = np.where((known.shown == FRONT) & (level > -0.3), BACK, known.shown)
+    assert sides_of(Known(shown, known.surfaces, known.lines, known.raster)) == []
+
+
+def test_a_wall_whose_lines_go_on_does_not_end():
+    known = known_of([(1, 5.0, -3.0, 3.0), (1, 9.0, -40, 40)])
+    at = known.raster.rays[:, 0] * 5 / known.raster.rays[:, 1]
+    shown = np.where((known.shown == FRONT) & (at < 1), BACK, known.shown)  # half of it is hidden by nothing
+    assert sides_of(Known(shown, known.surfaces, known.lines, known.raster)) == []
+
+
+def test_sides_of_turned_walls_are_in_their_frame():
+    known = known_of([(4, 5.0, 1.0, 3.0), (4, 9.0, -40, 40)], TURNS)
+    (side,) = sides_of(known)
+    assert side.surface.axis == 3
+    assert side.surface.offset == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize(("components", "least"), [((0, 0), 0.0), ((0, 1), UNBELIEVED)])
+def test_a_wall_behind_a_side_costs_more_most_where_it_is_placed_by_itself(components, least):
+    known = known_of([(1, 5.0, 1.0, 3.0), (0, 2.5, 5.0, 40)], components=components)
+    (side,) = sides_of(known)
+    costs = np.full((known.raster.size, 5), 0.1)
+    found = with_sides(costs, [side], known)
+    assert found.shape == (known.raster.size, 6)
+    assert (found[:, 3] == side.cost).all()
+    assert (found[side.hides, BACK] > 0.1).all()
+    assert (found[side.hides, BACK] >= least).mean() > 0.95
+    assert (found[~side.hides, BACK] == 0.1).all()
+    assert (found[:, [FRONT, GROUND_ROW, -2, -1]] == 0.1).all()
+    assert (costs == 0.1).all()
