@@ -301,7 +301,7 @@ def print_changes(table: dict[str, dict], of_lines: logistic.Logistic, of_maps: 
     for kind in KINDS:
         known = linecad.ties.table.LOG_ODDS[kind]
         change = [table["AT_ONCE"][kind] - linecad.ties.table.AT_ONCE[kind]]
-        change += [value - known[name] for name, value in table["LOG_ODDS"][kind].items()]
+        change += [value - known.get(name, 0.0) for name, value in table["LOG_ODDS"][kind].items()]
         print(f"{kind}: the fit differs from the table by up to {np.abs(change).max():.4f}")
     now = linecad.ties.probability
     for what, known, fitted in (
