@@ -61,14 +61,13 @@ class Rows:
     names: list[str]  # of the features
     features: Float  # (M, F)
     right: Float  # (M,) 0 or 1
-    weight: Float  # (M,)
     dataset: list[str]
     scene: Int  # (M,)
 
     def fit(self, chosen: np.ndarray, without: tuple[str, ...] = ()) -> logistic.Logistic:
         """The regression over the chosen rows (M,)."""
         used = np.array([name not in without for name in self.names])
-        return logistic.fit(self.features[chosen], self.right[chosen], RIDGE, self.weight[chosen], used)
+        return logistic.fit(self.features[chosen], self.right[chosen], RIDGE, used=used)
 
 
 def judge_all(folders: list[Path], pool: ProcessPoolExecutor) -> list[Judged]:
@@ -96,7 +95,6 @@ def rows_of(photos: list[Judged], kind: Kind) -> Rows:
         list(known[0][0].features),
         np.array([list(candidate.features.values()) for candidate, _, _ in known]),
         np.array([float(error < RIGHT) for _, error, _ in known]),
-        np.array([photo.weight for _, _, photo in known]),
         [photo.dataset for _, _, photo in known],
         np.array([scenes.index(photo.scene) for _, _, photo in known]),
     )

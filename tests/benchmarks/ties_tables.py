@@ -13,7 +13,7 @@ import numpy as np
 from ties import Rows, judge_all, placed, rows_of, tables
 from ties_truth import Judged
 
-from linecad.arrays import Bool, Int
+from linecad.arrays import Int
 from linecad.ties.candidates import KINDS, Kind
 
 KEPT = 0.7  # of the made scenes, in each draw
@@ -24,9 +24,10 @@ def table_without(rows: dict[Kind, Rows], left_out: Int) -> dict[str, dict]:
     return tables({kind: of_kind.fit(~np.isin(of_kind.scene, left_out)) for kind, of_kind in rows.items()}, rows)
 
 
-def left_out(made: Bool, random: np.random.Generator) -> Int:
-    """The numbers of the made scenes that one draw leaves out, of the scenes (S,) that are made."""
-    order: Int = random.permutation(np.flatnonzero(made))
+def left_out(photos: list[Judged], random: np.random.Generator) -> Int:
+    """The numbers of the made scenes that one draw leaves out."""
+    scenes = sorted({photo.scene for photo in photos})
+    order: Int = random.permutation(sorted({scenes.index(photo.scene) for photo in photos if photo.is_made}))
     return order[round(KEPT * len(order)) :]
 
 
@@ -56,11 +57,8 @@ def main() -> None:
     with ProcessPoolExecutor(chosen.workers) as pool:
         photos = judge_all(chosen.datasets, pool)
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
-        made = np.array(
-            [scene in {p.scene for p in photos if p.is_made} for scene in sorted({p.scene for p in photos})]
-        )
         random = np.random.default_rng(7)
-        draws = [judge_by_one(photos, rows, left_out(made, random), pool) for _ in range(chosen.draws)]
+        draws = [judge_by_one(photos, rows, left_out(photos, random), pool) for _ in range(chosen.draws)]
     print("\n| dataset | recall | precision |\n| --- | --- | --- |")
     for name in draws[0]:
         scores = np.array([draw[name] for draw in draws])

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from depth_truth import TrueDepth, true_depth
 from feet_truth import examples_of
-from parts import PARTS, part_of
+from parts import part_of
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import resample
@@ -25,7 +25,6 @@ from linecad.ties.setting import Setting, Sight
 from solver.robust import RobustFit
 
 PARTED = ", parts"  # after the name of a dataset
-REAL = 20.0  # of one real photo with all its parts, in fits; a made one has 1
 WIDTH = 0.02  # log scale, half of the window whose points give a body its true scale
 LEAST_POINTS, LEAST_AGREEING, AGREEING = 6, 0.6, 0.05
 LEAST_AGREED, AGREED = 3, 0.03  # bodies whose feet are the ground of a real photo; log height
@@ -37,7 +36,6 @@ class Judged:
 
     dataset: str
     scene: str
-    weight: float  # in fits, of each of its candidates
     setting: Setting  # without pixels
     candidates: list[Candidate]
     on: Int  # (P,) the line that shows each point of known depth, NO_LINE for none
@@ -130,11 +128,9 @@ def judge(dataset: str, case: Case, part: str | None = None) -> Judged | None:
         feet = [example.log_height for example in examples if np.isfinite(example.log_height)]
     else:
         feet = agreed_feet(candidates, seen.true_scale)
-    is_real = seen.reference.truth is None
     return Judged(
         dataset if part is None else dataset + PARTED,
         scene,
-        REAL / (1 + len(PARTS)) if is_real else 1.0,
         replace(setting, sight=replace(setting.sight, pixels=None)),
         candidates,
         seen.on,
