@@ -12,32 +12,32 @@ from solver.bodies.ties import Placement
 LARGEST_MARGIN = 12.0
 FARTHEST_OFF = 6.0  # widths
 # Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
-AT_ONCE = -11.0923
+AT_ONCE = -7.7330
 LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.3075,
-    "margin": -0.0888,
-    "root of margin": 1.0000,
-    "lines of the body": 0.2096,
-    "share of the reference": 1.6961,
-    "together": 2.3107,
-    "agreement of all": 2.9352,
-    "agreement of the line": 1.5591,
-    "bodies": 0.8150,
+    "of the reference": 0.9519,
+    "margin": -0.3477,
+    "root of margin": 2.0451,
+    "lines of the body": 0.4599,
+    "share of the reference": 2.5690,
+    "together": 2.3350,
+    "agreement of all": -1.8652,
+    "agreement of the line": 2.0433,
+    "bodies": 0.0239,
 }
 # The same where a depth map was heard.
-WITH_MAP_AT_ONCE = -6.3341
+WITH_MAP_AT_ONCE = -4.6789
 WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.4326,
-    "margin": 0.0886,
-    "root of margin": -0.0498,
-    "lines of the body": 0.1761,
-    "share of the reference": 2.3807,
-    "together": 1.4282,
-    "agreement of all": -0.3136,
-    "agreement of the line": 2.4512,
-    "bodies": 0.1150,
-    "map's word": 0.2853,
-    "off the map": 0.0268,
+    "of the reference": 1.1513,
+    "margin": 0.2502,
+    "root of margin": -0.6949,
+    "lines of the body": 0.1516,
+    "share of the reference": 2.0057,
+    "together": 1.7452,
+    "agreement of all": 0.7226,
+    "agreement of the line": 2.3790,
+    "bodies": -0.2925,
+    "map's word": 0.0464,
+    "off the map": -0.0818,
 }
 
 
@@ -62,6 +62,8 @@ def features(
         core = body == number
         together[lines] = togetherness(setting.fits, shift, core)[lines]
     margin = np.minimum(placement.margin, LARGEST_MARGIN)
+    if setting.bodies.count == 1:
+        margin[:] = LARGEST_MARGIN  # there is nothing that it could stand wrong against
     size = np.bincount(body[own], minlength=len(margin))  # a photo without bodies has one place all the same
     found = {
         "of the reference": (body == reference).astype(np.float64),

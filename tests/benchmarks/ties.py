@@ -282,7 +282,9 @@ def main() -> None:
         found = print_ablation(photos, rows, datasets, pool)
         whole = [photo for photo in photos if not photo.is_part]
         with_maps = print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
-    of_lines = print_probabilities([(photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True)])
+    of_lines = print_probabilities([
+        (photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True) if not photo.is_part
+    ])  # fmt: skip
     of_maps = print_probabilities([
         (f"{photo.dataset}, map", photo, one)
         for of_width in with_maps for photo, one in zip(whole, of_width, strict=True) if one.heard

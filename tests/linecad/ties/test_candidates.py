@@ -294,7 +294,7 @@ def test_how_bare_the_wall_is_above_its_foot(features_of_foot, foot, lowest):
     assert known["bare"] == pytest.approx(max(0.0, 1 - lowest / foot), abs=1e-6)
 
 
-def test_a_foot_below_which_all_lines_lie_is_bare(features_of_foot, grounded, monkeypatch):
+def test_a_foot_below_which_all_lines_lie_is_bare(grounded, monkeypatch):
     high = replace(grounded, log_depth=grounded.log_depth + 5.0)
     foot = Foot(0, 0.5, 0.5, find_walls(grounded)[0], 0.0, 0.0, 0.0)
     monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
