@@ -3,8 +3,9 @@
 DATASET is a folder that `linecad evaluate` knows and whose truth has depth. A candidate (linecad.ties.candidates) is
 right where its ratio is that of the true scales of its two bodies within 3 %. Prints how well each kind of evidence
 tells right from wrong, what each is worth to the placement, and how far the probabilities of lines hold. All of it is
-cross-validated: a scene is judged by the others; the photos of one real dataset are one scene. `--write` puts the fits
-to all photos into linecad/ties/table.py and linecad/ties/probability.py.
+cross-validated: a scene is judged by the others; the photos of one real dataset are one scene, and so are their parts
+(parts.py). One table tells little: ties_tables.py judges by many. `--write` puts the fits to all photos into
+linecad/ties/table.py and linecad/ties/probability.py.
 """
 
 import argparse
@@ -16,7 +17,8 @@ from unittest import mock
 
 import logistic
 import numpy as np
-from ties_truth import Judged, densest, judge
+from parts import PARTS
+from ties_truth import PARTED, Judged, densest, judge
 
 import linecad.ties.placing
 import linecad.ties.probability
@@ -35,6 +37,7 @@ RIGHT_DEPTH = 0.05
 LEAST_REFERENCE = 10  # points on the reference body, for the others to be relative to
 RIDGE, RIDGE_OF_LINES = 3.0, 30.0
 SURE = 0.9
+FEW_NODES = 300  # of the search on parts of photos, of which there are many
 WIDTHS = (0.012, 0.035, 0.08)  # of simulated depth maps
 
 # For each row of the ablation the kinds that are left out, and the features that the fit does without.
@@ -65,6 +68,19 @@ class Rows:
         """The regression over the chosen rows (M,)."""
         used = np.array([name not in without for name in self.names])
         return logistic.fit(self.features[chosen], self.right[chosen], RIDGE, used=used)
+
+
+def judge_all(folders: list[Path], pool: ProcessPoolExecutor) -> list[Judged]:
+    """The photos of datasets, and the parts of real ones."""
+    jobs = [
+        pool.submit(judge, folder.name, case, part)
+        for folder in folders
+        for case in find_dataset(folder).cases
+        for part in ([None] if case.kind == "made" else [None, *PARTS])
+    ]
+    photos = [photo for job in jobs if (photo := job.result()) is not None]
+    print(f"{len(photos)} of {len(jobs)} photos and parts", flush=True)
+    return photos
 
 
 def rows_of(photos: list[Judged], kind: Kind) -> Rows:
@@ -127,7 +143,8 @@ def place_bodies(photo: Judged, candidates: list[Candidate], depth: DepthMap | N
     """The placement by some candidates and a depth map."""
     setting = replace(photo.setting, sight=replace(photo.setting.sight, depth=depth))
     nothing_told = np.zeros(len(setting.graph.edges), bool)
-    return linecad.ties.placing.place_bodies(setting, candidates, nothing_told, SolveOptions())
+    options = SolveOptions(node_limit=FEW_NODES if photo.is_part else None)
+    return linecad.ties.placing.place_bodies(setting, candidates, nothing_told, options)
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +198,8 @@ def print_ablation(
         found = [job.result() for job in jobs]
         _print_row(name, photos, [one.score for one in found], datasets)
         complete = complete or found
-    print(f"\nwith all evidence {sum(one.proven for one in complete)} of {len(photos)} are proven", flush=True)
+    whole = [one.proven for photo, one in zip(photos, complete, strict=True) if not photo.is_part]
+    print(f"\nwith all evidence {sum(whole)} of {len(whole)} whole photos are proven", flush=True)
     return complete
 
 
@@ -256,21 +274,20 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2, help="processes")
     parser.add_argument("--write", action="store_true", help="the tables into linecad/ties")
     chosen = parser.parse_args()
-    datasets = [folder.name for folder in chosen.datasets]
     with ProcessPoolExecutor(chosen.workers) as pool:
-        jobs = [
-            pool.submit(judge, folder.name, case) for folder in chosen.datasets for case in find_dataset(folder).cases
-        ]
-        photos = [photo for job in jobs if (photo := job.result()) is not None]
-        print(f"{len(photos)} of {len(jobs)} photos", flush=True)
+        photos = judge_all(chosen.datasets, pool)
+        datasets = list(dict.fromkeys(photo.dataset for photo in photos))
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
         print_kinds(rows, datasets)
         found = print_ablation(photos, rows, datasets, pool)
-        with_maps = print_maps(photos, rows, datasets, pool)
-    of_lines = print_probabilities([(photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True)])
+        whole = [photo for photo in photos if not photo.is_part]
+        with_maps = print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
+    of_lines = print_probabilities([
+        (photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True) if not photo.is_part
+    ])  # fmt: skip
     of_maps = print_probabilities([
         (f"{photo.dataset}, map", photo, one)
-        for of_width in with_maps for photo, one in zip(photos, of_width, strict=True) if one.heard
+        for of_width in with_maps for photo, one in zip(whole, of_width, strict=True) if one.heard
     ])  # fmt: skip
     fits = {kind: of_kind.fit(np.ones(len(of_kind.right), bool)) for kind, of_kind in rows.items()}
     print_changes(tables(fits, rows), of_lines, of_maps)
@@ -284,7 +301,7 @@ def print_changes(table: dict[str, dict], of_lines: logistic.Logistic, of_maps: 
     for kind in KINDS:
         known = linecad.ties.table.LOG_ODDS[kind]
         change = [table["AT_ONCE"][kind] - linecad.ties.table.AT_ONCE[kind]]
-        change += [value - known[name] for name, value in table["LOG_ODDS"][kind].items()]
+        change += [value - known.get(name, 0.0) for name, value in table["LOG_ODDS"][kind].items()]
         print(f"{kind}: the fit differs from the table by up to {np.abs(change).max():.4f}")
     now = linecad.ties.probability
     for what, known, fitted in (

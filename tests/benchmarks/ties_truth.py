@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 from depth_truth import TrueDepth, true_depth
 from feet_truth import examples_of
+from parts import part_of
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import resample
@@ -23,6 +24,7 @@ from linecad.ties.placing import FITS
 from linecad.ties.setting import Setting, Sight
 from solver.robust import RobustFit
 
+PARTED = ", parts"  # after the name of a dataset
 WIDTH = 0.02  # log scale, half of the window whose points give a body its true scale
 LEAST_POINTS, LEAST_AGREEING, AGREEING = 6, 0.6, 0.05
 LEAST_AGREED, AGREED = 3, 0.03  # bodies whose feet are the ground of a real photo; log height
@@ -41,6 +43,16 @@ class Judged:
     log_true: Float  # (P,)
     true_scale: Float  # (B + 1,) log, that of the ground last; NaN where the points do not tell
     true_depth: TrueDepth  # of the photo's pixels
+
+    @property
+    def is_part(self) -> bool:
+        """Whether it is a part of a photo, not a whole one."""
+        return self.dataset.endswith(PARTED)
+
+    @property
+    def is_made(self) -> bool:
+        """Whether it was rendered, and is a scene of its own."""
+        return "/" in self.scene
 
     @cached_property
     def seen(self) -> Int:
@@ -74,9 +86,11 @@ class Seen:
     true_scale: Float  # (B,) log, NaN where the points do not tell
 
 
-def look_at(case: Case) -> Seen | None:
-    """The photo of a case; None where it has no lines in space, or its truth no depths."""
+def look_at(case: Case, part: str | None = None) -> Seen | None:
+    """The photo of a case, or a part of it; None where it has no lines in space, or its truth no depths."""
     photo, reference = open_case(case)
+    if part is not None:
+        photo, reference = part_of(photo, reference, part)
     if reference.edges is None:
         return None
     try:
@@ -88,7 +102,7 @@ def look_at(case: Case) -> Seen | None:
     log_depth = RobustFit(graph).depths()
     fits = resample(graph, 0, FITS)
     bodies = find_rigid_bodies(graph, log_depth, fits)
-    sight = Sight(found.camera.matrix, found.frame.rotation, found.camera.width, found.pixels)
+    sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels)
     setting = Setting(graph, log_depth, bodies, fits, sight)
     on, log_factor = lines_at(setting, found, reference.edges.pixels)
     log_true = np.log(reference.edges.depth)
@@ -102,9 +116,9 @@ def scene_of(dataset: str, case: Case) -> str:
     return f"{dataset}/{case.name}" if case.kind == "made" else dataset
 
 
-def judge(dataset: str, case: Case) -> Judged | None:
-    """The photo of a case with its candidates; None where `look_at` sees nothing."""
-    seen = look_at(case)
+def judge(dataset: str, case: Case, part: str | None = None) -> Judged | None:
+    """The photo of a case, or a part of it, with its candidates; None where `look_at` sees nothing."""
+    seen = look_at(case, part)
     if seen is None:
         return None
     setting, scene = seen.setting, scene_of(dataset, case)
@@ -115,7 +129,7 @@ def judge(dataset: str, case: Case) -> Judged | None:
     else:
         feet = agreed_feet(candidates, seen.true_scale)
     return Judged(
-        dataset,
+        dataset if part is None else dataset + PARTED,
         scene,
         replace(setting, sight=replace(setting.sight, pixels=None)),
         candidates,

@@ -1,0 +1,48 @@
+"""Parts of real photos, and whole ones at smaller sizes: more photos of known depth where few are; used by ties.py.
+
+Another crop or size has other lines, other bodies and other candidates of the same scene, so that one body of one photo
+moves the means less. They say nothing about other buildings: all of a dataset stays one scene.
+"""
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from linecad.camera.photo import Photo
+from linecad.evaluation.references import Points, Reference
+from linecad.geometry import resized_camera
+from linecad.scene import Camera
+
+# Left, upper, right and lower border as shares of the photo, and the scale.
+PARTS: dict[str, tuple[float, float, float, float, float]] = {
+    "smaller": (0.0, 0.0, 1.0, 1.0, 0.8),
+    "small": (0.0, 0.0, 1.0, 1.0, 0.62),
+    "left": (0.0, 0.0, 0.74, 1.0, 0.9),
+    "right": (0.26, 0.0, 1.0, 1.0, 0.9),
+    "middle": (0.1, 0.06, 0.94, 0.97, 0.93),
+}
+
+
+def part_of(photo: Photo, reference: Reference, name: str) -> tuple[Photo, Reference]:
+    """One of PARTS of a photo, with the points of known depth that it shows; nothing else is known about it."""
+    height, width = photo.pixels.shape[:2]
+    left, upper, right, lower = np.rint(np.array(PARTS[name][:4]) * [width, height, width, height]).astype(int).tolist()
+    cut = photo.pixels[upper:lower, left:right]
+    size = round(cut.shape[1] * PARTS[name][4]), round(cut.shape[0] * PARTS[name][4])
+    scale = np.array(size) / [cut.shape[1], cut.shape[0]]
+    assert photo.camera is not None
+    matrix = photo.camera.matrix.copy()
+    matrix[:2, 2] -= left, upper
+    camera = Camera(*size, resized_camera(matrix, np.full(2, PARTS[name][4])), photo.camera.source)
+    pixels = cv2.resize(cut, size, interpolation=cv2.INTER_AREA)
+
+    def shown(points: Points | None) -> Points | None:
+        if points is None:
+            return None
+        at = (points.pixels - [left, upper] + 0.5) * scale - 0.5
+        inside = ((at > 0) & (at < np.array(size) - 1)).all(axis=1)
+        return Points(at[inside], points.depth[inside])
+
+    known = Reference(rotation=reference.rotation, edges=shown(reference.edges), dense=shown(reference.dense))
+    return replace(photo, pixels=pixels, camera=camera), known
