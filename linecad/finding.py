@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from linecad.arrays import Float
 from linecad.camera.frame_labels import label_by_frames
 from linecad.camera.horizontal_frames import HorizontalFrames
 from linecad.camera.photo import Photo
@@ -42,6 +43,7 @@ class FoundLines:
     known_inconsistency: float | None = None  # of the photo they come from, where that was asked before
     certainty: Certainty | None = None  # of camera and frame
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) of the photo, for cues that look at it
+    raw: Float | None = None  # (N, 2, 2) px, ends of all segments, also of those along no axis
 
     def grouped(self, options: Options) -> "FoundLines":
         """The whole lines, as the reach in use makes them of the fragments: what a person sees and corrects."""
@@ -113,7 +115,9 @@ def name_lines(
     frame = frames.frame
     through_points = find_vanishing_point_lines(photo.grey, camera, frame)
     pieces = _labelled(raw, through_points, camera, frames)
-    return FoundLines(camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels)
+    return FoundLines(
+        camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels, raw=raw.ends
+    )
 
 
 def _labelled(raw: Segments, through_points: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:

@@ -18,7 +18,7 @@ from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
-from linecad.model.faces import find_faces
+from linecad.model.faces import find_faces, with_roofs
 from linecad.model.frames import (
     FramedLines,
     clean_frames,
@@ -35,6 +35,7 @@ from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
@@ -56,6 +57,7 @@ class View:
     lines: int  # that were found in it, also those that are not in the solved graph
     notes: tuple[str, ...]  # what is known so far
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) RGB, as straight as the lines; None: nothing to look at
+    sketch: Sketch | None = None  # of the segments along all directions; None: no roofs are looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,13 +130,14 @@ def build_scene(
     cleaned, framed = clean_frames(framed, _intersections(graph, decision, found, new_id), sight)
     planes = planes_of(framed, cleaned.shared)
     lines = framed.in_world()
-    look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
+    look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed), view.sketch)
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
     framed = _drawn(framed, planes, holes.openings, sight)
     planes, openings = with_openings(planes, at_home(holes.openings, planes, view.camera, view.frame.rotation))
     pairs = _renumbered(decision.planar_pairs, found.component, cleaned.row[new_id])
+    roofed = with_roofs(planes, regions.roofs, lines, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
     notes = (
         *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines)]), regions.note,
@@ -146,7 +149,7 @@ def build_scene(
         rotation=view.frame.rotation,
         lines=lines,
         intersections=cleaned.intersections,
-        planes=planes,
+        planes=roofed,
         solve=SolveReport(
             solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
             solution.cuts, solution.nodes,
