@@ -128,9 +128,8 @@ def build_scene(
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_frames(framed, _intersections(graph, decision, found, new_id), sight)
-    planes = planes_of(framed, cleaned.shared)
-    lines = framed.in_world()
-    look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed), view.sketch)
+    planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
+    look = _look(view, placed, float(scales[0]))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(main_planes(planes), of_main(lines), view.camera, view.frame.rotation, view.pixels)
@@ -239,6 +238,11 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     own = component[pairs[:, :2]]
     inside = pairs[(own[:, 0] >= 0) & (own[:, 0] == own[:, 1])]
     return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
+
+
+def _look(view: View, placed: Placed | None, scale: float) -> Look:
+    """What the faces are found by, in a scene of which the placed lines are `scale` times as far."""
+    return Look(view.pixels, _ground_of_feet(placed, scale), _normals(placed), view.sketch)
 
 
 def _normals(placed: Placed | None) -> Normals | None:
