@@ -110,8 +110,6 @@ def with_roofs(
         offset = float(normal @ roof.eave)
         rays = world_rays(roof.outline, camera.matrix, rotation)
         depth = offset / (rays @ normal)
-        if not (depth > 0).all():
-            continue  # a ridge that goes on beyond the horizon of its plane
         face = Face(count, rays * depth[:, None], kind="roof")
         found.append(Plane(number, roof.axis, offset, (int(lines.id[roof.line]),), (face,), roof.tilt))
         number, count = number + 1, count + 1

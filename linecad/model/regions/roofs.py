@@ -11,7 +11,7 @@ import shapely
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, Turns, components, directions_of, partner
-from linecad.geometry import depths_beside, lengths, world_rays
+from linecad.geometry import angles_to, depths_beside, lengths, vanishing_points, world_rays
 from linecad.model.regions.evidence import Heaven
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
@@ -30,6 +30,9 @@ LEAST_TURN = np.sin(np.radians(7.0))  # in the photo, between a verge and the ea
 FLATTEST, STEEPEST = np.radians(10.0), np.radians(75.0)
 ABOVE = 0.012  # of the photo's width above a ridge, where the sky is
 SKY_ABOVE, SKY_INSIDE = 0.6, 0.2  # shares of what is looked at
+ALONG = np.sin(np.radians(2.0))  # of a segment, against a direction of the scene
+SHIFT, UNSURE = 1.0, np.radians(5.0)  # px at NORMAL_WIDTH by which the end of a verge may err, and what it may change
+MOST_LONGER = 3.0  # times the length of the ridge or the eave, of the other
 ALIKE = np.radians(30.0)  # largest difference of the slopes by the two verges: 36 degrees for a frame that is 14 off
 PLACES = np.linspace(0.1, 0.9, 9)  # along a ridge
 STEPS = 100  # in which coverage is counted
@@ -182,7 +185,9 @@ class _Finder:
         is_top = self._is_sky(places - [0.0, ABOVE * self.width]).mean(axis=1) > SKY_ABOVE
         chosen = (length >= LEAST_LINE * self.width) & is_top & (sketch.axis != UP)
         self.length = lengths(sketch.raw[:, 1] - sketch.raw[:, 0])
-        self.pieces = sketch.raw[self.length >= LEAST_PIECE * self.width]
+        sines = angles_to(sketch.raw, vanishing_points(view.camera.matrix, components(view.rotation, view.turns)))
+        is_free = sines.min(axis=0) > ALONG  # a wall's corner or course is no verge
+        self.pieces = sketch.raw[(self.length >= LEAST_PIECE * self.width) & is_free]
         self.ridges = [
             _Ridge(int(axis), _Straight.of(ends), self._meets(_Straight.of(ends)))
             for axis, ends in zip(sketch.axis[chosen], sketch.whole[chosen], strict=True)
@@ -251,19 +256,37 @@ class _Finder:
         """The roof over an eave whose place is known; None where none could be seen so."""
         axis, normal = int(self.lines.axis[row]), int(partner(self.lines.axis[row]))
         turns, rotation = self.raster.turns, self.view.rotation
-        rays = world_rays(outline[:2], self.view.camera.matrix, rotation)
+        rays = world_rays(outline[:1], self.view.camera.matrix, rotation)
         told = components(self.lines.ends[row, :1], turns)
-        eave = rays[0] * depths_beside(components(rays[:1], turns), told, np.array([axis]))[0]
+        eave = rays[0] * depths_beside(components(rays, turns), told, np.array([axis]))[0]
         along, level = directions_of(turns)[[axis, normal]]
+        reach = SHIFT * max(self.width / NORMAL_WIDTH, 1.0)
+        aside = np.array([1.0, -1.0]) * (outline[1] - outline[0])[::-1] / np.linalg.norm(outline[1] - outline[0])
+        tops = outline[1] + reach * np.array([[0.0], [-1.0], [1.0]]) * aside
+        tops_seen = world_rays(tops, self.view.camera.matrix, rotation)
         # The verge runs in the upright plane across the eave.
-        depth = (along @ eave) / (along @ rays[1]) if along @ rays[1] else -1.0
-        rise = rays[1] * depth - eave
-        slope = float(np.arctan2(rise[UP], rise @ level))
-        roof = Roof(normal, slope, eave, outline, row, score)
-        flat = min(slope, np.pi - slope)
-        if depth <= 0 or not FLATTEST < flat < STEEPEST or roof.normal(turns) @ eave > 0:
+        with np.errstate(divide="ignore", invalid="ignore"):
+            depth = (along @ eave) / (tops_seen @ along)
+            rise = tops_seen * depth[:, None] - eave
+        if not ((depth > 0) & np.isfinite(depth)).all():
             return None
-        return roof
+        slopes = np.arctan2(rise[:, UP], rise @ level)
+        slope = float(slopes[0])
+        roof = Roof(normal, slope, eave, outline, row, score)
+        if not FLATTEST < min(slope, np.pi - slope) < STEEPEST or np.abs(slopes - slope).max() > UNSURE:
+            return None
+        return roof if self._is_whole(roof, along) else None
+
+    def _is_whole(self, roof: Roof, along: Float) -> bool:
+        """Whether its upper side is seen, and its eave and its ridge are of like lengths."""
+        normal = roof.normal(self.raster.turns)
+        rays = world_rays(roof.outline, self.view.camera.matrix, self.view.rotation)
+        with np.errstate(divide="ignore"):
+            depth = (normal @ roof.eave) / (rays @ normal)
+        if normal @ roof.eave > 0 or not ((depth > 0) & np.isfinite(depth)).all():
+            return False
+        foot, top, beyond, far = (rays * depth[:, None]) @ along
+        return bool(max(abs(beyond - top), abs(far - foot)) < MOST_LONGER * min(abs(beyond - top), abs(far - foot)))
 
 
 def _cross(one: Float, other: Float) -> Float:
