@@ -30,7 +30,7 @@ LEAST_TURN = np.sin(np.radians(7.0))  # in the photo, between a verge and the ea
 FLATTEST, STEEPEST = np.radians(10.0), np.radians(75.0)
 ABOVE = 0.012  # of the photo's width above a ridge, where the sky is
 SKY_ABOVE, SKY_INSIDE = 0.6, 0.2  # shares of what is looked at
-ALONG = np.sin(np.radians(2.0))  # of a segment, against the upright
+ALONG = np.sin(np.radians(3.0))  # of a segment, against the upright
 SHIFT, UNSURE = 1.0, np.radians(5.0)  # px at NORMAL_WIDTH by which the end of a verge may err, and what it may change
 MOST_LONGER = 3.0  # times the length of the ridge or the eave, of the other
 ALIKE = np.radians(30.0)  # largest difference of the slopes by the two verges: 36 degrees for a frame that is 14 off
@@ -178,16 +178,16 @@ class _Finder:
     """The search in one photo."""
 
     def __init__(self, sketch: Sketch, lines: Lines, sky: Bool, raster: Raster, view: View) -> None:
-        self.raw, self.lines, self.sky, self.raster, self.view = sketch.raw, lines, sky, raster, view
+        self.lines, self.sky, self.raster, self.view = lines, sky, raster, view
         self.width = view.camera.width
         length = lengths(sketch.whole[:, 1] - sketch.whole[:, 0])
         places = sketch.whole[:, :1] + PLACES[None, :, None] * (sketch.whole[:, 1:] - sketch.whole[:, :1])
         is_top = self._is_sky(places - [0.0, ABOVE * self.width]).mean(axis=1) > SKY_ABOVE
         chosen = (length >= LEAST_LINE * self.width) & is_top & (sketch.axis != UP)
-        self.length = lengths(sketch.raw[:, 1] - sketch.raw[:, 0])
         (sine,) = angles_to(sketch.raw, vanishing_points(view.camera.matrix, view.rotation[:, UP:]))
-        is_free = sine > ALONG  # the corner of a wall is no verge
-        self.pieces = sketch.raw[(self.length >= LEAST_PIECE * self.width) & is_free]
+        self.raw = sketch.raw[sine > ALONG]  # the corner of a wall is no verge
+        self.length = lengths(self.raw[:, 1] - self.raw[:, 0])
+        self.pieces = self.raw[self.length >= LEAST_PIECE * self.width]
         self.ridges = [
             _Ridge(int(axis), _Straight.of(ends), self._meets(_Straight.of(ends)))
             for axis, ends in zip(sketch.axis[chosen], sketch.whole[chosen], strict=True)

@@ -124,6 +124,20 @@ def test_an_eave_whose_place_is_a_guess_needs_both_verges(made):
     assert made.found(lines=weak, sketch=replace(made.sketch, raw=made.sketch.raw[:3])) == ()
 
 
+def test_the_corner_of_a_wall_is_no_verge(made):
+    """A castle had a false roof between the foot of a pilaster, a corner of its wall and its ridge."""
+    corners = np.array([[LEFT, DISTANCE, EAVE], [LEFT, DISTANCE, EAVE + 4], [RIGHT, DISTANCE, EAVE + 4]])
+    foot, top, beyond = project(corners, CAMERA.matrix, made.rotation)
+    lines = np.array([made.pixels[[0, 3]], [top, beyond], [foot, top]])
+    assert made.found(sketch=Sketch(lines, lines[:2], np.array([0, 0]))) == ()
+
+
+def test_an_eave_much_shorter_than_its_ridge_makes_no_roof(made):
+    start, end = made.lines.segment[0]
+    short = np.array([start, start + 0.25 * (end - start)])
+    assert made.found(lines=replace(made.lines, segment=short[None])) == ()
+
+
 def test_a_gable_before_the_sky_is_no_roof():
     """Its verges lean together in the plane of a wall: the ridge between them has no length."""
     made = build()
