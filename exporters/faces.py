@@ -10,6 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.directions import Turns
 from linecad.scene import Face, FaceKind, Opening, Plane, Scene
 
 
@@ -20,6 +21,7 @@ class Frame:
     metres: float  # per unit of the scene
     eye: Float  # (3,) m, where the camera stands
     directions: Float  # (K, 3) unit vectors that lines and normals run along
+    turns: Turns = ()  # of further frames
 
     def __call__(self, points: Float) -> Float:
         """Points (..., 3) of the scene in metres."""
@@ -33,8 +35,7 @@ class Frame:
 
     def direction(self, plane: Plane) -> Float:
         """(3,) the unit vector along which a plane's offset is measured."""
-        direction: Float = self.directions[plane.axis]
-        return direction
+        return plane.normal(self.turns) if plane.tilt else self.directions[plane.axis]
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +49,8 @@ class FlatFace:
     kind: FaceKind
     thing: str  # for people, what it is or belongs to: a kind, with a number where there are several, such as `wall 3`
     plane: int  # id of its plane
-    axis: int  # number of the direction that is the plane's normal
+    axis: int  # number of the direction that is the plane's normal, or that a sloped plane's is turned from
+    tilt: float  # rad, by which it is turned towards the upright; 0 of all but sloped planes
     direction: Float  # (3,) unit vector along it
     offset: float  # m
     normal: Float  # (3,) unit, from the plane to the side that is looked at
@@ -125,6 +127,7 @@ def _flat_face(plane: Plane, face: Face, opening: Opening | None, thing: str, fr
         thing=thing,
         plane=plane.id,
         axis=plane.axis,
+        tilt=plane.tilt,
         direction=direction,
         offset=frame.offset(plane),
         normal=normal,

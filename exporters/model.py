@@ -54,6 +54,7 @@ class FlatPlane:
     axis: str  # name of the normal's direction
     offset: float  # m
     lines: tuple[int, ...]  # ids of the lines in it
+    tilt: float  # rad, by which the normal of a sloped plane is turned from that direction towards the upright
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +104,7 @@ def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, orig
     """
     ground = _ground_height(scene) if origin == ON_THE_GROUND else None
     eye = np.array([0.0, 0.0, 0.0 if ground is None else -ground])
-    frame = Frame(metres_per_unit(scene), eye, directions_of(scene.turns))
+    frame = Frame(metres_per_unit(scene), eye, directions_of(scene.turns), scene.turns)
     faces = build_faces(scene, frame)
     unit = FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT
     return Model(
@@ -111,7 +112,9 @@ def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, orig
         groups=_line_groups(scene, frame, bands_of(scene.lines) if by_band else None, by_role),
         faces=faces,
         fittings=build_fittings(scene.openings, faces),
-        planes=tuple(FlatPlane(each.id, axis_name(each.axis), frame.offset(each), each.lines) for each in scene.planes),
+        planes=tuple(
+            FlatPlane(each.id, axis_name(each.axis), frame.offset(each), each.lines, each.tilt) for each in scene.planes
+        ),
         eye=frame.eye,
         photo=photo_name(scene),
         unit_note=unit if ground is None else f"{unit}; {ON_GROUND}",

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from linecad.arrays import Float
 from linecad.camera.frame_labels import label_by_frames
 from linecad.camera.horizontal_frames import HorizontalFrames
 from linecad.camera.photo import Photo
@@ -44,6 +45,7 @@ class FoundLines:
     certainty: Certainty | None = None  # of camera and frame
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) of the photo, for cues that look at it
     details: Segments | None = None  # labelled fragments too faint or short to build on; None: nobody looked
+    raw: Float | None = None  # (N, 2, 2) px, ends of all segments, also of those along no axis
 
     def grouped(self, options: Options) -> "FoundLines":
         """The whole lines, as the reach in use makes them of the fragments: what a person sees and corrects."""
@@ -124,10 +126,10 @@ def name_lines(
     pieces = _labelled(raw, through_points, camera, frames)
     on_stage("finding details")
     details = _labelled(find_details(photo.grey), find_whole_details(photo.grey, camera, frame), camera, frames)
-    certainty = calibrated.certainty
     return FoundLines(
-        camera, frame, pieces, calibrated.notes, certainty=certainty, pixels=photo.pixels, details=details
-    )
+        camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels, details=details,
+        raw=raw.ends,
+    )  # fmt: skip
 
 
 def _labelled(raw: Segments, through_points: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:

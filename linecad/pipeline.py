@@ -18,6 +18,7 @@ from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Segments, Solution
 from linecad.model.build import View, build_scene, find_components
 from linecad.model.lifting import Lifted, lift
+from linecad.model.regions.roofs import Sketch
 from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Scene
@@ -98,7 +99,10 @@ def reconstruct_lines(
     decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
     notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
-    view = View(photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details)
+    sketch = None if found.raw is None else Sketch(found.raw, whole.segments.ends, whole.axis)
+    view = View(
+        photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch
+    )
     lifted = lift(graph, decision.real, solution.log_depth)
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:

@@ -12,7 +12,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from exporters.faces import FlatFace
-from exporters.model import Model
+from exporters.model import FlatPlane, Model
 from exporters.openings import Fitting
 from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
@@ -92,6 +92,11 @@ def describe_faces(tree: _Tree, model: Model, meshes: dict[str, FaceMesh]) -> No
             node["translation"] = (Y_UP @ places[node["name"]]).tolist()
 
 
+def tilted(flat: FlatFace | FlatPlane) -> _Tree:
+    """What a sloped plane has beside its axis."""
+    return {"tilt": flat.tilt} if flat.tilt else {}
+
+
 def _told_of_face(face: FlatFace) -> _Tree:
     return {
         "face_id": face.id,
@@ -100,6 +105,7 @@ def _told_of_face(face: FlatFace) -> _Tree:
         "plane_id": face.plane,
         "axis": axis_name(face.axis),
         "offset": face.offset,
+        **tilted(face),
         **({} if face.opening is None else {"opening": face.opening}),
     }
 

@@ -28,7 +28,7 @@ from trimesh.path import Path3D
 from trimesh.path.entities import Line
 
 from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
-from exporters.gltf.faces import Y_UP, add_faces, describe_faces, meshes_of
+from exporters.gltf.faces import Y_UP, add_faces, describe_faces, meshes_of, tilted
 from exporters.gltf.materials import add_pictures, set_materials
 from exporters.gltf.tubes import build_tubes
 from exporters.model import LineGroup, Model
@@ -166,7 +166,7 @@ def _add_camera(tree: _Tree, model: Model) -> None:
 
 def _add_planes(tree: _Tree, model: Model) -> None:
     planes = [
-        {"id": plane.id, "axis": plane.axis, "offset": plane.offset, "lines": list(plane.lines)}
+        {"id": plane.id, "axis": plane.axis, "offset": plane.offset, "lines": list(plane.lines), **tilted(plane)}
         for plane in model.planes
     ]
     tree["scenes"][tree["scene"]]["extras"] = {"linecad_planes": planes}

@@ -124,7 +124,7 @@ def _round_length(longest: float) -> float:
 def _tint_faces(panel: Canvas, projection: _Projection, scene: Scene, right: int, up: int) -> None:
     """The faces that this view looks at straight."""
     axis = 3 - right - up
-    shown = [face for plane, face in scene.faces if plane.axis == axis]
+    shown = [face for plane, face in scene.faces if plane.axis == axis and not plane.tilt]
     factor = metres_per_unit(scene)
     rings = [[projection.pixels(ring[:, (right, up)] * factor) for ring in (f.outline, *f.holes)] for f in shown]
     panel.tint(rings, line_colour(axis, True), _FACE_OPACITY)

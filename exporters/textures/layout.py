@@ -125,6 +125,9 @@ def _cut(ring: Float, inside: Float) -> Float:
 def _wish(face: FlatFace, view: View) -> _Wish:
     # Walls stand upright; the far end of a floor is up and that of a ceiling down, as they are in the photo.
     up = np.array([0.0, 0.0, 1.0]) if face.axis != 2 else np.array([0.0, face.normal[2], 0.0])
+    if face.tilt:  # up along the slope
+        up = up - face.normal[2] * face.normal
+        up /= np.linalg.norm(up)
     right = np.cross(up, face.normal)
     along, high = face.rings[0] @ right, face.rings[0] @ up
     corner = np.array([along.min(), high.max()])

@@ -96,7 +96,7 @@ def _to_space(face: FlatFace, patch: Patch) -> Float:
     """(3, 3) from column, row and 1 of a texel of the patch with its margin to the point of the plane at its centre."""
     across, down = patch.right / patch.density[0], -patch.up / patch.density[1]
     start = patch.right * patch.corner[0] + patch.up * patch.corner[1] + (0.5 - MARGIN) * (across + down)
-    if face.axis < MAIN:  # exactly; a sum of products would round
+    if face.axis < MAIN and not face.tilt:  # exactly; a sum of products would round
         start[face.axis] = face.offset
     else:
         start += (face.offset - face.direction @ start) * face.direction

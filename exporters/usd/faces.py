@@ -127,6 +127,8 @@ class _Writer:
         prim = mesh.GetPrim()
         set_own(prim, "linecad:kind", Sdf.ValueTypeNames.Token, face.kind)
         set_own(prim, "linecad:planeAxis", Sdf.ValueTypeNames.Token, axis_name(face.axis))
+        if face.tilt:
+            set_own(prim, "linecad:planeTilt", Sdf.ValueTypeNames.Double, face.tilt)
         counts = Vt.IntArray([len(ring) for ring in face.rings])
         set_own(prim, "linecad:ringCounts", Sdf.ValueTypeNames.IntArray, counts)
         return mesh

@@ -149,6 +149,9 @@ def _add_planes(root: Usd.Prim, model: Model) -> None:
     set_own(root, "linecad:planeAxes", Sdf.ValueTypeNames.TokenArray, axes)
     offsets = Vt.DoubleArray([plane.offset for plane in planes])
     set_own(root, "linecad:planeOffsets", Sdf.ValueTypeNames.DoubleArray, offsets)
+    if any(plane.tilt for plane in planes):
+        tilts = Vt.DoubleArray([plane.tilt for plane in planes])
+        set_own(root, "linecad:planeTilts", Sdf.ValueTypeNames.DoubleArray, tilts)
 
 
 def _add_camera(stage: Usd.Stage, model: Model) -> None:

@@ -6,9 +6,8 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
-from linecad.directions import components
 from linecad.geometry import world_rays
-from linecad.scene import Scene
+from linecad.scene import Plane, Scene
 
 PLANE_ANGLE = np.radians(2.0)  # between the normals of a found plane and a true one that it may be
 PLANE_DEPTH = 0.02  # relative error of the depth
@@ -43,7 +42,7 @@ def score_planes(scene: Scene, truth: Truth, scale: float) -> PlaneScore:
         members = np.array([row[number] for number in plane.lines if number in own], np.int64)
         if len(members) == 0:
             continue
-        match = _matches(scene, truth, plane.axis, plane.offset / scale, members, normal, offset)
+        match = _matches(scene, truth, plane, plane.offset / scale, members, normal, offset)
         lines += len(members)
         right_lines += len(members) if match.any() else 0
         was_found |= match
@@ -70,15 +69,15 @@ def _true_planes(truth: Truth) -> tuple[Float, Float, Int]:
     return np.array(normals).reshape(-1, 3), np.array(offsets), np.array(area, np.int64)
 
 
-def _matches(scene: Scene, truth: Truth, axis: int, place: float, lines: Int, normal: Float, offset: Float) -> Bool:
+def _matches(scene: Scene, truth: Truth, plane: Plane, place: float, lines: Int, normal: Float, offset: Float) -> Bool:
     """Which true planes (P,) a found one is, its offset being in metres."""
     # The found normal in the truth's world: through the camera, which both share.
-    axes = components(scene.rotation, scene.turns)
-    turned = truth.rotation.T @ axes[:, axis]
+    turned = truth.rotation.T @ scene.rotation @ plane.normal(scene.turns)
     parallel = np.abs(normal @ turned) >= np.cos(PLANE_ANGLE)
     pixels = scene.lines.segment[lines].mean(axis=1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = place / world_rays(pixels, scene.camera.matrix, axes)[:, axis]
+        rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
+        found = place / plane.along_normal(rays, scene.turns)
         true = offset[:, None] / (normal @ truth.rays(pixels).T)
         error = np.median(np.abs(found / true - 1), axis=1)
     matches: Bool = parallel & (error < PLANE_DEPTH)

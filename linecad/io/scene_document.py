@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from linecad.directions import Turns, frame_of, letter_of
+from linecad.directions import frame_of, letter_of
 from linecad.scene import (
     Certainty,
     DepthMapReport,
@@ -17,7 +17,7 @@ from linecad.scene import (
 
 FORMAT = "linecad-scene"
 VERSION = 1
-FRAMES_VERSION = 2  # of files whose lines and planes may be of further frames, which `frame` tells
+FRAMES_VERSION = 2  # of files whose lines and planes may be of further frames (`frame`) or sloped (`tilt`)
 LARGEST_ERROR = 180.0  # degrees; whoever errs by that much about a rotation knows nothing of it
 ANGLE_DIGITS = 12  # after the point, of degrees: a number that was turned to radians and back is the same again
 
@@ -27,7 +27,7 @@ def document_of(scene: Scene) -> dict[str, object]:
     camera, solve = scene.camera, scene.solve
     return {
         "format": FORMAT,
-        "version": version_of(scene.turns),
+        "version": version_of(scene),
         "photo": scene.photo,
         "camera": {
             "width": int(camera.width),
@@ -61,9 +61,9 @@ def document_of(scene: Scene) -> dict[str, object]:
     }
 
 
-def version_of(turns: Turns) -> int:
-    """Of a file with further frames of such turns: the first, which all readers know, where one frame suffices."""
-    return FRAMES_VERSION if turns else VERSION
+def version_of(scene: Scene) -> int:
+    """Of its file: the first, which all readers know, where one frame suffices and no plane is sloped."""
+    return FRAMES_VERSION if scene.turns or any(plane.tilt for plane in scene.planes) else VERSION
 
 
 def _direction(axis: int) -> dict[str, object]:
@@ -111,6 +111,7 @@ def _plane_record(plane: Plane) -> dict[str, object]:
     return {
         "id": int(plane.id),
         **_direction(plane.axis),
+        **({"tilt": float(plane.tilt)} if plane.tilt else {}),
         "offset": float(plane.offset),
         "lines": [int(line) for line in plane.lines],
         "faces": [

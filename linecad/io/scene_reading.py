@@ -6,7 +6,7 @@ from typing import cast
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.directions import UP, Turns, axis_name, components
+from linecad.directions import UP, Turns, axis_name
 from linecad.io.members import (
     LARGEST_NUMBER,
     count_or_zero,
@@ -58,7 +58,12 @@ def scene_of(top: Node) -> Scene:
     lines = _lines(top["lines"].items(), turns)
     known = set(lines.id.tolist())
     told = optional_items(top, "openings")
-    planes = read_planes(top["planes"].items(), known, {node["id"].integer() for node in told}, turns)
+    is_second = top["version"].integer() == FRAMES_VERSION
+    planes = read_planes(
+        top["planes"].items(), known, {node["id"].integer() for node in told}, turns if is_second else None
+    )
+    if is_second and not turns and not any(plane.tilt for plane in planes):
+        raise JsonError(f"neither turns nor a tilt stands in the file, but it is of version {FRAMES_VERSION}")
     scene = Scene(
         photo=top["photo"].text(),
         camera=camera,
@@ -72,7 +77,7 @@ def scene_of(top: Node) -> Scene:
         notes=tuple(note.text() for note in optional_items(top, "notes")),
         certainty=_certainty(top.get("certainty")),
         depth_map=_depth_map(top.get("depth_map")),
-        openings=read_openings(told, {plane.id for plane in planes if plane.axis != UP}),
+        openings=read_openings(told, {plane.id for plane in planes if plane.axis != UP and not plane.tilt}),
         turns=turns,
     )
     _check_flatness(scene)
@@ -82,8 +87,6 @@ def scene_of(top: Node) -> Scene:
 def _turns(top: Node) -> Turns:
     """Of the frames beside the world's axes, rad; only files of the second version may have some."""
     told = optional_items(top, "turns")
-    if not told and top["version"].integer() == FRAMES_VERSION:
-        raise JsonError(f"turns has no number, but the file is of version {FRAMES_VERSION}")
     if told and top["version"].integer() != FRAMES_VERSION:
         raise JsonError(f"turns stands in a file of version {top['version'].value}, expected {FRAMES_VERSION}")
     for node in told:
@@ -263,7 +266,7 @@ def _check_flatness(scene: Scene) -> None:
     points = np.concatenate([scene.lines.ends.reshape(-1, 3), *(ring for _, _, ring in rings)])
     size = float(np.linalg.norm(np.ptp(points, axis=0)))
     for plane, face, ring in rings:
-        off = float(np.abs(components(ring, scene.turns)[:, plane.axis] - plane.offset).max())
+        off = float(np.abs(plane.along_normal(ring, scene.turns) - plane.offset).max())
         if off > FLATNESS * size:
             raise JsonError(
                 f"face {face.id} leaves plane {plane.id} ({axis_name(plane.axis)} = {plane.offset:g}) by {off:.3g}, "

@@ -2,6 +2,8 @@
 
 from typing import cast
 
+import numpy as np
+
 from linecad.arrays import Float
 from linecad.directions import Turns, axis_in_frame
 from linecad.io.members import (
@@ -17,20 +19,21 @@ from linecad.io.strict_json import JsonError, Node
 from linecad.scene import AXES, FACE_KINDS, OPENING_KINDS, Face, FaceKind, Opening, OpeningKind, Plane
 
 
-def read_planes(nodes: list[Node], known: set[int], openings: set[int], turns: Turns) -> tuple[Plane, ...]:
+def read_planes(nodes: list[Node], known: set[int], openings: set[int], turns: Turns | None) -> tuple[Plane, ...]:
     """The planes with their faces; `known` are the ids of the scene's lines, `openings` those of its openings.
 
-    `turns` are of further frames.
+    `turns` are of further frames; None in version 1, in which `tilt` means nothing.
     """
     distinct_ids([node["id"] for node in nodes])
     distinct_ids([face["id"] for node in nodes for face in optional_items(node, "faces")])
     return tuple(
         Plane(
             id=node["id"].integer(),
-            axis=read_direction(node, turns),
+            axis=read_direction(node, turns or ()),
             offset=node["offset"].number(LARGEST_NUMBER),
             lines=tuple(line_ids(node["lines"], known)),
             faces=tuple(_face(face, openings) for face in optional_items(node, "faces")),
+            tilt=0.0 if turns is None else _tilt(node),
         )
         for node in nodes
     )
@@ -41,6 +44,16 @@ def read_direction(node: Node, turns: Turns) -> int:
     letter = node["axis"].one_of(tuple(AXES))
     frame = known_member(node, "frame") if turns else None
     return axis_in_frame(letter, 0 if frame is None else frame.integer(0, len(turns)))
+
+
+def _tilt(node: Node) -> float:
+    """Of the normal of a sloped plane, rad; 0 where none is told."""
+    told = known_member(node, "tilt")
+    if told is None:
+        return 0.0
+    if not 0 < told.number() < np.pi or node["axis"].value == "z":
+        raise told.wrong("more than 0 and less than pi, beside a level axis")
+    return told.number()
 
 
 def _face(node: Node, openings: set[int]) -> Face:

@@ -20,7 +20,7 @@ from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
 from linecad.model.face_lines import add_lines, without_repeats
-from linecad.model.faces import find_faces
+from linecad.model.faces import find_faces, with_roofs
 from linecad.model.frames import (
     FramedLines,
     clean_frames,
@@ -36,6 +36,7 @@ from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
@@ -58,6 +59,7 @@ class View:
     notes: tuple[str, ...]  # what is known so far
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) RGB, as straight as the lines; None: nothing to look at
     details: Segments | None = None  # edges along the axes that faces can place; None: faces add no lines
+    sketch: Sketch | None = None  # of the segments along all directions; None: no roofs are looked for
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,9 +130,8 @@ def build_scene(
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_frames(framed, _intersections(graph, decision, found, new_id), sight)
-    planes = planes_of(framed, cleaned.shared)
-    lines = framed.in_world()
-    look = Look(view.pixels, _ground_of_feet(placed, float(scales[0])), _normals(placed))
+    planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
+    look = _look(view, placed, float(scales[0]))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
@@ -140,6 +141,7 @@ def build_scene(
     drawn = _drawn(on_faces.lines, whole, holes.openings, sight)
     framed, planes = without_repeats(drawn, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
+    roofed = with_roofs(planes, regions.roofs, lines, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
     notes = (
         *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines, on_faces.kept)]),
@@ -151,8 +153,8 @@ def build_scene(
         rotation=view.frame.rotation,
         lines=lines,
         intersections=on_faces.crossings(cleaned.intersections),
-        planes=planes,
-        solve=_solve_report(solution),
+        planes=roofed,
+        solve=SolveReport.of(solution),
         notes=(*notes, *disagreements(planes, lines, pairs, graph.turns)),
         certainty=view.certainty,
         depth_map=depth_map,
@@ -160,13 +162,6 @@ def build_scene(
         turns=graph.turns,
     )
     return scene if graph.turns else without_ticks(scene, sight, MIN_COMPONENT)
-
-
-def _solve_report(solution: Solution) -> SolveReport:
-    return SolveReport(
-        solution.solver, solution.formulation, solution.status, solution.objective, solution.bound, solution.gap,
-        solution.cuts, solution.nodes,
-    )  # fmt: skip
 
 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:
@@ -252,6 +247,11 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     own = component[pairs[:, :2]]
     inside = pairs[(own[:, 0] >= 0) & (own[:, 0] == own[:, 1])]
     return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
+
+
+def _look(view: View, placed: Placed | None, scale: float) -> Look:
+    """What the faces are found by, in a scene of which the placed lines are `scale` times as far."""
+    return Look(view.pixels, _ground_of_feet(placed, scale), _normals(placed), view.sketch)
 
 
 def _normals(placed: Placed | None) -> Normals | None:

@@ -15,6 +15,7 @@ from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.partition import polygons_of
+from linecad.model.regions.roofs import Roof
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Face, FaceKind, Lines, Plane
 
@@ -53,7 +54,8 @@ def find_faces(
         if number >= labels.sky:
             continue
         surface = labels.surfaces[number]
-        for region in polygons_of(_before(whole, surface, depth, camera, axes), LEAST_AREA * area):
+        seen = _beside(_before(whole, surface, depth, camera, axes), regions.roofs)
+        for region in polygons_of(seen, LEAST_AREA * area):
             hidden = polygons_of(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
             parts.append(_lifted(surface, region, hidden, camera, axes))
     parts = _snapped(parts, planes, lines)
@@ -87,6 +89,32 @@ def _before(region: shapely.Polygon, surface: Surface, depth: float, camera: Cam
             share = near[number] / (near[number] - near[following])
             kept.append(frame[number] + share * (frame[following] - frame[number]))
     return shapely.intersection(region, shapely.Polygon(kept)) if kept else shapely.Polygon()
+
+
+def _beside(region: shapely.Geometry, roofs: tuple[Roof, ...]) -> shapely.Geometry:
+    """The part of a region that is no roof."""
+    return shapely.difference(region, shapely.union_all([roof.polygon for roof in roofs])) if roofs else region
+
+
+def with_roofs(
+    planes: tuple[Plane, ...], roofs: tuple[Roof, ...], lines: Lines, camera: Camera, rotation: Float, turns: Turns
+) -> tuple[Plane, ...]:
+    """The planes with one more for each roof, which has its eave and a face where the photo shows it.
+
+    The numbers of planes and faces go on; `lines` are those that the roofs were found over.
+    """
+    number = max([plane.id for plane in planes], default=-1) + 1
+    count = max([face.id for plane in planes for face in plane.faces], default=-1) + 1
+    found = list(planes)
+    for roof in roofs:
+        normal = roof.normal(turns)
+        offset = float(normal @ roof.eave)
+        rays = world_rays(roof.outline, camera.matrix, rotation)
+        depth = offset / (rays @ normal)
+        face = Face(count, rays * depth[:, None], kind="roof")
+        found.append(Plane(number, roof.axis, offset, (int(lines.id[roof.line]),), (face,), roof.tilt))
+        number, count = number + 1, count + 1
+    return tuple(found)
 
 
 def _lifted(

@@ -135,7 +135,7 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
         points, where = _nearest_on_line(rays, ends), f"line {scene.lines.id[row]}"
     else:
         plane = _plane_under(scene, rays)
-        depth = plane.offset / components(rays, scene.turns)[:, plane.axis]
+        depth = plane.offset / plane.along_normal(rays, scene.turns)
         points, where = rays * depth[:, None], f"plane {plane.id} ({axis_name(plane.axis)})"
     return _checked(scene, float(np.linalg.norm(points[1] - points[0])), "between the two points"), where
 
@@ -187,13 +187,14 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
 
 def _meets(ray: Float, plane: Plane, face: Face, turns: Turns) -> bool:
     """Whether a ray from the camera meets a face."""
-    ray = components(ray, turns)
-    if ray[plane.axis] * plane.offset <= 0:
+    along = plane.along_normal(ray, turns)
+    if along * plane.offset <= 0:
         return False
+    ray = components(ray, turns)
     others = sorted(across(np.array(plane.axis)).tolist())
     shell, *holes = (components(ring, turns)[:, others] for ring in (face.outline, *face.holes))
     polygon = shapely.Polygon(shell, holes)
-    return bool(shapely.contains_xy(polygon, *(ray * (plane.offset / ray[plane.axis]))[others]))
+    return bool(shapely.contains_xy(polygon, *(ray * (plane.offset / along))[others]))
 
 
 def _checked(scene: Scene, units: float, what: str) -> float:

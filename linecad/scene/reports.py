@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+from linecad.line_graph import Solution
 from linecad.scene.words import DEPTH_KINDS, DepthKind
 
 
@@ -17,6 +18,12 @@ class SolveReport:
     gap: float
     cuts: int = 0  # rows added while solving
     nodes: int = 0  # branch-and-bound nodes
+
+    @classmethod
+    def of(cls, solution: Solution) -> "SolveReport":
+        """What a solution tells."""
+        names = ("solver", "formulation", "status", "objective", "bound", "gap", "cuts", "nodes")
+        return cls(*(getattr(solution, name) for name in names))
 
 
 @dataclass(frozen=True)

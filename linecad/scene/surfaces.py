@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Float, freeze, read_only_rings
+from linecad.directions import UP, Turns, components, directions_of
 from linecad.scene.words import FACE_KINDS, OPENING_KINDS, FaceKind, OpeningKind
 
 
@@ -31,18 +32,39 @@ class Face:
 
 @dataclass(frozen=True, eq=False)
 class Plane:
-    """A Manhattan plane: all points whose component along the direction `axis` is `offset`."""
+    """A plane: all points whose component along its normal is `offset`.
+
+    The normal is the direction `axis`; that of a sloped plane is a level one, turned by `tilt` towards the upright.
+    """
 
     id: int  # unique in the scene
-    axis: int  # number of a direction: the normal
+    axis: int  # number of a direction: the normal, or what it is turned from
     offset: float  # world, in the scene's unit
     lines: tuple[int, ...]  # ids of the lines in it
     faces: tuple[Face, ...] = ()
+    tilt: float = 0.0  # rad, between 0 and pi; 0 of planes along the directions, else of a roof
 
     def __post_init__(self) -> None:
+        if not 0 <= self.tilt < np.pi or (self.tilt and self.axis == UP):
+            raise ValueError(
+                f"Plane {self.id} has axis {self.axis} and tilt {self.tilt}, expected less than pi, 0 of z"
+            )
         if self.axis < 0 or not np.isfinite(self.offset):
             found = f"axis {self.axis} and offset {self.offset}"
             raise ValueError(f"Plane {self.id} has {found}, expected 0 or more and a finite number")
+
+    def normal(self, turns: Turns) -> Float:
+        """(3,) unit vector in the world, in a scene whose further frames have such turns."""
+        level: Float = directions_of(turns)[self.axis]
+        if not self.tilt:
+            return level
+        tilted: Float = np.cos(self.tilt) * level + np.sin(self.tilt) * np.eye(3)[UP]
+        return tilted
+
+    def along_normal(self, points: Float, turns: Turns) -> Float:
+        """(...) components of world points (..., 3) along the normal: `offset` for those in the plane."""
+        along: Float = points @ self.normal(turns) if self.tilt else components(points, turns)[..., self.axis]
+        return along
 
     @property
     def shows_ground(self) -> bool:

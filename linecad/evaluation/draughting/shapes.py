@@ -69,6 +69,7 @@ def shapes_of(scene: Scene) -> list[Shape]:
     return [
         Shape(plane, face, float(np.median(face.outline @ scene.rotation[2])), scene.turns)
         for plane, face in scene.faces
+        if not plane.tilt
     ]
 
 
@@ -84,11 +85,12 @@ def corners_of(ring: Float) -> Float:
 def nearest_faces(scene: Scene, pixels: Float, faces: list[tuple[Plane, Face]]) -> tuple[Int, Float]:
     """Which of `faces` is nearest on the ray of each pixel (M, 2), NO_FACE for none, and its camera depth (M,), NaN."""
     nearest, which = np.full(len(pixels), np.inf), np.full(len(pixels), NO_FACE)
-    rays = components(world_rays(pixels, scene.camera.matrix, scene.rotation), scene.turns)
+    directions = world_rays(pixels, scene.camera.matrix, scene.rotation)
+    rays = components(directions, scene.turns)
     for number, (plane, face) in enumerate(faces):
         flat = np.sort(across(np.array(plane.axis)))
         with np.errstate(divide="ignore", invalid="ignore"):
-            depth = plane.offset / rays[:, plane.axis]
+            depth = plane.offset / plane.along_normal(directions, scene.turns)
         points = rays[:, flat] * np.where(np.isfinite(depth), depth, 0.0)[:, None]
         shell, *holes = (components(ring, scene.turns)[:, flat] for ring in (face.outline, *face.holes))
         polygon = shapely.Polygon(shell, holes)

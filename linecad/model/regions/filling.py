@@ -19,6 +19,7 @@ from linecad.model.regions.evidence import sums
 from linecad.model.regions.labelling import UNIT, Labels
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
+from linecad.model.regions.roofs import Roof
 from linecad.model.regions.segments import View
 from linecad.scene import Camera
 
@@ -38,6 +39,7 @@ class Filled:
 
     labels: Labels
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
+    roofs: tuple[Roof, ...] = ()  # before whatever the labels say
 
     @property
     def note(self) -> str:

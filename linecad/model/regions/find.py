@@ -1,6 +1,6 @@
 """The stages of finding what the photo shows, in order."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.labelling import find_labels
 from linecad.model.regions.raster import Picture, take_raster
+from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets, find_segments
 from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces
 from linecad.scene import Camera, Lines, Plane
@@ -25,6 +26,7 @@ class Look:
     photo: Picture | None  # (H, W, 3) RGB, as straight as the lines
     feet: GroundOfFeet | None
     normals: Normals | None  # of a depth map on the photo's pixels
+    sketch: Sketch | None = None
 
 
 def find_regions(
@@ -39,4 +41,7 @@ def find_regions(
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)
-    return with_hidden(on_ground(filled, raster, view), raster)
+    filled = with_hidden(on_ground(filled, raster, view), raster)
+    if look.sketch is None:
+        return filled
+    return replace(filled, roofs=find_roofs(look.sketch, lines, heaven, raster, view))

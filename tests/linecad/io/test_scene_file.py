@@ -391,9 +391,46 @@ def test_turns_in_a_file_of_version_1_are_refused() -> None:
     assert refusal(of_two_frames(version=1)).startswith("turns stands in a file of version 1, expected 2")
 
 
-def test_version_2_without_turns_is_refused() -> None:
+def test_version_2_without_turns_and_sloped_planes_is_refused() -> None:
     text = EXAMPLE.replace('"version": 1', '"version": 2')
-    assert refusal(text).startswith("turns has no number, but the file is of version 2")
+    assert refusal(text).startswith("neither turns nor a tilt stands in the file, but it is of version 2")
+
+
+def with_roof(tilt: Any = 2.0, version: int = 2, axis: str = "y") -> str:
+    """The example with one more plane, whose normal is turned up from an axis, and a face in it."""
+    document = json.loads(EXAMPLE) | {"version": version}
+    normal = np.array([0.0, np.cos(2.0), np.sin(2.0)])
+    flat = np.array([[1.0, 0, 0], np.cross([1.0, 0, 0], normal)])
+    outline = (-3 * normal + np.array([[0, 0], [1, 0], [0, 1]]) @ flat).tolist()
+    ids = [face["id"] for plane in document["planes"] for face in plane["faces"]]
+    face = {"id": max(ids, default=0) + 1, "kind": "roof", "outline": outline, "holes": []}
+    number = max(plane["id"] for plane in document["planes"]) + 1
+    plane = {"id": number, "axis": axis, "tilt": tilt, "offset": -3.0, "lines": [], "faces": [face]}
+    document["planes"].append(plane)
+    return json.dumps(document)
+
+
+def test_a_sloped_plane_is_read_and_written_in_version_2() -> None:
+    scene = scene_from_json(with_roof())
+    assert (scene.planes[-1].axis, scene.planes[-1].tilt, scene.turns) == (1, 2.0, ())
+    written = json.loads(scene_to_json(scene))
+    assert written["version"] == 2
+    assert written["planes"][-1]["tilt"] == 2.0
+    assert "tilt" not in written["planes"][0]
+
+
+def test_a_tilt_means_nothing_in_version_1() -> None:
+    assert "leaves plane" in refusal(with_roof(version=1))
+
+
+def test_a_face_that_leaves_its_sloped_plane_is_refused() -> None:
+    assert "leaves plane" in refusal(with_roof(tilt=1.9))
+
+
+@pytest.mark.parametrize(("tilt", "axis"), [(0, "y"), (3.2, "y"), (-1.0, "x"), (1.0, "z")])
+def test_a_tilt_that_means_another_plane_is_refused(tilt: float, axis: str) -> None:
+    expected = "expected more than 0 and less than pi, beside a level axis"
+    assert expected in refusal(with_roof(tilt, axis=axis))
 
 
 @pytest.mark.parametrize("frame", [-1, 2, 0.5, "1"])
@@ -851,7 +888,7 @@ def named_in_tables(heading: str) -> list[str]:
         ("`certainty`", "certainty", QUALITIES),
         ("`lines[]`", "lines[2]", (*CONFIDENCES, *ROLES, "pieces", "frame")),
         ("`intersections[]`", "intersections[0]", REASONS),
-        ("`planes[]`", "planes[0]", ("frame",)),
+        ("`planes[]`", "planes[0]", ("frame", "tilt")),
         ("`planes[].faces[]`", "planes[0].faces[0]", (*FACE_KINDS, "opening")),
         ("`solve`", "solve", STATUSES),
         ("`depth_map`", "depth_map", DEPTH_KINDS),

@@ -1,12 +1,16 @@
 """All stages together, from lines and a picture to what every part of it shows."""
 
+import cv2
 import numpy as np
 import pytest
 import shapely
 
 from linecad.depth.normals import Normals
+from linecad.geometry import project
+from linecad.model.faces import find_faces
 from linecad.model.regions.evidence import NEVER, TURNED_COST
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet
 
 
@@ -61,3 +65,29 @@ def test_normals_of_a_depth_map_are_looked_at(house, house_regions):
 def test_a_scene_without_planes_has_no_walls(house):
     found = find_regions((), house.lines, house.camera, house.rotation, Look(house.photo, None, None))
     assert surfaces(found) == {("ground", 2, -2.0)}
+
+
+def test_a_roof_is_found_over_an_eave_of_the_scene_and_cut_out_of_the_sky(house, house_regions):
+    """Painted over the front of the house; nothing but the sketch tells of it."""
+    (row,) = (
+        number for number, ends in enumerate(house.lines.ends)
+        if house.lines.axis[number] == 0 and (ends[:, 1] == 8).all() and ends[0, 2] == house.lines.ends[..., 2].max()
+    )  # fmt: skip
+    low = house.lines.ends[row]
+    corners = np.array([low[0], low[0] + [0, 3, 2.5], low[1] + [0, 3, 2.5], low[1]])
+    pixels = project(corners, house.camera.matrix, house.rotation)
+    photo = house.photo.copy()
+    cv2.fillPoly(photo, [np.rint(pixels).astype(np.int32)], (120, 50, 40))
+    ridge = pixels[[1, 2]]
+    raw = np.concatenate([house.lines.segment, [ridge, pixels[[0, 1]], pixels[[2, 3]]]])
+    whole, axis = np.array([*house.lines.segment, ridge]), np.array([*house.lines.axis, 0])
+    look = Look(photo, None, None, Sketch(raw, whole, axis))
+    found = find_regions(house.planes, house.lines, house.camera, house.rotation, look)
+    (roof,) = found.roofs
+    assert roof.line == row
+    assert np.degrees(roof.slope) == pytest.approx(np.degrees(np.arctan2(2.5, 3)), abs=0.1)
+    planes = find_faces(house.planes, house.lines, found, house.camera, house.rotation)
+    rings = [face.outline for plane in planes for face in plane.faces]
+    seen = [shapely.Polygon(project(ring, house.camera.matrix, house.rotation)) for ring in rings]
+    assert max(area.intersection(roof.polygon).area for area in seen) < 1
+    assert house_regions.roofs == ()
