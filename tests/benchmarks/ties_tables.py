@@ -2,8 +2,8 @@
 
 What ties.py measures by one table for each scene moves by a body or two from one set of scenes to the next. Here each
 draw leaves out some of the made scenes at random. The real datasets are placed by tables fitted to what is left without
-them, the made scenes that were left out by one more. Prints means and standard deviations over the draws. `--write` puts
-the mean of the tables of the real datasets into linecad/ties/table.py: mean log-odds of many fits.
+them, the made scenes that were left out by one more. Prints means and standard deviations over the draws. `--write`
+puts the mean of the tables of the real datasets into linecad/ties/table.py: mean log-odds of many fits.
 """
 
 import argparse
