@@ -4,8 +4,8 @@ DATASET is a folder that `linecad evaluate` knows and whose truth has depth. A c
 right where its ratio is that of the true scales of its two bodies within 3 %. Prints how well each kind of evidence
 tells right from wrong, what each is worth to the placement, and how far the probabilities of lines hold. All of it is
 cross-validated: a scene is judged by the others; the photos of one real dataset are one scene, and so are their parts
-(parts.py). One table tells little: ties_tables.py judges by many. `--write` puts the fits to all photos into
-linecad/ties/table.py and linecad/ties/probability.py.
+(parts.py). One table tells little: ties_tables.py judges by many, and writes the mean of them. `--write` puts the
+probabilities fitted to all photos into linecad/ties/probability.py.
 """
 
 import argparse
@@ -272,7 +272,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--workers", type=int, default=2, help="processes")
-    parser.add_argument("--write", action="store_true", help="the tables into linecad/ties")
+    parser.add_argument("--write", action="store_true", help="the fits into linecad/ties/probability.py")
     chosen = parser.parse_args()
     with ProcessPoolExecutor(chosen.workers) as pool:
         photos = judge_all(chosen.datasets, pool)
@@ -289,20 +289,13 @@ def main() -> None:
         (f"{photo.dataset}, map", photo, one)
         for of_width in with_maps for photo, one in zip(whole, of_width, strict=True) if one.heard
     ])  # fmt: skip
-    fits = {kind: of_kind.fit(np.ones(len(of_kind.right), bool)) for kind, of_kind in rows.items()}
-    print_changes(tables(fits, rows), of_lines, of_maps)
+    print_changes(of_lines, of_maps)
     if chosen.write:
-        write_table(tables(fits, rows))
         write_probability(of_lines, of_maps)
 
 
-def print_changes(table: dict[str, dict], of_lines: logistic.Logistic, of_maps: logistic.Logistic) -> None:
+def print_changes(of_lines: logistic.Logistic, of_maps: logistic.Logistic) -> None:
     """By how much the fits to all photos differ from what the project has, at most."""
-    for kind in KINDS:
-        known = linecad.ties.table.LOG_ODDS[kind]
-        change = [table["AT_ONCE"][kind] - linecad.ties.table.AT_ONCE[kind]]
-        change += [value - known.get(name, 0.0) for name, value in table["LOG_ODDS"][kind].items()]
-        print(f"{kind}: the fit differs from the table by up to {np.abs(change).max():.4f}")
     now = linecad.ties.probability
     for what, known, fitted in (
         ("lines", [now.AT_ONCE, *now.LOG_ODDS.values()], of_lines),

@@ -2,7 +2,8 @@
 
 What ties.py measures by one table for each scene moves by a body or two from one set of scenes to the next. Here each
 draw leaves out some of the made scenes at random. The real datasets are placed by tables fitted to what is left without
-them, the made scenes that were left out by one more. Prints means and standard deviations over the draws.
+them, the made scenes that were left out by one more. Prints means and standard deviations over the draws. `--write`
+puts the mean of the tables of the real datasets into linecad/ties/table.py: mean log-odds of many fits.
 """
 
 import argparse
@@ -10,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from ties import Rows, judge_all, placed, rows_of, tables
+from ties import Rows, judge_all, placed, rows_of, tables, write_table
 from ties_truth import Judged
 
 from linecad.arrays import Int
@@ -22,6 +23,18 @@ KEPT = 0.7  # of the made scenes, in each draw
 def table_without(rows: dict[Kind, Rows], left_out: Int) -> dict[str, dict]:
     """The fit to all scenes but those numbers."""
     return tables({kind: of_kind.fit(~np.isin(of_kind.scene, left_out)) for kind, of_kind in rows.items()}, rows)
+
+
+def mean_table(several: list[dict[str, dict]]) -> dict[str, dict]:
+    """The table whose log-odds are the mean of those of several."""
+    kinds = {kind: list(slopes) for kind, slopes in several[0]["LOG_ODDS"].items()}
+    return {
+        "AT_ONCE": {kind: float(np.mean([table["AT_ONCE"][kind] for table in several])) for kind in kinds},
+        "LOG_ODDS": {
+            kind: {name: float(np.mean([table["LOG_ODDS"][kind][name] for table in several])) for name in names}
+            for kind, names in kinds.items()
+        },
+    }
 
 
 def left_out(photos: list[Judged], random: np.random.Generator) -> Int:
@@ -51,14 +64,16 @@ def judge_by_one(
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
-    parser.add_argument("--draws", type=int, default=6)
+    parser.add_argument("--draws", type=int, default=10)
     parser.add_argument("--workers", type=int, default=2, help="processes")
+    parser.add_argument("--write", action="store_true", help="the mean of the tables into linecad/ties/table.py")
     chosen = parser.parse_args()
     with ProcessPoolExecutor(chosen.workers) as pool:
         photos = judge_all(chosen.datasets, pool)
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
         random = np.random.default_rng(7)
-        draws = [judge_by_one(photos, rows, left_out(photos, random), pool) for _ in range(chosen.draws)]
+        outs = [left_out(photos, random) for _ in range(chosen.draws)]
+        draws = [judge_by_one(photos, rows, out, pool) for out in outs]
     print("\n| dataset | recall | precision |\n| --- | --- | --- |")
     for name in draws[0]:
         scores = np.array([draw[name] for draw in draws])
@@ -66,6 +81,10 @@ def main() -> None:
             f"{mean:.3f} ± {spread:.3f}" for mean, spread in zip(scores.mean(axis=0), scores.std(axis=0), strict=True)
         ]
         print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
+    if chosen.write:
+        scenes = sorted({photo.scene for photo in photos})
+        real = sorted({scenes.index(photo.scene) for photo in photos if not photo.is_made})
+        write_table(mean_table([table_without(rows, np.append(out, scene)) for out in outs for scene in real]))
 
 
 if __name__ == "__main__":
