@@ -153,7 +153,7 @@ def test_lines_lie_in_their_planes(any_scene):
         if own.any():
             assert len(set(lines.component[own].tolist())) == 1
         else:
-            assert {face.kind for face in plane.faces} in ({"ground"}, {"ceiling"})
+            assert {face.kind for face in plane.faces} in ({"ground"}, {"ceiling"}, {"wall"})
         for face in plane.faces:
             assert (face.outline[:, plane.axis] == plane.offset).all()
 
