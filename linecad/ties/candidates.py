@@ -12,8 +12,6 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from linecad.directions import UP
-from linecad.geometry import depths_beside
 from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.colours import find_colours, likeness
 from linecad.ties.feet import MOST_LOG_ODDS, Foot, find_feet
@@ -29,8 +27,6 @@ SAME_RATIO = 0.015  # log ratio within which two pieces of evidence ask for the 
 NEAR, FAR = 100.0, 800.0  # px at the reference width, over which nearness of bodies fades
 NEAR_PLANES, FAR_PLANES = 150.0, 600.0
 GAP_UNIT = 37.5  # px
-AT_FOOT = 0.05  # of the height of a foot, by which lines of its wall may lie lower
-LOWEST = 0.97  # quantile of the ends of lines above a foot, by height: the lowest one may be noise
 MOST_EXCESS, FARTHEST, MOST_RANK = 8.0, 1.0, 4.0  # of features that would else run away
 
 Features = dict[str, float]
@@ -167,25 +163,8 @@ def _of_foot(setting: Setting, foot: Foot) -> Candidate:
         "rank": min(float(plane.rank), MOST_RANK),
         "wide": float(np.log(np.ptp(ends[..., 0]) / GAP_UNIT + 1)),
         "other foot": float(foot.probability < foot.against),
-        "bare": _bare_above(setting, foot),
     }
     return Candidate("ground", (foot.body, setting.bodies.count), -foot.log_height, -1, own)
-
-
-def _bare_above(setting: Setting, foot: Foot) -> float:
-    """The part of the height from a foot up to the horizon, from the foot on, in which its body shows no line: 0 to 1.
-
-    Lines reach down to the feet of plain walls; a hedge before a wall hides them and has a foot of its own.
-    """
-    lines, foot_depth = setting.lines[foot.body], np.exp(foot.log_height)
-    graph = setting.graph
-    rays = graph.end_rays[lines].reshape(-1, 3)
-    fixed, axis = graph.components[lines] * np.exp(setting.log_depth[lines])[:, None], graph.axis[lines]
-    seen = graph.end_components[lines].reshape(2 * len(lines), -1)
-    depth = depths_beside(seen, np.repeat(fixed, 2, axis=0), np.repeat(axis, 2))
-    below = -rays[:, UP] * depth / foot_depth  # of the way from the horizon down to the foot
-    below = below[below <= 1 + AT_FOOT]
-    return float(np.clip(1.0 - np.quantile(below, LOWEST), 0.0, 1.0)) if len(below) else 1.0
 
 
 def _log_odds(probability: float) -> float:

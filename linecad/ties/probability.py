@@ -12,32 +12,32 @@ from solver.bodies.ties import Placement
 LARGEST_MARGIN = 12.0
 FARTHEST_OFF = 6.0  # widths
 # Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
-AT_ONCE = -7.7330
+AT_ONCE = -9.3621
 LOG_ODDS: dict[str, float] = {
-    "of the reference": 0.9519,
-    "margin": -0.3477,
-    "root of margin": 2.0451,
-    "lines of the body": 0.4599,
-    "share of the reference": 2.5690,
-    "together": 2.3350,
-    "agreement of all": -1.8652,
-    "agreement of the line": 2.0433,
-    "bodies": 0.0239,
+    "of the reference": 1.8369,
+    "margin": -0.2177,
+    "root of margin": 1.4574,
+    "lines of the body": -0.0338,
+    "share of the reference": 3.5404,
+    "together": 2.2483,
+    "agreement of all": -0.6617,
+    "agreement of the line": 2.1726,
+    "bodies": 0.9728,
 }
 # The same where a depth map was heard.
-WITH_MAP_AT_ONCE = -4.6789
+WITH_MAP_AT_ONCE = -8.9349
 WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.1513,
-    "margin": 0.2502,
-    "root of margin": -0.6949,
-    "lines of the body": 0.1516,
-    "share of the reference": 2.0057,
-    "together": 1.7452,
-    "agreement of all": 0.7226,
-    "agreement of the line": 2.3790,
-    "bodies": -0.2925,
-    "map's word": 0.0464,
-    "off the map": -0.0818,
+    "of the reference": 1.3505,
+    "margin": 0.0702,
+    "root of margin": -0.0706,
+    "lines of the body": 0.1902,
+    "share of the reference": 3.7171,
+    "together": 1.6920,
+    "agreement of all": 1.3260,
+    "agreement of the line": 2.5316,
+    "bodies": 0.3522,
+    "map's word": 0.3580,
+    "off the map": -0.1236,
 }
 
 
@@ -62,8 +62,6 @@ def features(
         core = body == number
         together[lines] = togetherness(setting.fits, shift, core)[lines]
     margin = np.minimum(placement.margin, LARGEST_MARGIN)
-    if setting.bodies.count == 1:
-        margin[:] = LARGEST_MARGIN  # there is nothing that it could stand wrong against
     size = np.bincount(body[own], minlength=len(margin))  # a photo without bodies has one place all the same
     found = {
         "of the reference": (body == reference).astype(np.float64),

@@ -8,8 +8,8 @@ from linecad.ties.candidates import Candidate, Kind
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from solver.bodies.ties import Ties
 
-BY_CHANCE = 0.05  # that a ratio which nothing asks for is right
-TOLERANCE = 0.04  # log ratio within which a tie holds: right ones of one place miss each other by so much
+BY_CHANCE = 0.05  # that a ratio which nothing asks for is right within TOLERANCE
+TOLERANCE = 0.02  # log ratio within which a tie holds
 LEAST_WEIGHT = 2.0  # of a tie: weaker ones are so many that some always agree with a wrong place
 REPEATING: tuple[Kind, ...] = ("plane", "level")
 REPEATED = 0.6  # of the weight of planes and levels, which repeat each other more than crossings do

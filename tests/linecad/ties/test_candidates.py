@@ -260,7 +260,7 @@ def features_of_foot(grounded, monkeypatch):
         foot = Foot(wall=wall, **{**usual, **known})
         monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
         (found,) = of_kind(find_candidates(grounded), "ground")
-        assert (found.bodies, found.log_ratio) == ((0, 2), -known.get("log_height", 0.5))
+        assert (found.bodies, found.log_ratio) == ((0, 2), -0.5)
         return found.features
 
     return features
@@ -281,25 +281,6 @@ def test_features_of_a_foot(features_of_foot):
     }
     assert {name: known[name] for name in expected} == pytest.approx(expected)
     assert known["wide"] == pytest.approx(np.log(3.2 * 3000 / 9.0 / GAP_UNIT + 1), abs=0.05), "the camera is turned"
-
-
-# The lines of the front wall end at heights 0.9, 0.2, -0.8, -1.5 and -2.4 below the horizon, at a scale of exp(0.3).
-@pytest.mark.parametrize(
-    ("foot", "lowest"),
-    [(1.6, 0.9), (0.9, 0.9), (0.89, 0.9), (0.6, 0.2)],
-    ids=["of the wall", "at the lowest line", "hardly above that", "above many lines"],
-)
-def test_how_bare_the_wall_is_above_its_foot(features_of_foot, foot, lowest):
-    known = features_of_foot(log_height=np.log(foot) + 0.3)
-    assert known["bare"] == pytest.approx(max(0.0, 1 - lowest / foot), abs=1e-6)
-
-
-def test_a_foot_below_which_all_lines_lie_is_bare(grounded, monkeypatch):
-    high = replace(grounded, log_depth=grounded.log_depth + 5.0)
-    foot = Foot(0, 0.5, 0.5, find_walls(grounded)[0], 0.0, 0.0, 0.0)
-    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
-    (found,) = of_kind(find_candidates(high), "ground")
-    assert found.features["bare"] == 1.0, "lines far above the horizon only"
 
 
 @pytest.mark.parametrize(("against", "is_other"), [(0.49, 0.0), (0.51, 1.0)])
