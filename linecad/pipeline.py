@@ -79,7 +79,7 @@ def reconstruct_lines(
     """
     details = None
     if options.uses_bodies and options.face_lines:
-        details = found.details_for_faces(_taken_away(found.segments, corrected))
+        details = found.details_for_faces(taken_away(found.segments, corrected))
     if corrected is not None:
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
     whole, graph = connect(found, options)
@@ -111,7 +111,7 @@ def reconstruct_lines(
     return Reconstruction(whole, graph, solution, decision, lifted, scene)
 
 
-def _taken_away(found: Segments, corrected: CorrectedLines | None) -> Segments:
+def taken_away(found: Segments, corrected: CorrectedLines | None) -> Segments:
     """The segments that a person took away or changed."""
     if corrected is None:
         return Segments.none()
