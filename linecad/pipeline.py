@@ -99,7 +99,7 @@ def reconstruct_lines(
     decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
     notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
-    sketch = None if found.raw is None else Sketch(found.raw, whole.segments.ends, whole.axis)
+    sketch = None if found.raw is None or not options.roofs else Sketch(found.raw, whole.segments.ends, whole.axis)
     view = View(
         photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch
     )

@@ -85,7 +85,7 @@ def make(folder: Path, count: int) -> None:
 
 def found_scene(photo_path: Path, camera: Path | None) -> Scene:
     """What the program makes of a photo."""
-    return reconstruct(open_photo(photo_path, camera, None), Options())
+    return reconstruct(open_photo(photo_path, camera, None), Options(roofs=True))
 
 
 def scale_of(scene: Scene, truth: Truth) -> float:
