@@ -95,15 +95,20 @@ class FoundLines:
 
 
 def find_lines(
-    photo: Photo, on_stage: StageReport = silent, faint: bool = False, drawn: SetFrame | None = None
+    photo: Photo,
+    on_stage: StageReport = silent,
+    faint: bool = False,
+    drawn: SetFrame | None = None,
+    with_details: bool = True,
 ) -> FoundLines:
     """The labelled segments of a photo; raises ReconstructionError when it has no Manhattan frame.
 
     With `faint`, a second look adds what the grain of a photo hides that is not small. The frame is always that of the
-    first look. Lines that a person has `drawn` along the axes give the frame instead of the segments.
+    first look. Lines that a person has `drawn` along the axes give the frame instead of the segments. Only faces
+    that place lines ask for details, which are looked for `with_details`.
     """
     on_stage("finding segments")
-    return name_lines(photo, find_segments(photo.grey), on_stage, faint, drawn)
+    return name_lines(photo, find_segments(photo.grey), on_stage, faint, drawn, with_details)
 
 
 def name_lines(
@@ -112,6 +117,7 @@ def name_lines(
     on_stage: StageReport = silent,
     faint: bool = False,
     drawn: SetFrame | None = None,
+    with_details: bool = True,
 ) -> FoundLines:
     """The same from raw segments, as `linecad.lines.segments.find_segments` gives them."""
     on_stage(f"finding the Manhattan frame of {len(raw)} segments")
@@ -124,8 +130,10 @@ def name_lines(
     frame = frames.frame
     through_points = find_vanishing_point_lines(photo.grey, camera, frame)
     pieces = _labelled(raw, through_points, camera, frames)
-    on_stage("finding details")
-    details = _labelled(find_details(photo.grey), find_whole_details(photo.grey, camera, frame), camera, frames)
+    details = None
+    if with_details:
+        on_stage("finding details")
+        details = _labelled(find_details(photo.grey), find_whole_details(photo.grey, camera, frame), camera, frames)
     return FoundLines(
         camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels, details=details,
         raw=raw.ends,

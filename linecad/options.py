@@ -99,6 +99,11 @@ class Options:
         return chosen == _USUAL and (self.joins, self.weights, self.reach, self.collinear) == (None,) * 4
 
     @property
+    def uses_face_lines(self) -> bool:
+        """Whether faces place lines: only where bodies are placed, since else groups have scales of their own."""
+        return self.uses_bodies and self.face_lines
+
+    @property
     def depth_keys(self) -> tuple[str, ...]:
         """The options about a depth map that were chosen, by key."""
         own = (each for each in fields(self) if each.name.startswith("depth_"))

@@ -54,7 +54,8 @@ def reconstruct(
     (`linecad.depth.to_photo`), bodies that crossings leave free stand where the map has them; a DepthMapError where
     its kind cannot be told.
     """
-    found = find_lines(photo, on_stage, options.faint, None if corrections is None else corrections.frame)
+    drawn = None if corrections is None else corrections.frame
+    found = find_lines(photo, on_stage, options.faint, drawn, options.uses_face_lines)
     if corrections is None:
         return reconstruct_lines(photo.name, found, options, on_progress, on_stage, depth=depth).scene
     found = found.grouped(options)
@@ -78,7 +79,7 @@ def reconstruct_lines(
     known lengths is not set (`corrections.lengths.measured`).
     """
     details = None
-    if options.uses_bodies and options.face_lines:
+    if options.uses_face_lines:
         details = found.details_for_faces(taken_away(found.segments, corrected))
     if corrected is not None:
         found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)

@@ -60,6 +60,8 @@ def test_where_nobody_looked_for_details_faces_get_none(found):
 
 
 def test_a_photo_is_looked_at_for_details(made):
-    found = find_lines(Photo("made.png", np.repeat(made.image()[..., None], 3, axis=2), made.camera))
+    photo = Photo("made.png", np.repeat(made.image()[..., None], 3, axis=2), made.camera)
+    found = find_lines(photo)
+    assert find_lines(photo, with_details=False).details is None
     assert len(found.details) > 0
     assert set(found.details.axis.tolist()) <= {0, 1, 2}
