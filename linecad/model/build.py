@@ -145,7 +145,7 @@ def build_scene(
     lines = framed.in_world()
     notes = (
         *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines, on_faces.kept)]),
-        regions.note, *holes.notes, *on_faces.notes,
+        *regions.notes, *holes.notes, *on_faces.notes,
     )  # fmt: skip
     scene = Scene(
         photo=view.photo,

@@ -14,7 +14,7 @@ from linecad.arrays import Float
 from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.partition import polygons_of
+from linecad.model.regions.partition import polygons_of, positive_part
 from linecad.model.regions.roofs import Roof
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Face, FaceKind, Lines, Plane
@@ -25,7 +25,9 @@ FURTHEST = 2.0  # times the depth of the furthest line, where surfaces end that 
 LEAST_CORNERS = 3
 LEAST_HIDDEN = 0.0002  # of the photo; smaller hidden parts are not worth a ring
 
-KINDS: dict[str, FaceKind] = {"wall": "wall", "level": "other", "ground": "ground", "ceiling": "ceiling"}
+KINDS: dict[str, FaceKind] = {
+    "wall": "wall", "level": "other", "kerb": "other", "ground": "ground", "ceiling": "ceiling",
+}  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +83,7 @@ def _before(region: shapely.Polygon, surface: Surface, depth: float, camera: Cam
     left, top, right, bottom = shapely.box(*region.bounds).buffer(1).bounds
     frame = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
     near = world_rays(frame, camera.matrix, axes)[:, surface.axis] / surface.offset - 1 / depth
-    kept: list[Float] = []
-    for number in range(4):
-        following = (number + 1) % 4
-        kept += [frame[number]] if near[number] >= 0 else []
-        if (near[number] >= 0) != (near[following] >= 0):
-            share = near[number] / (near[number] - near[following])
-            kept.append(frame[number] + share * (frame[following] - frame[number]))
-    return shapely.intersection(region, shapely.Polygon(kept)) if kept else shapely.Polygon()
+    return shapely.intersection(region, positive_part(frame, near))
 
 
 def _beside(region: shapely.Geometry, roofs: tuple[Roof, ...]) -> shapely.Geometry:

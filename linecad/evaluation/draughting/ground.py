@@ -23,7 +23,7 @@ class GroundCounts:
 
     faces: int  # of the ground; 1 is right where any is seen
     walls: int  # large ones whose feet neither the photo's border cuts nor another face hides
-    walls_on_ground: int  # of them, those whose foot is on a face of the ground
+    walls_on_ground: int  # of them, those whose foot is on a face of the ground, or of a pavement beside it
 
 
 def ground_rows(shapes: list[Shape], seen: Int) -> list[int]:
@@ -41,6 +41,7 @@ def ground_rows(shapes: list[Shape], seen: Int) -> list[int]:
 def count_ground(scene: Scene, shapes: list[Shape], seen: Int) -> GroundCounts:
     """The ground and the feet of the walls; `seen` (F,) counts the pixels of a grid that show each face."""
     ground = [shapes[row] for row in ground_rows(shapes, seen)]
+    to_stand_on = ground + [shape for shape in shapes if shape.face.kind == "ground" and shape not in ground]
     largest = max((shape.polygon.area for shape in shapes if shape.is_upright), default=0.0)
     feet = [
         (shape, foot)
@@ -48,7 +49,7 @@ def count_ground(scene: Scene, shapes: list[Shape], seen: Int) -> GroundCounts:
         if shape.is_upright and shape.polygon.area >= LARGE * largest
         if len(foot := _visible_foot(scene, shape))
     ]
-    on = sum(_stands(foot, shape.depth, ground) for shape, foot in feet)
+    on = sum(_stands(foot, shape.depth, to_stand_on) for shape, foot in feet)
     return GroundCounts(len(ground), len(feet), on)
 
 

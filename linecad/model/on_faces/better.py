@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.directions import Turns, components
 from linecad.geometry import depths_beside, middles, world_rays
 from linecad.line_graph import Segments
@@ -29,7 +29,7 @@ def better_faces(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) -> 
     segments = Segments(lines.segment[rows], lines.axis[rows])
     samples = Samples.of(segments.ends, seen.camera.width)
     first, second = seen.beside(samples.pixel, samples.along)
-    lies = (first == second) & can_lie(segments.axis[samples.row], seen.axis[first])
+    lies, first = _places(first, second, segments.axis[samples.row], samples.pixel, seen)
     count = np.zeros((len(rows), len(likely)), np.int64)
     np.add.at(count, (samples.row[lies], first[lies]), 1)
     face = count.argmax(axis=1)
@@ -42,6 +42,16 @@ def better_faces(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) -> 
         (share >= LEAST_SHARE) & sure & (apart > APART) & (furthest <= FURTHEST * depth), face, NO_FACE
     )
     return better
+
+
+def _places(first: Int, second: Int, axis: Int, pixels: Float, seen: SeenFaces) -> tuple[Bool, Int]:
+    """Which places (M,) of lines along axes (M,) lie on a face, and which: one on both sides, or where two meet."""
+    can = [can_lie(axis, seen.axis[face]) for face in (first, second)]
+    with np.errstate(invalid="ignore"):
+        apart = np.abs(seen.depths(first, pixels) / seen.depths(second, pixels) - 1)
+    meet = (first != NO_FACE) & (second != NO_FACE) & (apart <= APART)
+    lies = np.where(first == second, can[0], meet & (can[0] | can[1]))
+    return lies, np.where(can[0], first, second)
 
 
 def _depths(points: Float, segments: Segments, seen: SeenFaces, turns: Turns) -> Float:

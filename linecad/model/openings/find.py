@@ -24,7 +24,7 @@ from linecad.model.openings.recess import depth_ratios
 from linecad.model.openings.rectangles import count_edges, find_rectangles
 from linecad.model.openings.regular import Seen, make_regular
 from linecad.model.openings.walls import Wall, find_walls
-from linecad.scene import Camera, Lines, Opening, Plane, ground_of
+from linecad.scene import Camera, Lines, Opening, Plane
 
 ALMOST_SAME = 0.8  # overlap of rectangles of which one is judged
 SEEN_COVER = 1.2  # of the four sides in sum: with less, an opening was not seen
@@ -140,9 +140,8 @@ def _filled(taken: list[_Likely]) -> tuple[list[_Likely], Choice]:
 
 
 def _ground_height(planes: tuple[Plane, ...]) -> float | None:
-    """The height of the ground; None where no face is part of it."""
-    ground = ground_of(planes)
-    return None if ground is None else ground.offset
+    """The height of the ground that walls stand on, the highest beside a road; None where no face is part of it."""
+    return max((plane.offset for plane in planes if plane.shows_ground), default=None)
 
 
 def _with_recess(openings: list[Opening], likely: _Likely) -> list[Opening]:

@@ -40,14 +40,19 @@ class Filled:
     labels: Labels
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
     roofs: tuple[Roof, ...] = ()  # before whatever the labels say
+    drop: float | None = None  # of the road below the pavement, in heights of the camera above this; None: no kerb
 
     @property
-    def note(self) -> str:
-        """How sure it is that no other labels are better, for people."""
+    def notes(self) -> tuple[str, ...]:
+        """How sure it is that no other labels are better, and how far the road lies below the pavement, for people."""
         cells = f"faces: what each of the {len(self.labels.costs)} parts of the photo shows"
+        proof = f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"
         if self.labels.gap == 0:
-            return f"{cells} is proven best for its costs"
-        return f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"
+            proof = f"{cells} is proven best for its costs"
+        if self.drop is None:
+            return (proof,)
+        step = f"a kerb puts the road {self.drop:.1%} of the camera's height below the ground that walls stand on"
+        return proof, f"faces: {step}"
 
 
 def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:

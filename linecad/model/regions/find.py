@@ -11,11 +11,12 @@ from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.evidence import look_up
 from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
+from linecad.model.regions.kerbs import on_kerbs
 from linecad.model.regions.labelling import find_labels
 from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets, find_segments
-from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces
+from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, ground_height
 from linecad.scene import Camera, Lines, Plane
 
 
@@ -41,7 +42,10 @@ def find_regions(
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)
-    filled = with_hidden(on_ground(filled, raster, view), raster)
+    filled = on_ground(filled, raster, view)
+    if look.feet is not None and ground_height(lines, look.feet) == look.feet.height:
+        filled = on_kerbs(filled, raster, view)  # walls stand on the pavement; lines may have found the road
+    filled = with_hidden(filled, raster)
     if look.sketch is None:
         return filled
     return replace(filled, roofs=find_roofs(look.sketch, lines, heaven, raster, view))

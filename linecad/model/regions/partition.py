@@ -62,6 +62,21 @@ def polygons_of(shape: shapely.Geometry, least: float = 0.0) -> list[shapely.Pol
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and part.area >= least]
 
 
+def positive_part(corners: Float, value: Float) -> shapely.Polygon:
+    """The part of a convex polygon (V, 2) where a linear value, (V,) at its corners, is not below 0.
+
+    It ends straight, on the image line where the value is 0.
+    """
+    kept: list[Float] = []
+    for number, here in enumerate(corners):
+        following = (number + 1) % len(corners)
+        kept += [here] if value[number] >= 0 else []
+        if (value[number] >= 0) != (value[following] >= 0):
+            share = value[number] / (value[number] - value[following])
+            kept.append(here + share * (corners[following] - here))
+    return shapely.Polygon(kept) if kept else shapely.Polygon()
+
+
 def cells_between(lines: list[shapely.Geometry]) -> list[shapely.Polygon]:
     """The cells between lines, with corners on a grid of GRID px, so that neighbours have them in common exactly."""
     pieces = shapely.get_parts(shapely.union_all(lines, grid_size=GRID))

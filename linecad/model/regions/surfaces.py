@@ -12,7 +12,7 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.scene import Camera, Lines, Plane
 
-Kind = Literal["wall", "level", "ground", "ceiling"]
+Kind = Literal["wall", "level", "kerb", "ground", "ceiling"]
 
 RELIEF = 0.012  # log offset within which parallel planes are one wall
 GROUND_STEP = 0.12  # the same between the ground and a kerb or step, which are no ground of their own

@@ -154,6 +154,17 @@ def test_a_doubtful_line_goes_to_the_face_that_it_lies_on(add, house, factor, pr
         assert row not in {line for plane in found.planes for line in plane.lines}
 
 
+def test_a_doubtful_line_where_two_faces_meet_goes_there(add, house):
+    """The foot of the front lies on the front and on the ground, one on each side."""
+    ends = house.lines.ends
+    foot = (house.lines.axis == X) & (ends[:, 0, Y] == FRONT) & (ends[:, 0, Z] == GROUND)
+    row = int(np.flatnonzero(foot)[0])
+    found = add([], doubtful(house, row, 1.3, 0.2))
+    assert not found.kept[row]
+    there = [np.array(ends) for axis, ends in new(found) if axis == X]
+    assert any(np.allclose(ends[:, 1:], [FRONT, GROUND], atol=1e-6) for ends in there)
+
+
 def test_a_line_that_a_person_said_something_of_stays(add, house):
     row = inner_row(house)
     said = Intersections(

@@ -1,9 +1,11 @@
 """One ground, pieces of it, and walls that end on it, above it or below the photo. Walls are 10 away: 1 % is 0.1."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from linecad.evaluation.draughting.ground import count_ground
+from linecad.evaluation.draughting.ground import GroundCounts, count_ground
 from linecad.evaluation.draughting.shapes import NO_FACE, nearest_faces
 from linecad.evaluation.references import pixel_grid
 
@@ -48,3 +50,13 @@ def test_ground_in_pieces_is_counted_by_its_level(drawing, outline):
 def test_a_small_wall_need_not_end_on_the_ground(drawing, outline):
     faces = [GROUND, (1, 10.0, outline((-4, -1.5), (4, 3))), (1, 9.9, outline((0, 0), (1, 1)))]
     assert counted(drawing, faces).walls == 1
+
+
+def test_a_wall_on_the_pavement_beside_a_road_stands_on_the_ground(drawing, outline):
+    road = (2, -1.6, [(-9, 3), (9, 3), (9, 8), (-9, 8)])
+    pavement, wall = (2, -1.4, outline((-9, 8), (9, 10))), (1, 10.0, outline((-4, -1.4), (4, 3)))
+    scene, shapes = drawing(faces=[road, pavement, wall])
+    seen = np.array([900, 100, 500])
+    assert count_ground(scene, shapes, seen) == GroundCounts(1, 1, 0)  # a level of its own, nothing says what
+    shapes = [replace(each, face=replace(each.face, kind="wall" if each.is_upright else "ground")) for each in shapes]
+    assert count_ground(scene, shapes, seen) == GroundCounts(1, 1, 1)

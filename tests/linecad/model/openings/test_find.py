@@ -122,6 +122,15 @@ def test_what_stands_on_the_ground_is_a_door(facade, monkeypatch):
     assert {(each.kind, each.v0 < 0) for each in found} == {("door", True), ("window", False)}
 
 
+def test_doors_stand_on_the_pavement_not_on_the_road_below(facade, monkeypatch):
+    monkeypatch.setattr(regular, "TALL", 1.3)
+    foot = min(box[2] for box in facade.boxes)
+    road = with_level(facade, "ground", foot - 1.0)[-1]
+    planes = (*with_level(facade, "ground", foot), replace(road, id=9))
+    found = find_openings([facade.view(planes)], facade.camera, facade.pixels).openings
+    assert {(each.kind, each.v0 < 0) for each in found} == {("door", True), ("window", False)}
+
+
 def test_what_the_panes_tell_is_put_behind_the_plane_of_the_wall(facade, monkeypatch):
     monkeypatch.setattr(find, "depth_ratios", lambda _, box: np.where(box[:, 2] < 0, 0.02, np.nan))
     low = [each for each in facade.openings() if each.v0 < 0]

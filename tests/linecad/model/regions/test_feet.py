@@ -142,7 +142,7 @@ def test_the_note_counts_the_parts_that_were_labelled(view, raster):
     before = labelled([FRONT], [GROUND + 0.1], view, raster)
     found = on_ground(before, raster, view)
     assert len(found.labels.cells) > len(before.labels.cells)
-    assert found.note == before.note
+    assert found.notes == before.notes
 
 
 @pytest.mark.parametrize("wall", [FRONT, SIDE, TURNED], ids=["y", "x", "turned"])

@@ -6,7 +6,16 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.model.regions.partition import BESIDE, BESIDE_MEET, MOST_LINES, cells_between, cut, draw, extended
+from linecad.model.regions.partition import (
+    BESIDE,
+    BESIDE_MEET,
+    MOST_LINES,
+    cells_between,
+    cut,
+    draw,
+    extended,
+    positive_part,
+)
 
 WIDTH, HEIGHT, STEP = 120, 90, 2.0
 FRAME = shapely.box(-0.5, -0.5, WIDTH - 0.5, HEIGHT - 0.5)
@@ -126,3 +135,14 @@ def test_samples_inside_a_cell_are_its_own(rows):
     off = shapely.distance(middle, np.array(cells, object)[cell])
     assert off.max() <= 1.5 * STEP
     assert (cell >= 0).all()
+
+
+@given(st.lists(st.floats(-5, 5), min_size=3, max_size=3))
+def test_the_positive_part_of_the_photo_is_what_lies_on_one_side_of_an_image_line(line):
+    corners = shapely.get_coordinates(FRAME.exterior)[:-1]
+    value = corners / WIDTH @ line[:2] + line[2]
+    part = positive_part(corners, value)
+    points = np.random.default_rng(1).uniform(0, [WIDTH, HEIGHT], (200, 2)) - 0.5
+    at = points / WIDTH @ line[:2] + line[2]
+    clear = np.abs(at) > 1e-9
+    assert (shapely.contains_xy(part, points)[clear] == (at[clear] > 0)).all()

@@ -1,0 +1,276 @@
+"""Kerbs: the road lies lower than the pavement on which the walls stand.
+
+Seen from the road, a kerb is a stripe along the street: its face, between the road's edge and the pavement's. Both run
+to one vanishing point. Laid onto one level, an image line to that point lies as far beside the camera as its slope
+says, and the logs of the slopes of a kerb's two edges differ by the log of the heights of the camera above road and
+pavement, wherever the kerb is. A band of 5 to 14 % beside a plain road, with another surface behind it, is a kerb: that
+is a step of 8 to 22 cm below an eye at 1.6 m.
+"""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import cv2
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from linecad.arrays import Bool, Float
+from linecad.directions import UP, components, directions_of, partner
+from linecad.geometry import world_rays
+from linecad.model.regions import partition
+from linecad.model.regions.filling import Filled
+from linecad.model.regions.labelling import Labels
+from linecad.model.regions.raster import Raster
+from linecad.model.regions.segments import View
+from linecad.model.regions.surfaces import Surface
+
+NEAREST, FURTHEST = 0.5, 12.0  # of what is looked at beside the camera, in heights of the camera
+ROW = 0.005  # log of the distance beside the camera
+ALONG, COLUMNS = (0.5, 40.0), 320  # along the street, in heights of the camera, evenly in the log
+FINEST = 0.5 / 1920  # of the photo's width; a row that is narrower there is not told from the next
+SIDE = 4  # rows on each side of an edge, whose mean colours are compared
+BESIDE = 9  # columns over which a difference of colours is averaged
+EDGE = 4.0  # CIE L*a*b*, least difference across an edge
+SAME_WAY = 0.4  # share of the usual difference that a column has at least, along it
+STEPS = (0.048, 0.14)  # log height of a kerb's face
+USUAL, VARYING = 0.075, 0.35  # usual log height, 12 cm at 1.6 m, and by how much its log varies
+LONG, SHORT = 0.08, 0.04  # of the photo's width, that both edges show at least; opposite one of the same height
+SAME_STEP = 0.01  # log height within which both sides of a street have one kerb
+OPEN = 0.35  # share of the view of it that both edges must have
+UNLIKE = 6.0  # CIE L*a*b*, least difference between road and pavement
+PLAIN = 0.6  # share of the contrast at its edges that road or face may have in itself at most
+GREY = 12.0  # CIE a* and b*, most of a road's colour; lawns, floors of wood and tables are no roads. Shadows are blue
+ROAD, PAVEMENT = 24, 12  # rows of plain road before a kerb and of ground behind it
+LEAST_PART = 1.0  # px^2
+
+
+@dataclass(frozen=True)
+class Kerb:
+    """One edge of a road, with the walls' ground behind it."""
+
+    along: int  # axis of the street
+    side: float  # of the camera, 1 or -1 along the partner of that axis
+    upper: float  # log distance of its upper edge beside the camera, in heights of the camera above the pavement
+    drop: float  # log of the camera's height above the road over that above the pavement
+    length: float  # of both its edges in the photo, as a share of its width
+
+    @property
+    def weight(self) -> float:
+        """Its length, less for a height that few kerbs have."""
+        unusual = np.log(self.drop / USUAL) / VARYING
+        return self.length * float(np.exp(-(unusual**2) / 2))
+
+
+@dataclass(frozen=True, eq=False)
+class _Lane:
+    """The ground on one side of the camera and one way along a street: R rows away from the camera, C along it."""
+
+    colour: NDArray[Any]  # (R, C, 3) CIE L*a*b*
+    shown: Bool  # (R, C) whether the photo shows ground there
+    length: Float  # (R, C) of the photo, along the row, as a share of its width
+
+
+@dataclass(frozen=True, eq=False)
+class _Edge:
+    """A row of a lane at which the colour changes."""
+
+    row: int
+    columns: Bool  # (C,) where it does
+
+
+def on_kerbs(filled: Filled, raster: Raster, view: View) -> Filled:
+    """The regions with the part of the ground that is a road at the road's level, and the faces of kerbs."""
+    kerbs = find_kerbs(filled.labels, raster, view)
+    if not kerbs:
+        return filled
+    labels = filled.labels
+    ground = _ground(labels)
+    drop = float(np.average([kerb.drop for kerb in kerbs], weights=[kerb.weight for kerb in kerbs]))
+    height = -labels.surfaces[ground].offset
+    no_lines = np.zeros(0, np.int64)
+    road = Surface("ground", UP, -height * float(np.exp(drop)), no_lines, None)
+    faces = [
+        Surface("kerb", int(partner(kerb.along)), kerb.side * height * float(np.exp(kerb.upper)), no_lines, None)
+        for kerb in kerbs
+    ]
+    lower = [_beyond(kerb, kerb.upper - drop, view) for kerb in kerbs]
+    upper = [_beyond(kerb, kerb.upper, view) for kerb in kerbs]
+    cells = [*labels.cells]
+    on_ground = shapely.union_all([cell for cell, own in zip(cells, labels.label, strict=True) if own == ground])
+    edges = [shapely.intersection(shapely.boundary(part), on_ground) for part in (*lower, *upper)]
+    cells = partition.cells_between([*shapely.boundary(np.array(labels.cells, object)), *edges])
+    middle = shapely.point_on_surface(np.array(cells, object))
+    label = np.full(len(cells), labels.clutter)
+    point, old = shapely.STRtree(labels.cells).query(middle, predicate="within")
+    label[point] = labels.label[old]
+    was_ground = label == ground
+    added = 1 + len(faces)
+    label[label >= labels.sky] += added
+    label[was_ground] = len(labels.surfaces)
+    for number, (before, behind) in enumerate(zip(lower, upper, strict=True)):
+        label[was_ground & shapely.contains(before, middle)] = len(labels.surfaces) + 1 + number
+        label[was_ground & shapely.contains(behind, middle)] = ground
+    surfaces = [*labels.surfaces, road, *faces]
+    cell = partition.draw(cells, raster.shape, raster.step)
+    labels = replace(labels, surfaces=surfaces, cells=cells, cell=cell, label=label)
+    return replace(filled, labels=labels, drop=float(np.expm1(drop)))
+
+
+def _ground(labels: Labels) -> int:
+    return next(number for number, surface in enumerate(labels.surfaces) if surface.kind == "ground")
+
+
+def find_kerbs(labels: Labels, raster: Raster, view: View) -> list[Kerb]:
+    """The kerbs of one street, at most one on each side; none in a room, without pixels or without ground."""
+    kinds = {surface.kind for surface in labels.surfaces}
+    if view.photo is None or "ground" not in kinds or "ceiling" in kinds:
+        return []
+    is_ground = (labels.label[labels.cell] == _ground(labels)) & ~raster.plants
+    colour = cv2.cvtColor(cv2.GaussianBlur(view.photo, (3, 3), 0).astype(np.float32) / 255, cv2.COLOR_RGB2Lab)
+    lanes = {
+        (along, side): [
+            lane for way in (1.0, -1.0)
+            if (lane := _lane((along, way, side), colour, is_ground, raster, view)) is not None
+        ]
+        for along in (axis for axis in range(len(directions_of(view.turns))) if axis != UP)
+        for side in (1.0, -1.0)
+    }  # fmt: skip
+    found = [kerb for key, own in lanes.items() for lane in own for kerb in _kerbs(lane, *key, LONG)]
+    if not found:
+        return []
+    best = max(found, key=lambda kerb: kerb.weight)
+    opposite = [kerb for lane in lanes[best.along, -best.side] for kerb in _kerbs(lane, best.along, -best.side, SHORT)]
+    opposite = [kerb for kerb in opposite if abs(kerb.drop - best.drop) <= SAME_STEP]
+    return [best, *sorted(opposite, key=lambda kerb: -kerb.weight)[:1]]
+
+
+def _lane(
+    where: tuple[int, float, float], colour: NDArray[Any], is_ground: Bool, raster: Raster, view: View
+) -> _Lane | None:
+    """The ground along an axis, one way and on one side; None where the photo does not show enough of it."""
+    along, way, side = where
+    axes = directions_of(view.turns)
+    beside = np.exp(np.arange(np.log(NEAREST), np.log(FURTHEST), ROW))
+    ahead = np.geomspace(*ALONG, COLUMNS)
+    points = (side * beside[:, None] * axes[int(partner(along))])[:, None] + way * ahead[:, None] * axes[along]
+    points = points - axes[UP]
+    seen = points @ (view.camera.matrix @ view.rotation).T
+    depth = seen[..., 2]
+    before = depth > NEAREST * np.finfo(np.float32).eps
+    pixels = seen[..., :2] / np.where(before, depth, 1.0)[..., None]
+    size = np.array([view.camera.width, view.camera.height])
+    inside = before & ((pixels > 0) & (pixels < size - 1)).all(axis=2)
+    if not inside.any():
+        return None
+    pixels = np.where(inside[..., None], pixels, 0.0)
+    column, row = np.rint(raster.samples_of(pixels)).astype(np.int64).transpose(2, 0, 1)
+    height, width = raster.shape
+    sample = np.clip(row, 0, height - 1) * width + np.clip(column, 0, width - 1)
+    step = np.linalg.norm(np.diff(pixels, axis=0, append=pixels[-1:]), axis=2)
+    shown = inside & is_ground[sample] & (step > FINEST * size[0])
+    if not shown.any():
+        return None
+    at = pixels.astype(np.float32)
+    length = np.linalg.norm(np.diff(pixels, axis=1, append=pixels[:, -1:]), axis=2) / size[0]
+    length[:, :-1] *= inside[:, 1:]
+    return _Lane(cv2.remap(colour, at[..., 0], at[..., 1], cv2.INTER_LINEAR), shown, np.where(shown, length, 0.0))
+
+
+def _kerbs(lane: _Lane, along: int, side: float, least: float) -> list[Kerb]:
+    """All bands of a lane that may be the face of a kerb, `least` of the photo's width long or more."""
+    edges = _edges(lane, least)
+    found = []
+    for lower in edges:
+        for upper in edges:
+            drop = (upper.row - lower.row) * ROW
+            if STEPS[0] <= drop <= STEPS[1]:
+                length = _length_of_kerb(lane, lower, upper)
+                if length >= least:
+                    found.append(Kerb(along, side, float(np.log(NEAREST) + upper.row * ROW), drop, length))
+    return found
+
+
+def _edges(lane: _Lane, least: float) -> list[_Edge]:
+    """The rows of a lane at which the colour changes along `least` of the photo's width, the longest first."""
+    across, seen = _differences(lane)
+    contrast = np.linalg.norm(across, axis=2)
+    peak = (contrast > EDGE) & (contrast >= cv2.dilate(contrast, np.ones((2 * SIDE - 1, 1))))
+    near = (cv2.dilate(peak.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0) & seen
+    length = (near * lane.length).sum(axis=1)
+    found: list[_Edge] = []
+    for row in np.argsort(-length, kind="stable").tolist():
+        if length[row] < least:
+            break
+        if any(abs(row - edge.row) < SIDE for edge in found):
+            continue
+        usual = _median(across[row][near[row]], lane.length[row][near[row]])
+        size = float(usual @ usual)
+        columns = near[row] & (across[row] @ usual > SAME_WAY * size)
+        if size >= EDGE**2 and lane.length[row][columns].sum() >= least:
+            found.append(_Edge(row, columns))
+    return found
+
+
+def _differences(lane: _Lane) -> tuple[NDArray[np.float32], Bool]:
+    """By how much (R, C, 3) the SIDE rows from each on differ from those before it, and where (R, C) all are shown."""
+    colour = np.where(lane.shown[..., None], lane.colour, 0)
+    sums = np.concatenate([np.zeros((1, *colour.shape[1:]), np.float32), np.cumsum(colour, axis=0)])
+    count = np.concatenate([np.zeros((1, colour.shape[1]), np.int64), np.cumsum(lane.shown, axis=0)])
+    across = np.zeros_like(colour)
+    across[SIDE:-SIDE] = (sums[2 * SIDE : -1] - 2 * sums[SIDE : -SIDE - 1] + sums[: -2 * SIDE - 1]) / SIDE
+    seen = np.zeros(lane.shown.shape, bool)
+    seen[SIDE:-SIDE] = count[2 * SIDE : -1] - count[: -2 * SIDE - 1] == 2 * SIDE
+    across = np.where(seen[..., None], across, 0)
+    share = cv2.blur(seen.astype(np.float32), (BESIDE, 1))
+    mean = cv2.blur(across, (BESIDE, 1)) / np.maximum(share, 1 / BESIDE)[..., None]
+    return np.where(seen[..., None], mean, 0).astype(np.float32), seen
+
+
+def _length_of_kerb(lane: _Lane, lower: _Edge, upper: _Edge) -> float:
+    """The length, as a share of the photo's width, of the band between two edges if it is a kerb's face, else 0."""
+    first, last = max(0, lower.row - ROAD), upper.row + PAVEMENT
+    if last > len(lane.shown):
+        return 0.0
+    both = lower.columns & upper.columns & lane.shown[upper.row : last].all(axis=0)
+    length = float(lane.length[lower.row][both].sum())
+    in_view = float(lane.length[lower.row][lane.shown[lower.row] & lane.shown[upper.row]].sum())
+    if not both.any() or length < OPEN * in_view:
+        return 0.0
+    road = np.median(lane.colour[first : lower.row - 1, both], axis=1)
+    face = np.median(lane.colour[lower.row + 2 : upper.row - 1, both], axis=1)
+    pavement = np.median(lane.colour[upper.row + 2 : last, both], axis=1)
+    middle = [np.median(part, axis=0) for part in (road, face, pavement)]
+    at_lower, at_upper = (float(np.linalg.norm(middle[number + 1] - middle[number])) for number in range(2))
+    is_plain = _spread(road) <= PLAIN * at_lower and _spread(face) <= PLAIN * min(at_lower, at_upper)
+    is_told = min(at_lower, at_upper) >= EDGE and np.linalg.norm(middle[2] - middle[0]) >= UNLIKE
+    is_grey = abs(middle[0][1]) < GREY and middle[0][2] < GREY
+    return length if is_plain and is_told and is_grey else 0.0
+
+
+def _spread(rows: NDArray[Any]) -> float:
+    """How far colours (M, 3) go apart."""
+    return float(np.linalg.norm(np.ptp(rows, axis=0)))
+
+
+def _median(values: NDArray[np.float32], weight: Float) -> Float:
+    """The weighted median (3,) of colours (M, 3)."""
+    found = np.zeros(3)
+    for channel in range(3):
+        order = np.argsort(values[:, channel], kind="stable")
+        sums = np.cumsum(weight[order])
+        found[channel] = values[order[int(np.searchsorted(sums, sums[-1] / 2))], channel]
+    return found
+
+
+def _beyond(kerb: Kerb, distance: float, view: View) -> shapely.Geometry:
+    """What of the photo, below the horizon, lies further beside the camera than a log distance, px.
+
+    Distances are those of points of the pavement, in heights of the camera above it.
+    """
+    left, top, right, bottom = -0.5, -0.5, view.camera.width - 0.5, view.camera.height - 0.5
+    frame = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
+    parts = world_rays(frame, view.camera.matrix, components(view.rotation, view.turns))
+    below = -parts[:, UP]
+    further = kerb.side * parts[:, int(partner(kerb.along))] - np.exp(distance) * below
+    return shapely.intersection(partition.positive_part(frame, further), partition.positive_part(frame, below))

@@ -1,0 +1,151 @@
+"""Streets painted onto a photo by rays: a road, the face of a kerb, a pavement, whose true heights are known."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linecad.directions import directions_of, partner
+from linecad.geometry import world_rays
+from linecad.model.regions import partition
+from linecad.model.regions.cuts import Borders
+from linecad.model.regions.filling import Filled
+from linecad.model.regions.kerbs import ROW, find_kerbs, on_kerbs
+from linecad.model.regions.labelling import Labels
+from linecad.model.regions.raster import take_raster
+from linecad.model.regions.segments import View
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Camera, Lines
+
+CAMERA = Camera(960, 640, np.array([[800.0, 0, 479.5], [0, 800.0, 319.5], [0, 0, 1]]), "file")
+PHOTO = shapely.box(-0.5, -0.5, 959.5, 639.5)
+NO_LINES = np.zeros(0, np.int64)
+NONE = Lines(
+    NO_LINES, NO_LINES, np.zeros((0, 2, 2)), np.zeros((0, 2, 3)), np.zeros(0, bool), NO_LINES, np.zeros(0, "U9")
+)
+ASPHALT, STONE, SLABS, LAWN, SKY = (90, 90, 95), (130, 128, 125), (180, 178, 172), (60, 120, 40), (200, 215, 240)
+STEP = 2.5 * ROW  # log height by which a kerb may be off in such a photo
+
+
+def view_of(photo, pitch=0.1, yaw=0.0, turns=()):
+    """A camera that looks along y, turned to the left by `yaw` and down by `pitch`, rad."""
+    cosine, sine = np.cos(pitch), np.sin(pitch)
+    down = np.array([[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]])
+    turned = np.array([[np.cos(yaw), np.sin(yaw), 0], [-np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
+    level = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+    return View(CAMERA, down @ level @ turned, photo, turns)
+
+
+def painted(view, edges, drop, colours, axis=1):
+    """A photo of a street along `axis` whose kerbs stand beside the camera, at signed distances `edges`.
+
+    The pavement is 1 below the camera, the road 1 + drop; `colours` are of road, face and pavement.
+    """
+    v, u = np.mgrid[0:640, 0:960].astype(float)
+    axes = directions_of(view.turns)
+    rays = world_rays(np.stack([u, v], axis=2), CAMERA.matrix, view.rotation)
+    beside, below = rays @ axes[int(partner(axis))], -rays[..., 2]
+    photo = np.empty((640, 960, 3), np.uint8)
+    photo[:] = colours[0]
+    for edge in edges:
+        away = beside * np.sign(edge)
+        photo[away * (1 + drop) > below * abs(edge)] = colours[1]
+        photo[away > below * abs(edge)] = colours[2]
+    photo[below <= 0] = SKY
+    grain = np.random.default_rng(3).normal(0, 2, photo.shape)
+    return np.clip(photo + grain, 0, 255).astype(np.uint8)
+
+
+def street(edges, drop=0.08, colours=(ASPHALT, STONE, SLABS), axis=1, **pose):
+    """The labels, raster and view of a photo of which all below the horizon is ground."""
+    view = view_of(None, **pose)
+    view = View(view.camera, view.rotation, painted(view, edges, drop, colours, axis), view.turns)
+    raster = take_raster(NONE, CAMERA, view.rotation, view.photo, None, view.turns)
+    return labelled(view, raster), raster, view
+
+
+def labelled(view, raster, kinds=("ground",)):
+    surfaces = [Surface(kind, 2, {"ground": -1.0, "ceiling": 2.0}[kind], NO_LINES, None) for kind in kinds]
+    below = partition.positive_part(
+        np.array(PHOTO.exterior.coords[:-1]),
+        -world_rays(np.array(PHOTO.exterior.coords[:-1]), CAMERA.matrix, view.rotation)[:, 2],
+    )
+    cells = partition.cells_between([shapely.boundary(PHOTO), shapely.boundary(below)])
+    label = np.array([0 if below.contains(cell.point_on_surface()) else len(surfaces) for cell in cells])
+    cell = partition.draw(cells, raster.shape, raster.step)
+    costs = np.zeros((len(cells), len(surfaces) + 2), np.int64)
+    borders = Borders(np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
+    return Labels(surfaces, cells, cell, label, np.zeros((raster.size, len(surfaces) + 2)), costs, borders)
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(1.2, 3.5), st.sampled_from([-1, 1]), st.floats(0.06, 0.13), st.floats(0.0, 0.2), st.floats(-0.2, 0.2))
+def test_a_kerb_is_where_it_is(distance, side, drop, pitch, yaw):
+    (found,) = find_kerbs(*street([side * distance], drop, pitch=pitch, yaw=yaw - 0.3 * side))
+    assert (found.along, found.side) == (1, side)
+    assert found.drop == pytest.approx(np.log1p(drop), abs=STEP)
+    assert found.upper == pytest.approx(np.log(distance), abs=STEP)
+
+
+def test_both_sides_of_a_street_have_one():
+    found = find_kerbs(*street([-2.0, 1.5]))
+    assert sorted((kerb.along, kerb.side) for kerb in found) == [(1, -1.0), (1, 1.0)]
+
+
+def test_a_street_of_a_turned_frame_has_one():
+    (found,) = find_kerbs(*street([-2.0], axis=4, turns=(0.3,)))
+    assert (found.along, found.side) == (4, -1.0)
+    assert found.upper == pytest.approx(np.log(2.0), abs=STEP)
+
+
+@pytest.mark.parametrize(
+    ("drop", "colours"),
+    [
+        (0.08, (ASPHALT, STONE, ASPHALT)),  # a line on the road
+        (0.08, (ASPHALT, SLABS, SLABS)),  # one edge: the road's own colour ends there
+        (0.08, (LAWN, STONE, SLABS)),  # the stones about a lawn
+        (0.03, (ASPHALT, STONE, SLABS)),  # a flush kerb
+        (0.25, (ASPHALT, STONE, SLABS)),  # a parapet
+    ],
+    ids=["mark", "edge", "lawn", "flush", "high"],
+)
+def test_what_is_no_kerb_is_none(drop, colours):
+    assert find_kerbs(*street([-2.0], drop, colours)) == []
+
+
+def test_neither_a_room_nor_a_scene_without_photo_or_ground_has_one():
+    labels, raster, view = street([-2.0])
+    room = labelled(view, raster, ("ground", "ceiling"))
+    assert find_kerbs(room, raster, view) == []
+    assert find_kerbs(labels, raster, View(view.camera, view.rotation, None)) == []
+    assert find_kerbs(labelled(view, raster, ("ceiling",)), raster, view) == []
+
+
+@pytest.mark.parametrize("edges", [[-2.0], [-2.0, 1.5]], ids=["one side", "both sides"])
+def test_ground_is_split_along_kerbs(edges):
+    labels, raster, view = street(edges)
+    found = on_kerbs(Filled(labels, shapely.Polygon()), raster, view)
+    drop = found.drop
+    assert drop == pytest.approx(0.08, abs=STEP)
+    ground, road, *faces = found.labels.surfaces
+    assert (ground.offset, road.kind, road.offset) == (-1.0, "ground", pytest.approx(-(1 + drop)))
+    assert sorted(face.offset for face in faces) == pytest.approx(sorted(edges), rel=STEP)
+    assert [(face.kind, face.axis) for face in faces] == [("kerb", 0)] * len(edges)
+    # Each sample has the surface that the photo was painted with, but for those on a border.
+    shown = np.array(["pavement", "road", *["face"] * len(edges), "sky", "clutter"])[found.labels.label]
+    v, u = np.divmod(np.arange(raster.size), raster.shape[1])
+    at = np.round((np.column_stack([u, v]) + 0.5) * raster.step - 0.5).astype(int)
+    colour = view.photo[np.minimum(at[:, 1], 639), np.minimum(at[:, 0], 959)].astype(int)
+    names = {"road": ASPHALT, "face": STONE, "pavement": SLABS, "sky": SKY}
+    nearest = np.argmin([np.abs(colour - each).sum(axis=1) for each in names.values()], axis=0)
+    assert (np.array([*names])[nearest] == shown[found.labels.cell]).mean() > 0.985
+    assert shapely.union_all(found.labels.cells).symmetric_difference(PHOTO).area < 1e-3
+    assert found.notes[-1].startswith("faces: a kerb puts the road ")
+
+
+def test_ground_without_a_kerb_stays():
+    labels, raster, view = street([])
+    filled = Filled(labels, shapely.Polygon())
+    assert on_kerbs(filled, raster, view) is filled
+    assert len(filled.notes) == 1
