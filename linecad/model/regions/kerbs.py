@@ -238,7 +238,7 @@ def _length_of_kerb(lane: _Lane, lower: _Edge, upper: _Edge) -> float:
     if not both.any() or length < OPEN * in_view:
         return 0.0
     road = np.median(lane.colour[first : lower.row - 1, both], axis=1)
-    face = np.median(lane.colour[lower.row + 2 : upper.row - 1, both], axis=1)
+    face = np.median(lane.colour[lower.row + 3 : upper.row - 2, both], axis=1)
     pavement = np.median(lane.colour[upper.row + 2 : last, both], axis=1)
     middle = [np.median(part, axis=0) for part in (road, face, pavement)]
     at_lower, at_upper = (float(np.linalg.norm(middle[number + 1] - middle[number])) for number in range(2))
