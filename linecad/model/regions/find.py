@@ -44,7 +44,7 @@ def find_regions(
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)
     filled = on_ground(filled, raster, view)
     if look.feet is not None and ground_height(lines, look.feet) == look.feet.height:
-        filled = on_kerbs(filled, raster, view)  # walls stand on the pavement; lines may have found the road
+        filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
     filled = with_hidden(filled, raster)
     if look.sketch is None:
         return filled

@@ -24,6 +24,7 @@ from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
+from linecad.scene import Plane
 
 NEAREST, FURTHEST = 0.5, 12.0  # of what is looked at beside the camera, in heights of the camera
 ROW = 0.005  # log of the distance beside the camera
@@ -42,7 +43,7 @@ UNLIKE = 6.0  # CIE L*a*b*, least difference between road and pavement
 PLAIN = 0.6  # share of the contrast at its edges that road or face may have in itself at most
 GREY = 12.0  # CIE a* and b*, most of a road's colour; lawns, floors of wood and tables are no roads. Shadows are blue
 ROAD, PAVEMENT = 24, 12  # rows of plain road before a kerb and of ground behind it
-LEAST_PART = 1.0  # px^2
+SAME_ROAD = 0.015  # log height between the road by its kerb and a level plane of lines that is it
 
 
 @dataclass(frozen=True)
@@ -79,8 +80,11 @@ class _Edge:
     columns: Bool  # (C,) where it does
 
 
-def on_kerbs(filled: Filled, raster: Raster, view: View) -> Filled:
-    """The regions with the part of the ground that is a road at the road's level, and the faces of kerbs."""
+def on_kerbs(filled: Filled, planes: tuple[Plane, ...], raster: Raster, view: View) -> Filled:
+    """The regions with the part of the ground that is a road at the road's level, and the faces of kerbs.
+
+    Of the scene's planes the road has the one that lies there, if any.
+    """
     kerbs = find_kerbs(filled.labels, raster, view)
     if not kerbs:
         return filled
@@ -89,7 +93,7 @@ def on_kerbs(filled: Filled, raster: Raster, view: View) -> Filled:
     drop = float(np.average([kerb.drop for kerb in kerbs], weights=[kerb.weight for kerb in kerbs]))
     height = -labels.surfaces[ground].offset
     no_lines = np.zeros(0, np.int64)
-    road = Surface("ground", UP, -height * float(np.exp(drop)), no_lines, None)
+    road = _level(-height * float(np.exp(drop)), planes, labels.surfaces)
     faces = [
         Surface("kerb", int(partner(kerb.along)), kerb.side * height * float(np.exp(kerb.upper)), no_lines, None)
         for kerb in kerbs
@@ -115,6 +119,17 @@ def on_kerbs(filled: Filled, raster: Raster, view: View) -> Filled:
     cell = partition.draw(cells, raster.shape, raster.step)
     labels = replace(labels, surfaces=surfaces, cells=cells, cell=cell, label=label)
     return replace(filled, labels=labels, drop=float(np.expm1(drop)))
+
+
+def _level(offset: float, planes: tuple[Plane, ...], surfaces: list[Surface]) -> Surface:
+    """A road at a height: the nearest level plane within SAME_ROAD, unless another surface is there."""
+    taken = {surface.plane for surface in surfaces}
+    free = [plane for plane in planes if plane.axis == UP and plane.offset < 0 and plane.id not in taken]
+    near = [plane for plane in free if abs(np.log(plane.offset / offset)) < SAME_ROAD]
+    if not near:
+        return Surface("ground", UP, offset, np.zeros(0, np.int64), None)
+    plane = min(near, key=lambda each: abs(np.log(each.offset / offset)))
+    return Surface("ground", UP, plane.offset, np.zeros(0, np.int64), plane.id)
 
 
 def _ground(labels: Labels) -> int:

@@ -16,6 +16,7 @@ Kind = Literal["wall", "level", "kerb", "ground", "ceiling"]
 
 RELIEF = 0.012  # log offset within which parallel planes are one wall
 GROUND_STEP = 0.12  # the same between the ground and a kerb or step, which are no ground of their own
+SAME_LEVEL = 0.03  # the same between the ground that feet found and lines that lie on it; between them may be a kerb
 LEAST_LENGTH = 0.02  # of a surface's lines together, as a share of the photo's width
 MOST_SURFACES = 20
 NEARLY_ALL = 0.95  # of the length of the lines that reach below the horizon ends above the lowest level
@@ -72,7 +73,8 @@ def find_surfaces(
     ceiling = level_of_ends(lines, above=True) if has_ceiling else None
     for kind, height in (("ground", None if ground is None else -ground), ("ceiling", ceiling)):
         if height is not None:
-            walls = _with_level(walls, kind, height)
+            found_by_feet = kind == "ground" and feet is not None and height == -feet.height
+            walls = _with_level(walls, kind, height, SAME_LEVEL if found_by_feet else GROUND_STEP)
     return walls
 
 
@@ -108,14 +110,20 @@ def _weights(lines: Lines) -> Float:
     return length * sure**2
 
 
-def _with_level(walls: list[Surface], kind: Kind, height: float) -> list[Surface]:
-    """The surfaces with the ground or ceiling: the levels there that it is made one of, or one of its own."""
+def _with_level(walls: list[Surface], kind: Kind, height: float, reach: float) -> list[Surface]:
+    """The surfaces with the ground or ceiling: the levels there that it is made one of, or one of its own.
+
+    It has the height of the first level within `reach`, a difference of logs, else the one that was given.
+    """
     own = [wall for wall in walls if wall.axis == 2 and _apart(wall.offset, height) < GROUND_STEP]
     others = [wall for wall in walls if all(wall is not one for one in own)]
     if not own:
         return [*others, Surface(kind, 2, height, np.zeros(0, np.int64), None)]
     lines = np.unique(np.concatenate([wall.lines for wall in own]))
-    return [*others, Surface(kind, 2, own[0].offset, lines, own[0].plane)]
+    there = [level for level in own if _apart(level.offset, height) < reach]
+    if not there:
+        return [*others, Surface(kind, 2, height, lines, None)]
+    return [*others, Surface(kind, 2, there[0].offset, lines, there[0].plane)]
 
 
 def _apart(one: float, other: float) -> float:

@@ -125,7 +125,7 @@ def test_neither_a_room_nor_a_scene_without_photo_or_ground_has_one():
 @pytest.mark.parametrize("edges", [[-2.0], [-2.0, 1.5]], ids=["one side", "both sides"])
 def test_ground_is_split_along_kerbs(edges):
     labels, raster, view = street(edges)
-    found = on_kerbs(Filled(labels, shapely.Polygon()), raster, view)
+    found = on_kerbs(Filled(labels, shapely.Polygon()), (), raster, view)
     drop = found.drop
     assert drop == pytest.approx(0.08, abs=STEP)
     ground, road, *faces = found.labels.surfaces
@@ -147,5 +147,5 @@ def test_ground_is_split_along_kerbs(edges):
 def test_ground_without_a_kerb_stays():
     labels, raster, view = street([])
     filled = Filled(labels, shapely.Polygon())
-    assert on_kerbs(filled, raster, view) is filled
+    assert on_kerbs(filled, (), raster, view) is filled
     assert len(filled.notes) == 1
