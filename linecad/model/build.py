@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, Text
 from linecad.decide.decision import Decision
-from linecad.depth.normals import Normals
 from linecad.directions import Turns
 from linecad.errors import ReconstructionError
 from linecad.graph.connectivity import components, spanning_tree
@@ -19,6 +18,7 @@ from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
+from linecad.model.depth_evidence import depths_of, normals_of
 from linecad.model.face_lines import add_lines, without_repeats
 from linecad.model.faces import find_faces, with_roofs
 from linecad.model.frames import (
@@ -251,15 +251,8 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
 
 def _look(view: View, placed: Placed | None, scale: float) -> Look:
     """What the faces are found by, in a scene of which the placed lines are `scale` times as far."""
-    return Look(view.pixels, _ground_of_feet(placed, scale), _normals(placed), view.sketch)
-
-
-def _normals(placed: Placed | None) -> Normals | None:
-    """The normals of a depth map that was not left out."""
-    depth = None if placed is None else placed.setting.sight.depth
-    if depth is None or placed is None or placed.depth_map is None or placed.depth_map.left_out:
-        return None
-    return depth.normals
+    feet, camera = _ground_of_feet(placed, scale), view.camera
+    return Look(view.pixels, feet, normals_of(placed), view.sketch, depths_of(placed, scale, camera.matrix))
 
 
 def _rectangles(openings: tuple[Opening, ...], planes: tuple[Plane, ...]) -> Float | None:

@@ -19,6 +19,7 @@ from linecad.model.frames import FramedLines, sight_in, together
 from linecad.model.on_faces.better import better_faces
 from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
+from linecad.model.on_faces.posts import standing
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.scene import Camera, Intersections, Lines, Plane
 
@@ -61,7 +62,8 @@ class LinesOnFaces:
                 f"{added} more lines lie on faces: their edges, and what is seen on them and no crossing placed"
             )
         if moved:
-            notes.append(f"{moved} lines in doubtful places lie on a face in the photo and were put onto it")
+            where = "lie on a face in the photo or stand on its ground"
+            notes.append(f"{moved} lines in doubtful places {where}, and were put there")
         return tuple(notes)
 
 
@@ -75,31 +77,41 @@ def add_lines(
 ) -> LinesOnFaces:
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
-    The ids of the lines that were there are their rows. Those that faces place better are put onto these, but for lines
-    of which a person said something at one of their `crossings`. Nothing changes where `details` are None.
+    The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
+    whose foot the photo shows on the ground stand there, but for lines of which a person said something at one of their
+    `crossings`. Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool))
     turns, rotation = framed.turns, sight.rotation
     seen = SeenFaces.of(planes, camera, rotation, turns)
     better = better_faces(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
-    better[crossings.lines[np.asarray(crossings.reason) == "annotated"]] = NO_FACE
-    kept = better == NO_FACE
-    moved, framed = framed.of_rows(np.flatnonzero(~kept)), framed.of_rows(np.flatnonzero(kept))
-    taken = _as_drawn(framed, sight).joined(_as_shown(moved))
+    nearer, below = standing(framed.in_world(), seen)
+    said = crossings.lines[np.asarray(crossings.reason) == "annotated"]
+    better[said], below[said] = NO_FACE, NO_FACE
+    better[below != NO_FACE] = NO_FACE
+    kept = (better == NO_FACE) & (below == NO_FACE)
+    posts = _nearer(framed.of_rows(np.flatnonzero(below != NO_FACE)), nearer[below != NO_FACE])
+    moved = framed.of_rows(np.flatnonzero(better != NO_FACE))
+    framed = framed.of_rows(np.flatnonzero(kept))
+    taken = _as_drawn(framed, sight).joined(_as_shown(moved)).joined(_as_drawn(posts, sight))
     edges, face = edges_of(seen, rotation, turns)
     edges, face = _one_by_one(edges, face, taken, camera)
     taken = taken.joined(edges)
     found, on = _on_faces(apart_from(details, taken, camera.width), seen)
     segments = Segments(moved.lines.segment, moved.axis).joined(edges).joined(found)
-    face = np.concatenate([better[~kept], face, on])
+    face = np.concatenate([better[better != NO_FACE], face, on])
     ends, frame = in_space(segments, face, seen, rotation, turns)
+    count = len(segments)
+    segments = segments.joined(Segments(posts.lines.segment, posts.axis))
+    face = np.concatenate([face, below[below != NO_FACE]])
+    ends, frame = np.concatenate([ends, posts.lines.ends]), np.concatenate([frame, posts.frame])
     lines = _records(framed, segments, face, ends, frame, seen)
-    pieces = (*moved.lines.pieces, *(np.zeros((0, 2, 2)),) * (len(lines) - len(moved.lines)))
-    lines = replace(lines, pieces=pieces)
+    none = (np.zeros((0, 2, 2)),) * (count - len(moved.lines))
+    lines = replace(lines, pieces=(*moved.lines.pieces, *none, *posts.lines.pieces))
     every = FramedLines(together([framed.lines, lines]), np.concatenate([framed.frame, frame]), turns)
     members = {plane.id: list(plane.lines) for plane in planes}
-    for number, each in zip(lines.id.tolist(), face.tolist(), strict=True):
+    for number, each in zip(lines.id[:count].tolist(), face[:count].tolist(), strict=True):
         members[seen.plane[each].id].append(number)
     full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)
     return LinesOnFaces(*without_repeats(every, full, sight), kept)
@@ -126,6 +138,11 @@ def _without_repeats(framed: FramedLines, sight: Sight) -> FramedLines:
     order = np.concatenate(rows)
     lines = rows_of(together(parts), np.argsort(order))
     return FramedLines(lines, framed.frame[np.sort(order)], framed.turns)
+
+
+def _nearer(framed: FramedLines, factor: Float) -> FramedLines:
+    """The lines at so many times (N,) their distance."""
+    return replace(framed, lines=replace(framed.lines, ends=framed.lines.ends * factor[:, None, None]))
 
 
 def _as_drawn(framed: FramedLines, sight: Sight) -> Segments:

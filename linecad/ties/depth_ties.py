@@ -31,7 +31,7 @@ WITHIN = 1.5  # widths, half of the interval in which a tie to the map holds
 DENSITY = 1.25  # of scales, a unit of log ratio, where nothing is known: BY_CHANCE over twice TOLERANCE
 CONTRADICTED = 0.045  # share of the crossings' weight that contradicts a fit, at which the map counts as it stands
 LEAST_WORTH = 2.5  # log-odds of a large body, below which the map places only what nothing else ties
-POWER, FEWEST, MOST = 2.0, 0.25, 6.0  # of that share; times that the map may count less or more
+POWER, FEWEST, MOST = 2.0, 0.25, 1.0  # of that share; times that the map counts, which is never more than it is worth
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.directions import Turns, components
+from linecad.directions import UP, Turns, components
 from linecad.geometry import depths_beside, middles, world_rays
 from linecad.line_graph import Segments
 from linecad.model.on_faces.places import Samples, can_lie
@@ -11,6 +11,7 @@ from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.scene import Lines
 
 DOUBTFUL = 0.5  # probability; what is more likely right than wrong stays
+ON_STREET = 0.8  # probability that road, kerb and pavement are in their places, as measured on made streets
 LEAST_SHARE = 0.6  # of a line that must lie on the face
 FURTHEST = 3.0  # times the depth of its middle that an end may have there; further off lies the horizon of the face
 APART = 0.01  # of the depth; what is nearer to the face is relief of it
@@ -19,13 +20,16 @@ APART = 0.01  # of the depth; what is nearer to the face is relief of it
 def better_faces(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) -> Int:
     """The face (N,) that places a line better: the line is doubtful and lies before or behind it; else NO_FACE.
 
-    `likely` (F,) is how probably each face is in its place, which must be more than the line is. The lines are in the
+    `likely` (F,) is how probably each face is in its place, which must be more than the line is. Feet and kerbs tell of
+    road, kerb and pavement, whatever crossings say, so that lines on them need not be doubtful. The lines are in the
     world, along the directions of all frames, of which `turns` are the further ones.
     """
     better = np.full(len(lines), NO_FACE)
     if len(lines.probability) == 0 or len(likely) == 0:
         return better
-    rows = np.flatnonzero(np.asarray(lines.probability) < DOUBTFUL)
+    street = _street(seen)
+    likely = np.where(street, np.maximum(likely, ON_STREET), likely)
+    rows = np.flatnonzero(np.asarray(lines.probability) < (ON_STREET if street.any() else DOUBTFUL))
     segments = Segments(lines.segment[rows], lines.axis[rows])
     samples = Samples.of(segments.ends, seen.camera.width)
     first, second = seen.beside(samples.pixel, samples.along)
@@ -37,11 +41,21 @@ def better_faces(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) -> 
     depth = seen.depths(face, middles(segments.ends))
     apart = np.abs(depth / _depths(lines.ends[rows, 0], segments, seen, turns) - 1)
     furthest = np.maximum(*(seen.depths(face, segments.ends[:, end]) for end in range(2)))
-    sure = likely[face] > np.asarray(lines.probability)[rows]
+    own = np.asarray(lines.probability)[rows]
+    sure = (likely[face] > own) & ((own < DOUBTFUL) | street[face])
     better[rows] = np.where(
         (share >= LEAST_SHARE) & sure & (apart > APART) & (furthest <= FURTHEST * depth), face, NO_FACE
     )
     return better
+
+
+def _street(seen: SeenFaces) -> Bool:
+    """Which faces (F,) are a road, its kerbs or its pavement: the ground has two levels."""
+    levels = {plane.id for plane in seen.plane if plane.shows_ground}
+    kinds = [face.kind for face in seen.face]
+    upright = [plane.axis != UP for plane in seen.plane]
+    is_own = [kind == "ground" or (kind == "other" and up) for kind, up in zip(kinds, upright, strict=True)]
+    return np.array(is_own, bool) & (len(levels) > 1)
 
 
 def _places(first: Int, second: Int, axis: Int, pixels: Float, seen: SeenFaces) -> tuple[Bool, Int]:

@@ -39,7 +39,10 @@ class Known:
     raster: Raster
 
     def box(self, number: int) -> Float:
-        """Low and high components (2, K) of the lines of a surface."""
+        """Low and high components (2, K) of the lines of a surface, or of what a depth map shows of it."""
+        known = self.surfaces[number].box
+        if known is not None:
+            return known.copy()
         ends = components(self.lines.ends[self.surfaces[number].lines], self.raster.turns)
         return np.asarray(np.percentile(ends.reshape(-1, ends.shape[2]), [1, 99], axis=0))
 
@@ -99,7 +102,7 @@ def find_ends(known: Known) -> list[End]:
     """The ends of walls before others, beyond which hardly a line of theirs lies."""
     raster = known.raster
     image, rays = known.shown.reshape(raster.shape), raster.rays.reshape(*raster.shape, -1)
-    is_wall = np.array([*(surface.kind == "wall" for surface in known.surfaces), False, False])
+    is_wall = np.array([*(each.kind == "wall" and len(each.lines) > 0 for each in known.surfaces), False, False])
     border = is_wall[image[:, :-1]] & is_wall[image[:, 1:]] & (image[:, :-1] != image[:, 1:])
     left, right = image[:, :-1][border], image[:, 1:][border]
     before, after = rays[:, :-1][border], rays[:, 1:][border]

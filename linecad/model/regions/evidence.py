@@ -12,6 +12,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.normals import UNTOLD
 from linecad.directions import MAIN, UP, across, components, frame_axes, frame_of, partner
+from linecad.model.regions.mapped import cost_outside, costs_by_map
 from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines
@@ -33,6 +34,7 @@ RARE_COST = 0.3  # of levels that are no ground: soffits and tops of walls are s
 WALLED_COST = 0.5  # of ground and ceiling behind a wall
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
+MAPPED_COST = 0.8  # of a wall that only a depth map shows
 CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
 GREEN_COST = 0.5  # of a wall; what is green grows
 FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
@@ -124,6 +126,8 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
             cost = cost + WALLED_COST * _behind_walls(raster, lines, surfaces, depth, number)
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
+    if raster.map_depth is not None:
+        costs[:, :SKY] += costs_by_map(raster, surfaces, depth)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
     costs[:, SKY] = _sky_cost(raster, heaven)
@@ -132,7 +136,9 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
 
 
 def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
-    """Cost (S,) of one surface by its lines, and by those that are behind it."""
+    """Cost (S,) of one surface by its lines, and by those that are behind it; of one that a map shows, by its box."""
+    if surface.box is not None and len(surface.lines) == 0:
+        return MAPPED_COST + cost_outside(surface, raster, depth)
     is_own = np.zeros(len(lines), bool)
     is_own[surface.lines] = True
     own = is_own[raster.line]
@@ -198,7 +204,10 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
         if surface.kind != "wall":
             continue
         along = int(partner(surface.axis))
-        low, high = np.percentile(components(lines.ends[surface.lines], raster.turns)[:, :, along], [2, 98])
+        if surface.box is None:
+            low, high = np.percentile(components(lines.ends[surface.lines], raster.turns)[:, :, along], [2, 98])
+        else:
+            low, high = surface.box[:, along]
         before = depth[:, number]
         at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
         hidden |= (before < reach) & (at > low) & (at < high)

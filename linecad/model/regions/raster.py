@@ -50,6 +50,8 @@ class Raster:
     line_rays: Float  # (T, K)
     line_depth: Float  # (T,)
     turns: Turns = ()  # of further frames
+    map_depth: Float | None = None  # (S,) camera depth by a depth map, in the scene's unit; NaN where it has none
+    map_width: float = 0.0  # of the Cauchy error of its walls, log depth
 
     @property
     def size(self) -> int:

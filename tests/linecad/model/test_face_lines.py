@@ -11,8 +11,8 @@ from linecad.line_graph import Segments
 from linecad.model.clean.sight import Sight
 from linecad.model.face_lines import UNKNOWN, add_lines
 from linecad.model.faces import find_faces
-from linecad.model.frames import FramedLines
-from linecad.scene import Intersections
+from linecad.model.frames import FramedLines, together
+from linecad.scene import Face, Intersections, Lines, Plane
 
 X, Y, Z = range(3)
 NONE = Intersections([], [], [], [], [], [])
@@ -163,6 +163,51 @@ def test_a_doubtful_line_where_two_faces_meet_goes_there(add, house):
     assert not found.kept[row]
     there = [np.array(ends) for axis, ends in new(found) if axis == X]
     assert any(np.allclose(ends[:, 1:], [FRONT, GROUND], atol=1e-6) for ends in there)
+
+
+POST = np.array([[[3.2, 6.5, GROUND], [3.2, 6.5, -0.9]]])
+
+
+def with_line(house, axis, ends, factor):
+    """The lines of the house, all of them sure, and one more with ends (1, 2, 3) at `factor` times its distance."""
+    shown = project(ends, house.camera.matrix, house.rotation)
+    more = Lines([len(house.lines)], [axis], shown, ends * factor, [False], [0], ["weak"])
+    return replace(together([house.lines, more]), probability=np.full(len(house.lines) + 1, 0.9))
+
+
+def test_a_post_stands_on_the_ground_however_sure_its_crossings_were(add, house):
+    last = len(house.lines)
+    found = add([], with_line(house, Z, POST, 1.4))
+    assert found.kept.tolist() == [True] * last + [False]
+    uprights = [np.array(ends) for axis, ends in new(found) if axis == Z]
+    assert any(np.allclose(np.sort(ends, axis=0), np.sort(POST[0], axis=0), atol=1e-6) for ends in uprights)
+    after = found.lines.lines
+    post = [row for row in np.flatnonzero(after.by_face) if np.allclose(after.ends[row, :, :2], POST[0, :, :2])]
+    assert not {int(after.id[row]) for row in post} & {line for plane in found.planes for line in plane.lines}
+    assert add([], with_line(house, Z, POST, 1.0)).kept.all()
+
+
+def test_a_post_that_a_person_said_something_of_stays(add, house):
+    said = Intersections(
+        lines=[[0, len(house.lines)]], kind=["X"], pixel=[[0, 0]], real=[True], in_tree=[True], weight=[1],
+        reason=["annotated"],
+    )  # fmt: skip
+    assert add([], with_line(house, Z, POST, 1.4), said).kept.all()
+
+
+@pytest.mark.parametrize(
+    ("levels", "probability", "moves"), [(1, 0.3, True), (1, 0.7, False), (2, 0.7, True), (2, 0.85, False)]
+)
+def test_lines_on_a_street_go_there_unless_they_are_surer_than_it(house, planes, sight, levels, probability, moves):
+    """A street has two levels of ground; here a second one out of sight makes it one."""
+    far = Face(99, np.array([[60.0, 60, -9], [61, 60, -9], [61, 61, -9]]), kind="ground")
+    street = (*planes, Plane(99, Z, -9.0, (), (far,)))[: len(planes) + levels - 1]
+    bare = tuple(replace(plane, lines=()) for plane in street)
+    lines = with_line(house, Y, np.array([KERB[1]]), 1.3)
+    lines = replace(lines, probability=np.r_[np.full(len(lines) - 1, 0.9), probability])
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
+    assert found.kept[-1] != moves
 
 
 def test_a_line_that_a_person_said_something_of_stays(add, house):

@@ -1,0 +1,155 @@
+"""What a depth map says of the parts of a photo: how deep they are, and walls that no line shows.
+
+The map has been laid onto the bodies, so that its depths are those of the scene but for the errors of its walls. A
+surface that is off the map's depth by several widths of these errors is not what is seen there. Where none is near it
+and the map is flat along an axis, the map has a wall that lines do not.
+"""
+
+from dataclasses import dataclass, replace
+
+import cv2
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.directions import UP, across
+from linecad.model.regions.raster import Raster
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Camera
+
+LEAST_WIDTH = 0.012  # log depth; a map's wall is as uneven in itself
+MAP_COST, MOST_BY_MAP = 0.6, 3.0  # of a surface off the map, for each unit of the log of a Cauchy density; at most
+LEVEL_WIDTH = 0.08  # log depth; feet tell the height of the ground no better
+NEAR_LINES = 18.0  # samples from the lines of a surface, where the map shows no other one that faces the same way
+WITHIN = 3.0  # widths, within which a surface explains the map
+FLAT = 7  # samples across a window in which a wall of the map is even
+EVEN = 0.7  # widths, by which it may be uneven there
+LEAST_WALL = 0.006  # of the photo's samples, of a wall that only the map shows
+MOST_WALLS = 8
+SAME_LEVEL = 0.12  # log height within which feet or lines know the ground better than the map
+
+
+@dataclass(frozen=True, eq=False)
+class MappedDepths:
+    """A depth map on a photo's pixels, in the scene's unit."""
+
+    depth: Float  # (H, W) camera depth; NaN where the map has none
+    width: float  # of the Cauchy error of its walls, log depth
+
+
+def laid_on(raster: Raster, mapped: MappedDepths | None, camera: Camera) -> Raster:
+    """The raster with the depths of a map, if there is one."""
+    if mapped is None:
+        return raster
+    height, width = raster.shape
+    row = np.minimum(((np.arange(height) + 0.5) * raster.step).astype(np.int64), camera.height - 1)
+    column = np.minimum(((np.arange(width) + 0.5) * raster.step).astype(np.int64), camera.width - 1)
+    depth = mapped.depth[np.ix_(row, column)].ravel()
+    return replace(raster, map_depth=depth, map_width=max(mapped.width, LEAST_WIDTH))
+
+
+def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float) -> Float:
+    """Costs (S, K) of surfaces of such camera depths (S, K) beside what a map says, more than those of the nearest.
+
+    0 where the map says nothing. Errors of walls are Cauchy's; a whole wall of the map may be off by several widths, so
+    that it tells which surface is seen and not that none is.
+    """
+    assert raster.map_depth is not None
+    levels = np.array([surface.kind in ("ground", "ceiling") for surface in surfaces], bool)
+    width = np.where(levels, np.maximum(raster.map_width, LEVEL_WIDTH), raster.map_width)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        off = np.log(raster.map_depth[:, None] / depth) / width
+        costs = np.minimum(MAP_COST * np.log1p(off**2), MOST_BY_MAP)
+    costs = np.where(np.isfinite(depth), costs, MOST_BY_MAP)
+    costs -= costs.min(axis=1, initial=MOST_BY_MAP, keepdims=True)
+    return np.where(np.isfinite(raster.map_depth)[:, None], costs, 0.0)
+
+
+def with_mapped(surfaces: list[Surface], raster: Raster, ground: float | None) -> list[Surface]:
+    """The surfaces with walls that the map alone shows, the largest first; ground and ceiling where it has them.
+
+    The `ground` that feet of walls found, as an offset, stays where it is.
+    """
+    if raster.map_depth is None:
+        return surfaces
+    facing = _facing(raster)
+    surfaces = [each if each.offset == ground else _levelled(each, raster, facing) for each in surfaces]
+    free = np.isfinite(raster.map_depth)
+    for surface in surfaces:
+        own = raster.distance(raster.marked(np.isin(raster.line, surface.lines))) < NEAR_LINES
+        free &= ~((facing == surface.axis) & (own | _explains(surface, raster)))
+    added: list[Surface] = []
+    axes = [axis for axis in range(raster.rays.shape[1]) if axis != UP]
+    while len(added) < MOST_WALLS:
+        found = [_wall(axis, side, free & (facing == axis), raster) for axis in axes for side in (1.0, -1.0)]
+        best = max(found, key=lambda each: each[0])
+        if best[0] < LEAST_WALL * raster.size or best[1] is None:
+            break
+        added.append(best[1])
+        free &= ~_explains(best[1], raster)
+    return [*surfaces, *added]
+
+
+def _explains(surface: Surface, raster: Raster) -> Bool:
+    """Which samples (S,) the map has as deep as a surface."""
+    assert raster.map_depth is not None
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = raster.map_depth * raster.rays[:, surface.axis] / surface.offset
+        return np.asarray(np.abs(np.log(ratio)) < WITHIN * raster.map_width)
+
+
+def _facing(raster: Raster) -> Int:
+    """The axis (S,) along which the map's offset is even around each sample; -1 where along none."""
+    assert raster.map_depth is not None
+    facing, least = np.full(raster.size, -1), np.full(raster.size, EVEN * raster.map_width)
+    for axis in range(raster.rays.shape[1]):
+        with np.errstate(divide="ignore", invalid="ignore"):
+            offset = np.log(np.abs(raster.map_depth * raster.rays[:, axis]))
+        known = np.isfinite(offset)
+        image = np.where(known, offset, 0.0).reshape(raster.shape)
+        share = cv2.blur(known.astype(np.float64).reshape(raster.shape), (FLAT, FLAT))
+        mean, square = (cv2.blur(each, (FLAT, FLAT)) / np.maximum(share, 1e-9) for each in (image, image**2))
+        spread = np.sqrt(np.maximum(square - mean**2, 0)).ravel()
+        better = known & (share.ravel() > 0.5) & (spread < least)
+        facing[better], least[better] = axis, spread[better]
+    return facing
+
+
+def _wall(axis: int, side: float, free: Bool, raster: Raster) -> tuple[int, Surface | None]:
+    """The wall across an axis, on one side of the camera, that most of the free samples (S,) show, and how many."""
+    assert raster.map_depth is not None
+    offset = raster.map_depth * raster.rays[:, axis]
+    rows = np.flatnonzero(free & (offset * side > 0))
+    if len(rows) == 0:
+        return 0, None
+    log_offset = np.sort(np.log(np.abs(offset[rows])))
+    last = np.searchsorted(log_offset, log_offset + WITHIN * raster.map_width, side="right")
+    first = int((last - np.arange(len(rows))).argmax())
+    middle = float(np.median(log_offset[first : last[first]]))
+    own = rows[np.abs(np.log(np.abs(offset[rows])) - middle) < WITHIN * raster.map_width]
+    points = raster.rays[own] * raster.map_depth[own, None]
+    box = np.percentile(points, [1, 99], axis=0)
+    return len(own), Surface("wall", axis, side * float(np.exp(middle)), np.zeros(0, np.int64), None, box)
+
+
+def _levelled(surface: Surface, raster: Raster, facing: Int) -> Surface:
+    """A ground or ceiling at the map's height, where the height that feet or ends of lines gave is far off."""
+    if surface.kind not in ("ground", "ceiling") or surface.plane is not None or len(surface.lines):
+        return surface
+    count, level = _wall(UP, float(np.sign(surface.offset)), facing == UP, raster)
+    if level is None or count < LEAST_WALL * raster.size:
+        return surface
+    off = abs(np.log(level.offset / surface.offset))
+    return replace(surface, offset=level.offset) if off > SAME_LEVEL else surface
+
+
+def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:
+    """Cost (S,) of a wall of the map, of such depths (S,), beyond its box."""
+    assert surface.box is not None
+    outside = np.zeros(raster.size, bool)
+    met = np.where(np.isfinite(depth), depth, 0.0)
+    for axis in across(np.array(surface.axis)).tolist():
+        low, high = surface.box[:, axis]
+        slack = WITHIN * raster.map_width * abs(surface.offset)
+        at = raster.rays[:, axis] * met
+        outside |= (at < low - slack) | (at > high + slack)
+    return np.where(outside, MOST_BY_MAP, 0.0)
