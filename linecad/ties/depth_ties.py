@@ -22,7 +22,7 @@ from solver.bodies.ties import Placement, Ties
 from solver.robust import agreeing_with
 
 WIDTHS = np.geomspace(0.004, 0.5, 60)  # log scale, half widths at half maximum of a body's error
-LEAST_WIDTH = 0.01  # no network is known to be better from one photo
+LEAST_WIDTH = 0.02  # what few bodies tell of it is not believed below: single walls are off by several widths
 WITHIN_BODIES = 0.5  # of the spread inside bodies, that the error of bodies has at least
 USUAL_WIDTH, SPREAD = 0.02, 1.0  # before anything is seen: the middle of published networks; log, standard deviation
 MOST_WIDTH = 0.06  # of a map of this photo

@@ -126,12 +126,12 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
             cost = cost + WALLED_COST * _behind_walls(raster, lines, surfaces, depth, number)
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
-    if raster.map_depth is not None:
-        costs[:, :SKY] += costs_by_map(raster, surfaces, depth)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
     costs[:, SKY] = _sky_cost(raster, heaven)
     costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth
+    if raster.map_depth is not None:
+        costs += costs_by_map(raster, surfaces, depth, limit)
     return costs
 
 

@@ -13,18 +13,21 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, across
 from linecad.model.regions.raster import Raster
-from linecad.model.regions.surfaces import Surface
+from linecad.model.regions.surfaces import Kind, Surface
 from linecad.scene import Camera
 
 LEAST_WIDTH = 0.012  # log depth; a map's wall is as uneven in itself
 MAP_COST, MOST_BY_MAP = 0.6, 3.0  # of a surface off the map, for each unit of the log of a Cauchy density; at most
+SOLID_COST = 0.7  # of the sky, and of clutter, where the map has something else
 LEVEL_WIDTH = 0.08  # log depth; feet tell the height of the ground no better
 NEAR_LINES = 18.0  # samples from the lines of a surface, where the map shows no other one that faces the same way
 WITHIN = 3.0  # widths, within which a surface explains the map
 FLAT = 7  # samples across a window in which a wall of the map is even
 EVEN = 0.7  # widths, by which it may be uneven there
-LEAST_WALL = 0.006  # of the photo's samples, of a wall that only the map shows
+LEAST_WALL = 0.01  # of the photo's samples, of a wall that only the map shows
+LEAST_LEVEL = 0.04  # the same of a ground or ceiling that neither feet nor lines show
 MOST_WALLS = 8
+FIRM_FEET = 10.0  # log-odds of the feet of walls, from which on they know the ground better than a map
 SAME_LEVEL = 0.12  # log height within which feet or lines know the ground better than the map
 
 
@@ -47,11 +50,12 @@ def laid_on(raster: Raster, mapped: MappedDepths | None, camera: Camera) -> Rast
     return replace(raster, map_depth=depth, map_width=max(mapped.width, LEAST_WIDTH))
 
 
-def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float) -> Float:
-    """Costs (S, K) of surfaces of such camera depths (S, K) beside what a map says, more than those of the nearest.
+def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float, limit: float) -> Float:
+    """Costs (S, K + 2) of surfaces of such camera depths (S, K), of the sky and of clutter beside what a map says.
 
-    0 where the map says nothing. Errors of walls are Cauchy's; a whole wall of the map may be off by several widths, so
-    that it tells which surface is seen and not that none is.
+    0 where the map says nothing. Errors of walls are Cauchy's, and a whole wall of the map may be off by several
+    widths: it tells which surface is seen, not that none is. So the nearest costs nothing. What has a depth within the
+    `limit` is no sky, and what a surface explains no clutter.
     """
     assert raster.map_depth is not None
     levels = np.array([surface.kind in ("ground", "ceiling") for surface in surfaces], bool)
@@ -60,19 +64,29 @@ def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float) -> Float
         off = np.log(raster.map_depth[:, None] / depth) / width
         costs = np.minimum(MAP_COST * np.log1p(off**2), MOST_BY_MAP)
     costs = np.where(np.isfinite(depth), costs, MOST_BY_MAP)
-    costs -= costs.min(axis=1, initial=MOST_BY_MAP, keepdims=True)
-    return np.where(np.isfinite(raster.map_depth)[:, None], costs, 0.0)
+    least = costs.min(axis=1, initial=MOST_BY_MAP)
+    with np.errstate(invalid="ignore"):
+        sky = SOLID_COST * (raster.map_depth < limit)
+    clutter = SOLID_COST * (least < MAP_COST * np.log1p(WITHIN**2))
+    found = np.column_stack([costs - least[:, None], sky, clutter])
+    return np.where(np.isfinite(raster.map_depth)[:, None], found, 0.0)
 
 
-def with_mapped(surfaces: list[Surface], raster: Raster, ground: float | None) -> list[Surface]:
+def with_mapped(surfaces: list[Surface], raster: Raster, sure: Surface | None = None) -> list[Surface]:
     """The surfaces with walls that the map alone shows, the largest first; ground and ceiling where it has them.
 
-    The `ground` that feet of walls found, as an offset, stays where it is.
+    One of them that is `sure` stays where it is.
     """
     if raster.map_depth is None:
         return surfaces
     facing = _facing(raster)
-    surfaces = [each if each.offset == ground else _levelled(each, raster, facing) for each in surfaces]
+    surfaces = [each if each is sure else _levelled(each, raster, facing) for each in surfaces]
+    kinds = {surface.kind for surface in surfaces}
+    levels: tuple[tuple[Kind, float], ...] = (("ground", -1.0), ("ceiling", 1.0))
+    for kind, side in levels:
+        count, level = _wall(UP, side, facing == UP, raster)
+        if kind not in kinds and level is not None and count > LEAST_LEVEL * raster.size:
+            surfaces = [*surfaces, Surface(kind, UP, level.offset, level.lines, None)]
     free = np.isfinite(raster.map_depth)
     for surface in surfaces:
         own = raster.distance(raster.marked(np.isin(raster.line, surface.lines))) < NEAR_LINES

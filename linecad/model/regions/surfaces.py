@@ -90,6 +90,13 @@ def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:
     return lowest
 
 
+def ground_of_feet(surfaces: list[Surface], lines: Lines, feet: GroundOfFeet | None) -> Surface | None:
+    """The ground of those that were found, if feet of walls made it what it is."""
+    if feet is None or ground_height(lines, feet) != feet.height:
+        return None
+    return next((surface for surface in surfaces if surface.kind == "ground"), None)
+
+
 def level_of_ends(lines: Lines, above: bool) -> float | None:
     """How far above or below the camera nearly all lines that reach there end; None where hardly any does."""
     reach = lines.ends[:, :, 2].max(axis=1) if above else -lines.ends[:, :, 2].min(axis=1)

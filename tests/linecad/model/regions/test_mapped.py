@@ -1,0 +1,132 @@
+"""A box of a room, or a street between two walls, as a depth map sees it: true depths with errors that are known."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from linecad.geometry import central_camera
+from linecad.model.regions.mapped import (
+    LEAST_WIDTH,
+    MAP_COST,
+    MOST_BY_MAP,
+    SOLID_COST,
+    MappedDepths,
+    costs_by_map,
+    laid_on,
+    with_mapped,
+)
+from linecad.model.regions.raster import take_raster
+from linecad.model.regions.surfaces import Surface
+from linecad.scene import Camera, Lines
+
+CAMERA = Camera(480, 320, central_camera(300.0, 480, 320), "file")
+AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+NO_LINES = np.zeros(0, np.int64)
+NONE = Lines(
+    NO_LINES, NO_LINES, np.zeros((0, 2, 2)), np.zeros((0, 2, 3)), np.zeros(0, bool), NO_LINES, np.zeros(0, "U9")
+)
+RASTER = take_raster(NONE, CAMERA, AHEAD, None)
+ROOM = {("wall", 0): [-2.0, 2.5], ("wall", 1): [6.0], ("level", 2): [-1.5, 1.2]}
+
+
+def seen(planes, raster=RASTER):
+    """The depth (S,) of the nearest plane on each ray, by axis and offset."""
+    depth = np.full(raster.size, np.inf)
+    for axis, offset in planes:
+        with np.errstate(divide="ignore"):
+            there = offset / raster.rays[:, axis]
+        depth = np.where((there > 0) & (there < depth), there, depth)
+    return np.where(np.isfinite(depth), depth, np.nan)
+
+
+def mapped(planes, width=LEAST_WIDTH, noise=0.0, seed=0):
+    depth = seen(planes) * np.exp(noise * np.random.default_rng(seed).standard_normal(RASTER.size))
+    return replace(RASTER, map_depth=depth, map_width=width)
+
+
+PLANES = [(axis, offset) for (_, axis), offsets in ROOM.items() for offset in offsets]
+
+
+@settings(max_examples=15, deadline=None)
+@given(
+    st.floats(-3, -1.5),
+    st.floats(1.5, 3),
+    st.floats(5, 10),
+    st.floats(-1.4, -1),
+    st.floats(0.8, 1.3),
+    st.integers(0, 9),
+)
+def test_a_map_of_a_room_gives_its_walls_its_floor_and_its_ceiling(left, right, front, floor, ceiling, seed):
+    planes = [(0, left), (0, right), (1, front), (2, floor), (2, ceiling)]
+    found = with_mapped([], mapped(planes, noise=0.003, seed=seed))
+    known = {(surface.kind, surface.axis, np.sign(surface.offset)): surface.offset for surface in found}
+    wanted = [("wall", 0, left), ("wall", 0, right), ("wall", 1, front), ("ground", 2, floor), ("ceiling", 2, ceiling)]
+    for kind, axis, offset in wanted:
+        assert known[kind, axis, np.sign(offset)] == pytest.approx(offset, rel=0.01)
+    assert len(found) == len(wanted)
+
+
+def test_walls_that_are_known_are_not_found_again():
+    known = [Surface("wall", axis, offset, NO_LINES, None) for axis, offset in PLANES if axis != 2]
+    found = with_mapped(known, mapped(PLANES))
+    assert found[: len(known)] == known
+    assert {surface.kind for surface in found[len(known) :]} == {"ground", "ceiling"}
+
+
+def test_near_lines_of_a_wall_the_map_has_no_other():
+    """The map has a wall 10 % too far; where lines show it, the map's own stays away."""
+    raster = mapped([(1, 6.6)])
+    everywhere = np.arange(raster.size)
+    raster = replace(raster, line=np.zeros(raster.size, np.int64), at=everywhere)
+    known = [Surface("wall", 1, 6.0, np.array([0]), 0)]
+    assert with_mapped(known, raster) == known
+    assert len(with_mapped([Surface("wall", 1, 6.0, np.array([1]), 0)], raster)) == 2
+
+
+@pytest.mark.parametrize(("height", "moves"), [(-1.45, False), (-2.4, True)])
+def test_a_ground_that_is_far_off_the_map_goes_there_unless_feet_are_sure(height, moves):
+    raster = mapped(PLANES)
+    ground = Surface("ground", 2, height, NO_LINES, None)
+    assert with_mapped([ground], raster)[0].offset == pytest.approx(-1.5 if moves else height, rel=0.01)
+    assert with_mapped([ground], raster, ground)[0] is ground
+    on_lines = replace(ground, plane=4)
+    assert with_mapped([on_lines], raster)[0] is on_lines
+
+
+def test_without_a_map_nothing_changes():
+    known = [Surface("wall", 1, 6.0, NO_LINES, None)]
+    assert with_mapped(known, RASTER) is known
+    assert laid_on(RASTER, None, CAMERA) is RASTER
+
+
+def test_a_map_is_read_at_the_pixels_of_the_samples():
+    v, u = np.mgrid[:320, :480]
+    raster = laid_on(RASTER, MappedDepths(1.0 + u + 1000.0 * v, 0.001), CAMERA)
+    assert raster.map_width == LEAST_WIDTH
+    middle = raster.samples_of(np.array([[100.0, 50.0]])).round().astype(int)[0]
+    assert raster.map_depth[middle[1] * raster.shape[1] + middle[0]] == pytest.approx(50101.0, abs=1001)
+
+
+def test_costs_are_those_of_a_cauchy_error_above_the_nearest():
+    surfaces = [Surface("wall", 1, offset, NO_LINES, None) for offset in (5.0, 6.0, 9.0)]
+    raster = mapped([(1, 6.1)], width=0.02)
+    depth = np.column_stack([surface.offset / raster.rays[:, 1] for surface in surfaces])
+    found = costs_by_map(raster, surfaces, depth, limit=20.0)
+    own = [min(MAP_COST * np.log1p((np.log(6.1 / offset) / 0.02) ** 2), MOST_BY_MAP) for offset in (5.0, 6.0, 9.0)]
+    np.testing.assert_allclose(found[:, :3], np.broadcast_to(np.array(own) - min(own), (raster.size, 3)), atol=1e-9)
+    np.testing.assert_allclose(found[:, 3:], SOLID_COST)  # neither sky nor clutter
+    far = costs_by_map(raster, surfaces, depth, limit=2.0)
+    np.testing.assert_allclose(far[:, 3], 0.0)
+    off = costs_by_map(replace(raster, map_depth=raster.map_depth * 1.3), surfaces, depth, limit=20.0)
+    np.testing.assert_allclose(off[:, 4], 0.0)  # nothing explains it
+
+
+def test_where_the_map_has_nothing_it_says_nothing():
+    surfaces = [Surface("wall", 1, 5.0, NO_LINES, None)]
+    raster = replace(RASTER, map_depth=np.full(RASTER.size, np.nan), map_width=0.02)
+    depth = (5.0 / raster.rays[:, 1])[:, None]
+    assert not costs_by_map(raster, surfaces, depth, 20.0).any()
+    assert with_mapped(surfaces, raster) == surfaces
