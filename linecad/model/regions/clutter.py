@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.raster import Raster
+from linecad.model.regions.raster import SHADES, Raster
 
 STRANGE = (2.0, 2.75, 3.5)  # spreads of the ground's colours, from which on it is not the ground; none fits all photos
 KNOWN = 0.5  # share of what is found already, of a part that is not looked at again
@@ -29,6 +29,9 @@ FOOT = 4  # samples between a thing and the wall that it reaches up to
 ABOVE = 3  # heights of what is on the ground, up to which a thing is looked for
 ROUNDS = 2  # of the cut about a thing
 HOLE = 0.0005  # of the photo; a smaller gap among leaves is no view of the wall
+MOST_OF_WALL = 0.9  # of the samples of a wall, that its usual colours cover
+WINDOW, ALIKE = 9, 0.8  # samples across, in which that share of what was called clutter has these colours
+LEAST_SIDE, LEAST_OF_WALL = 9, 0.003  # samples; of the photo: a smaller piece may be anything of that colour
 SMOOTH = 0.7  # samples, by which an outline may miss a thing
 
 
@@ -38,7 +41,37 @@ def with_hidden(filled: Filled, raster: Raster) -> Filled:
     shown = labels.label[labels.cell].reshape(raster.shape)
     ground = np.isin(shown, [k for k, surface in enumerate(labels.surfaces) if surface.kind == "ground"])
     before = find_things(raster.colour, ground, (shown < labels.sky) & ~ground) | _before_walls(raster, ground)
-    return replace(filled, clutter=shapely.union_all([filled.clutter, *outlines(before, raster.step)]))
+    clutter = shapely.difference(filled.clutter, shapely.union_all(outlines(_of_walls(filled, raster), raster.step)))
+    return replace(filled, clutter=shapely.union_all([clutter, *outlines(before, raster.step)]))
+
+
+def _of_walls(filled: Filled, raster: Raster) -> Bool:
+    """Where (H, W) what was called clutter has the colours of the wall that it was filled in as: it is that wall."""
+    labels = filled.labels
+    label = labels.label[labels.cell]
+    row, column = np.divmod(np.arange(raster.size), raster.shape[1])
+    pixels = (np.column_stack([column, row]) + 0.5) * raster.step - 0.5
+    shapely.prepare(filled.clutter)
+    clutter = shapely.contains_xy(filled.clutter, pixels)
+    found = np.zeros(raster.shape, bool)
+    for number, surface in enumerate(labels.surfaces):
+        own = label == number
+        if surface.kind != "wall" or not (own & clutter).any() or not (own & ~clutter).any():
+            continue
+        count = np.bincount(raster.shade[own & ~clutter], minlength=SHADES)
+        order = np.argsort(-count, kind="stable")
+        usual = order[: int(np.searchsorted(np.cumsum(count[order]), MOST_OF_WALL * count.sum())) + 1]
+        hidden = (own & clutter & ~raster.plants).reshape(raster.shape)
+        alike = hidden & np.isin(raster.shade, usual).reshape(raster.shape)
+        share = cv2.blur(alike.astype(np.float32), (WINDOW, WINDOW)) / np.maximum(
+            cv2.blur(hidden.astype(np.float32), (WINDOW, WINDOW)), 1e-6
+        )
+        found |= hidden & (share > ALIKE)
+    solid = cv2.morphologyEx(found.astype(np.uint8), cv2.MORPH_OPEN, np.ones((LEAST_SIDE, LEAST_SIDE), np.uint8))
+    _, part, box, _ = cv2.connectedComponentsWithStats(solid, connectivity=4)
+    large = box[:, cv2.CC_STAT_AREA] >= LEAST_OF_WALL * raster.size
+    large[0] = False
+    return np.asarray(large[part])
 
 
 def find_things(colour: NDArray[np.uint8], ground: Bool, walls: Bool) -> Bool:

@@ -1,12 +1,15 @@
 """Plants and things on the ground, in painted pictures."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
 import shapely
 
-from linecad.model.regions.clutter import find_things, outlines
+from linecad.model.regions.clutter import find_things, outlines, with_hidden
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.raster import take_raster
 
 FOOT, SHAPE = 200, (300, 480)
 GREY, WHITE, RED = (110, 110, 115), (220, 215, 205), (170, 30, 30)
@@ -91,3 +94,16 @@ def test_a_bush_before_a_wall_hides_it_and_changes_no_outline(house, house_regio
     assert shapely.difference(more, bush.buffer(12)).area < 0.05 * bush.area
     areas = [sorted(region.area for _, region in one.labels.regions) for one in (seen, house_regions)]
     assert areas[0] == pytest.approx(areas[1], rel=0.02)
+
+
+@pytest.mark.parametrize("is_wall", [True, False])
+def test_what_was_called_clutter_is_the_wall_where_it_has_its_colours(house, house_regions, is_wall):
+    box = (560, 380, 680, 500)
+    photo = house.photo.copy()
+    if not is_wall:
+        photo[box[1] : box[3], box[0] : box[2]] = (150, 30, 140)
+    raster = take_raster(house.lines, house.camera, house.rotation, photo)
+    called = replace(house_regions, clutter=shapely.union_all([house_regions.clutter, shapely.box(*box)]))
+    kept = with_hidden(called, raster).clutter
+    share = shapely.intersection(kept, shapely.box(*box)).area / shapely.box(*box).area
+    assert share < 0.3 if is_wall else share > 0.95
