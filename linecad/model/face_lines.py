@@ -110,7 +110,8 @@ def add_lines(
     none = (np.zeros((0, 2, 2)),) * (count - len(moved.lines))
     lines = replace(lines, pieces=(*moved.lines.pieces, *none, *posts.lines.pieces))
     every = FramedLines(together([framed.lines, lines]), np.concatenate([framed.frame, frame]), turns)
-    members = {plane.id: list(plane.lines) for plane in planes}
+    # Numbers of lines that went are given again.
+    members = {plane.id: [line for line in plane.lines if kept[line]] for plane in planes}
     for number, each in zip(lines.id[:count].tolist(), face[:count].tolist(), strict=True):
         members[seen.plane[each].id].append(number)
     full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)

@@ -187,6 +187,21 @@ def test_a_post_stands_on_the_ground_however_sure_its_crossings_were(add, house)
     assert add([], with_line(house, Z, POST, 1.0)).kept.all()
 
 
+def test_the_number_of_a_line_that_went_may_be_given_again_but_is_no_longer_in_its_plane(house, planes, sight):
+    lines = with_line(house, Z, POST, 1.4)
+    last = len(lines) - 1
+    planes = tuple(replace(plane, lines=(*plane.lines, last)) for plane in planes)
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    found = add_lines(framed, planes, Segments.none(), house.camera, sight, NONE)
+    assert not found.kept[last]
+    after = found.lines.lines
+    assert last in after.id
+    for plane in found.planes:
+        assert len(set(plane.lines)) == len(plane.lines)
+        rows = np.flatnonzero(np.isin(after.id, plane.lines) & np.asarray(after.by_face))
+        assert np.allclose(after.ends[rows][:, :, plane.axis], plane.offset)
+
+
 def test_a_post_that_a_person_said_something_of_stays(add, house):
     said = Intersections(
         lines=[[0, len(house.lines)]], kind=["X"], pixel=[[0, 0]], real=[True], in_tree=[True], weight=[1],
