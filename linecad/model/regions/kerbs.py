@@ -94,6 +94,7 @@ def on_kerbs(filled: Filled, planes: tuple[Plane, ...], raster: Raster, view: Vi
     height = -labels.surfaces[ground].offset
     no_lines = np.zeros(0, np.int64)
     road = _level(-height * float(np.exp(drop)), planes, labels.surfaces)
+    drop = float(np.log(-road.offset / height))  # so that the kerb's face ends on it exactly
     faces = [
         Surface("kerb", int(partner(kerb.along)), kerb.side * height * float(np.exp(kerb.upper)), no_lines, None)
         for kerb in kerbs

@@ -16,7 +16,7 @@ from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
-from linecad.scene import Camera, Lines
+from linecad.scene import Camera, Lines, Plane
 
 CAMERA = Camera(960, 640, np.array([[800.0, 0, 479.5], [0, 800.0, 319.5], [0, 0, 1]]), "file")
 PHOTO = shapely.box(-0.5, -0.5, 959.5, 639.5)
@@ -142,6 +142,22 @@ def test_ground_is_split_along_kerbs(edges):
     assert (np.array([*names])[nearest] == shown[found.labels.cell]).mean() > 0.985
     assert shapely.union_all(found.labels.cells).symmetric_difference(PHOTO).area < 1e-3
     assert found.notes[-1].startswith("faces: a kerb puts the road ")
+
+
+@pytest.mark.parametrize(("height", "taken"), [(-1.09, True), (-1.2, False)])
+def test_a_level_plane_of_lines_at_the_road_is_the_road(height, taken):
+    labels, raster, view = street([-2.0])
+    levels = (Plane(4, 2, height, (7, 8)), Plane(5, 2, 1.09, (9,)), Plane(6, 0, -1.09, (10,)))
+    found = on_kerbs(Filled(labels, shapely.Polygon()), levels, raster, view)
+    road = found.labels.surfaces[1]
+    assert (road.plane, road.offset == height) == ((4, True) if taken else (None, False))
+    assert found.drop == pytest.approx(-road.offset - 1)
+    # Face and road share the line in which they meet, wherever the road has its height from.
+    regions = dict(found.labels.regions)
+    border = max(shapely.get_parts(shapely.intersection(regions[1], regions[2])), key=shapely.length)
+    inner = shapely.get_coordinates(shapely.line_interpolate_point(border, [0.2, 0.5, 0.8], normalized=True))
+    rays, face = world_rays(inner, CAMERA.matrix, view.rotation), found.labels.surfaces[2]
+    np.testing.assert_allclose(rays * (face.offset / rays[:, :1]), rays * (road.offset / rays[:, 2:]), atol=1e-3)
 
 
 def test_ground_without_a_kerb_stays():
