@@ -144,8 +144,8 @@ def build_scene(
     roofed = with_roofs(planes, regions.roofs, lines, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
     notes = (
-        *_notes(view, graph, solution, found, depth_map), *filter(None, [cleaned.note(framed.lines, on_faces.kept)]),
-        *regions.notes, *holes.notes, *on_faces.notes,
+        *_notes(view, graph, solution, found, depth_map),
+        *filter(None, [cleaned.note(on_faces.kept, on_faces.lines.lines, drawn.lines)]), *regions.notes, *holes.notes,
     )  # fmt: skip
     scene = Scene(
         photo=view.photo,
@@ -161,7 +161,8 @@ def build_scene(
         openings=openings,
         turns=graph.turns,
     )
-    return scene if graph.turns else without_ticks(scene, sight, MIN_COMPONENT)
+    scene = scene if graph.turns else without_ticks(scene, sight, MIN_COMPONENT)
+    return replace(scene, notes=(*scene.notes, *on_faces.notes(scene.lines)))
 
 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:

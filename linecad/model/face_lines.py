@@ -33,6 +33,7 @@ class LinesOnFaces:
     lines: FramedLines  # the K first
     planes: tuple[Plane, ...]  # with their lines
     kept: Bool  # (N,) which of the lines that were there are among the K; ids were rows
+    put: Int  # ids that those have now which faces and the ground placed better
 
     def crossings(self, crossings: Intersections) -> Intersections:
         """The crossings of lines that stayed; the tree is one again."""
@@ -51,19 +52,18 @@ class LinesOnFaces:
         rest = pairs[self.kept[pairs[:, :2]].all(axis=1)]
         return np.column_stack([row[rest[:, :2]], rest[:, 2]])
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What faces did, for people."""
-        moved = int((~self.kept).sum())
-        added = len(self.lines.lines) - len(self.kept)
+    def notes(self, lines: Lines) -> tuple[str, ...]:
+        """What faces did to the lines that are left at last, for people."""
+        put = int(np.isin(lines.id, self.put).sum())
+        added = int(np.asarray(lines.by_face).sum()) - put
         notes = []
         if added:
             notes.append(
                 f"{added} more lines lie on faces: their edges, and what is seen on them and no crossing placed"
             )
-        if moved:
+        if put:
             where = "lie on a face in the photo or stand on its ground"
-            notes.append(f"{moved} lines in doubtful places {where}, and were put there")
+            notes.append(f"{put} lines in doubtful places {where}, and were put there")
         return tuple(notes)
 
 
@@ -82,7 +82,7 @@ def add_lines(
     `crossings`. Nothing changes where `details` are None.
     """
     if details is None:
-        return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool))
+        return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))
     turns, rotation = framed.turns, sight.rotation
     seen = SeenFaces.of(planes, camera, rotation, turns)
     better = better_faces(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
@@ -115,7 +115,8 @@ def add_lines(
     for number, each in zip(lines.id[:count].tolist(), face[:count].tolist(), strict=True):
         members[seen.plane[each].id].append(number)
     full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)
-    return LinesOnFaces(*without_repeats(every, full, sight), kept)
+    put = np.r_[lines.id[: len(moved.lines)], lines.id[count:]]
+    return LinesOnFaces(*without_repeats(every, full, sight), kept, put)
 
 
 def without_repeats(

@@ -35,15 +35,16 @@ class Cleaned:
     depth: Float  # (M, 2) of both ends
     reach: Float  # (M, 2) from where to where the pieces of each line reached along it before any end was moved
 
-    def note(self, lines: Lines, kept: Bool) -> str:
-        """What became of the lines on the way to those `kept` (M,) of them, for people; "" where nothing did.
+    def note(self, kept: Bool, before: Lines, after: Lines) -> str:
+        """What became of the lines, those `kept` (M,) of them, for people; "" where nothing did.
 
-        These are the first of `lines`.
+        These are the first of the lines `before` and `after` their ends were moved a second time: what they took in
+        from others between is no end that was moved.
         """
         joined = len(self.row) - len(self.lines)
-        rows = np.arange(int(kept.sum()))
-        along = np.sort(lines.ends[rows[:, None], np.arange(2), lines.axis[rows, None]], axis=1)
-        ends = np.abs(along - self.reach[kept]) / self.depth[kept]
+        count = int(kept.sum())
+        moved = _along(self.lines)[kept] - self.reach[kept] + _along(after)[:count] - _along(before)[:count]
+        ends = np.abs(moved) / self.depth[kept]
         parts = []
         if joined:
             parts.append(f"{joined} lines that continue or repeat others were joined to them")
@@ -58,6 +59,13 @@ class Cleaned:
                 f"{NEAR:.0%}, at most by {ends.max():.1%}"
             )
         return "; ".join(parts)
+
+
+def _along(lines: Lines) -> Float:
+    """From where to where (M, 2) lines reach along their axes."""
+    rows = np.arange(len(lines))[:, None]
+    reach: Float = np.sort(lines.ends[rows, np.arange(2), lines.axis[:, None]], axis=1)
+    return reach
 
 
 def clean_lines(lines: Lines, crossings: Intersections, sight: Sight) -> Cleaned:

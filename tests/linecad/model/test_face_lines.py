@@ -145,7 +145,7 @@ def test_a_doubtful_line_goes_to_the_face_that_it_lies_on(add, house, factor, pr
     row = inner_row(house)
     found = add([], doubtful(house, row, factor, probability))
     assert found.kept.tolist() == [each != row or not moves for each in range(len(house.lines))]
-    assert [note[:8] for note in found.notes if "doubtful" in note] == ["1 lines "] * moves
+    assert [note[:8] for note in found.notes(found.lines.lines) if "doubtful" in note] == ["1 lines "] * moves
     if moves:
         wanted = house.lines.ends[row]
         back = [np.array(ends) for axis, ends in new(found) if axis == X]
@@ -200,6 +200,15 @@ def test_the_number_of_a_line_that_went_may_be_given_again_but_is_no_longer_in_i
         assert len(set(plane.lines)) == len(plane.lines)
         rows = np.flatnonzero(np.isin(after.id, plane.lines) & np.asarray(after.by_face))
         assert np.allclose(after.ends[rows][:, :, plane.axis], plane.offset)
+
+
+def test_the_notes_count_the_lines_that_are_left(add, house):
+    found = add([SILL, KERB], with_line(house, Z, POST, 1.4))
+    lines = found.lines.lines
+    by_face = int(lines.by_face.sum())
+    assert [note.split()[0] for note in found.notes(lines)] == [str(by_face - 1), "1"]
+    left = rows_of(lines, np.flatnonzero(~lines.by_face)[:5])
+    assert found.notes(left) == ()
 
 
 def test_a_post_that_a_person_said_something_of_stays(add, house):
@@ -258,4 +267,4 @@ def test_without_details_nothing_changes(house, planes, sight):
     assert found.lines is framed
     assert found.planes is planes
     assert found.kept.all()
-    assert found.notes == ()
+    assert found.notes(found.lines.lines) == ()

@@ -1,10 +1,13 @@
 """Lines that are one become one, ends meet, and nothing is bent, lost or torn apart."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linecad.arrays import rows_of
 from linecad.geometry import project
 from linecad.graph.connectivity import group_numbers
 from linecad.model.clean.clean import FARTHEST, clean_lines
@@ -157,17 +160,28 @@ def test_the_note_says_what_moved_and_how_far(lines):
         (Z, (-1, DEPTH, -1), (-1, DEPTH, 0.95)),
     ]
     found = cleaned(lines, rows)
-    assert found.note(found.lines, np.ones(len(found.lines), bool)) == (
+    assert found.note(np.ones(len(found.lines), bool), found.lines, found.lines) == (
         "1 lines that continue or repeat others were joined to them; planes that were nearly one became one, which "
         "moved lines by up to 0.04% of their depth; ends were moved along their lines to where "
         "these stop, 0 of 4 by more than 1%, at most by 0.5%"
     )
 
 
+def test_what_a_line_takes_in_is_no_end_that_was_moved(lines):
+    rows = [(X, (-2, DEPTH, 1), (0, DEPTH, 1)), (Z, (-1, DEPTH, -1), (-1, DEPTH, 0.95))]
+    found = cleaned(lines, rows)
+    longer = replace(found.lines, ends=found.lines.ends + np.array([[-1.0, 0, 0], [0, 0, 0]]))
+    both = np.ones(2, bool)
+    assert found.note(both, longer, longer) == found.note(both, found.lines, found.lines)
+    said = found.note(both, found.lines, longer)
+    assert said.endswith(f"1 of 4 by more than 1%, at most by {1 / DEPTH:.1%}")
+    assert found.note(np.array([False, True]), rows_of(longer, np.array([1])), rows_of(longer, np.array([1]))) != said
+
+
 def test_where_nothing_happens_nothing_is_said(lines):
     found = cleaned(lines, [(X, (-2, DEPTH, 1), (0, DEPTH, 1))])
-    assert found.note(found.lines, np.ones(len(found.lines), bool)) == ""
-    assert clean_lines(lines([]), NONE, SIGHT).note(lines([]), np.zeros(0, bool)) == ""
+    assert found.note(np.ones(len(found.lines), bool), found.lines, found.lines) == ""
+    assert clean_lines(lines([]), NONE, SIGHT).note(np.zeros(0, bool), lines([]), lines([])) == ""
 
 
 # --- properties ----------------------------------------------------------------------------------------------------
