@@ -143,10 +143,8 @@ def build_scene(
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     roofed = with_roofs(planes, regions.roofs, lines, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
-    notes = (
-        *_notes(view, graph, solution, found, depth_map),
-        *filter(None, [cleaned.note(on_faces.kept, on_faces.lines.lines, drawn.lines)]), *regions.notes, *holes.notes,
-    )  # fmt: skip
+    ends = cleaned.note(on_faces.kept, on_faces.lines.lines, drawn.lines)
+    notes = [*_notes(view, graph, solution, found, depth_map), ends, *regions.notes, *holes.notes]
     scene = Scene(
         photo=view.photo,
         camera=view.camera,
@@ -155,7 +153,7 @@ def build_scene(
         intersections=on_faces.crossings(cleaned.intersections),
         planes=roofed,
         solve=SolveReport.of(solution),
-        notes=(*notes, *disagreements(planes, lines, pairs, graph.turns)),
+        notes=(*filter(None, notes), *disagreements(planes, lines, pairs, graph.turns)),
         certainty=view.certainty,
         depth_map=depth_map,
         openings=openings,
