@@ -14,7 +14,7 @@ from linecad.arrays import Float
 from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.partition import polygons_of, positive_part
+from linecad.model.regions.partition import polygons_of, positive_part, without_holes
 from linecad.model.regions.roofs import Roof
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Face, FaceKind, Lines, Plane
@@ -59,6 +59,7 @@ def find_faces(
         seen = _beside(_before(whole, surface, depth, camera, axes), regions.roofs)
         for region in polygons_of(seen, LEAST_AREA * area):
             hidden = polygons_of(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
+            hidden = [piece for part in hidden for piece in without_holes(part)]  # a hidden part is one ring
             parts.append(_lifted(surface, region, hidden, camera, axes))
     parts = _snapped(parts, planes, lines)
     faces: dict[int, list[Face]] = {}

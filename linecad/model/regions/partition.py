@@ -62,6 +62,17 @@ def polygons_of(shape: shapely.Geometry, least: float = 0.0) -> list[shapely.Pol
     return [part for part in shapely.get_parts(shape) if isinstance(part, shapely.Polygon) and part.area >= least]
 
 
+def without_holes(shape: shapely.Polygon) -> list[shapely.Polygon]:
+    """Polygons without holes that a polygon is made of: cut upright through the middle of each hole."""
+    if not shape.interiors:
+        return [shape]
+    left, top, right, bottom = shape.bounds
+    at = shapely.Polygon(shape.interiors[0]).centroid.x
+    halves = (shapely.box(left, top, at, bottom), shapely.box(at, top, right, bottom))
+    parts = [part for half in halves for part in polygons_of(shapely.intersection(shape, half))]
+    return [piece for part in parts for piece in without_holes(part)]
+
+
 def positive_part(corners: Float, value: Float) -> shapely.Polygon:
     """The part of a convex polygon (V, 2) where a linear value, (V,) at its corners, is not below 0.
 

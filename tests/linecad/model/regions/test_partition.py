@@ -14,7 +14,9 @@ from linecad.model.regions.partition import (
     cut,
     draw,
     extended,
+    polygons_of,
     positive_part,
+    without_holes,
 )
 
 WIDTH, HEIGHT, STEP = 120, 90, 2.0
@@ -146,3 +148,13 @@ def test_the_positive_part_of_the_photo_is_what_lies_on_one_side_of_an_image_lin
     at = points / WIDTH @ line[:2] + line[2]
     clear = np.abs(at) > 1e-9
     assert (shapely.contains_xy(part, points)[clear] == (at[clear] > 0)).all()
+
+
+@given(st.lists(st.tuples(st.integers(1, 17), st.integers(1, 17)), max_size=4))
+def test_a_polygon_with_holes_is_polygons_without(places):
+    holes = shapely.union_all([shapely.box(x, y, x + 2.5, y + 1.5) for x, y in places])
+    (whole,) = polygons_of(shapely.difference(shapely.box(0, 0, 21, 21), holes))
+    pieces = without_holes(whole)
+    assert not any(piece.interiors for piece in pieces)
+    assert sum(piece.area for piece in pieces) == pytest.approx(whole.area)
+    assert shapely.union_all(pieces).symmetric_difference(whole).area < 1e-6
