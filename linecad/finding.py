@@ -133,7 +133,8 @@ def name_lines(
     details = None
     if with_details:
         on_stage("finding details")
-        details = _labelled(find_details(photo.grey), find_whole_details(photo.grey, camera, frame), camera, frames)
+        whole = find_whole_details(photo.grey, camera, frame)
+        details = _labelled(find_details(photo.pixels, photo.grey), whole, camera, frames)
     return FoundLines(
         camera, frame, pieces, calibrated.notes, certainty=calibrated.certainty, pixels=photo.pixels, details=details,
         raw=raw.ends,

@@ -17,8 +17,13 @@ from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
 from linecad.scene import Camera
 
+Pixels = NDArray[np.uint8]
+
 WIDTH = 1920  # px; wider photos are made smaller first, where a faint edge stands out from the grain
 WIDTH_OF_WHOLE = 960  # px, the same for whole lines through vanishing points
+WIDTH_OF_COLOURS = 960  # px; photos are stored with half of the resolution in colour
+CONTRAST = 9.0  # grey levels that one unit of a or b of CIE Lab counts as
+MIDDLE = 128.0  # grey level of the photo's median colour
 EVIDENCE = 40.0  # nats, of such a line
 ERROR = 1.0  # grey levels, by which the detector takes brightness to be off; half of what it usually does
 LEAST = 10.0  # px, of a fragment in the smaller photo
@@ -27,17 +32,17 @@ TWIN = PhotoLength(4.0, floor=2.0)  # px across, within which a segment repeats 
 LEAST_STRETCH = PhotoLength(20.0, floor=8.0)  # px; what is left of a segment beside others is not worth less
 
 
-def find_details(grey: NDArray[np.uint8]) -> Segments:
-    """The straight segments of a grey photo (H, W) down to the faint ones, not labelled yet."""
-    small, size = _smaller(grey, WIDTH)
-    detector = cv2.createLineSegmentDetector(cv2.LSD_REFINE_STD, scale=DETECTOR_SCALE, quant=ERROR)
-    found = detector.detect(small)[0]
-    ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
-    ends = ends[lengths(ends[:, 1] - ends[:, 0]) >= LEAST]
-    return Segments((ends + 0.5) * size - 0.5, np.full(len(ends), -1))
+def find_details(pixels: Pixels, grey: Pixels) -> Segments:
+    """The straight segments of a photo (H, W, 3) RGB and (H, W) grey down to the faint ones, not labelled yet.
+
+    Those of colour too: what differs in colour alone, as painted plaster does, is no edge in grey.
+    """
+    ends = [_detected(*_smaller(grey, WIDTH)), *(_detected(*colour) for colour in _colours(pixels))]
+    every = np.concatenate(ends)
+    return Segments(every, np.full(len(every), -1))
 
 
-def find_whole_details(grey: NDArray[np.uint8], camera: Camera, frame: ManhattanFrame) -> Segments:
+def find_whole_details(grey: Pixels, camera: Camera, frame: ManhattanFrame) -> Segments:
     """The lines through vanishing points of a grey photo (H, W), labelled, also where it is large.
 
     A long edge stands out by its length alone, though none of its fragments does.
@@ -49,13 +54,32 @@ def find_whole_details(grey: NDArray[np.uint8], camera: Camera, frame: Manhattan
     return Segments((found.ends + 0.5) * size - 0.5, found.axis)
 
 
-def _smaller(grey: NDArray[np.uint8], width: int) -> tuple[NDArray[np.uint8], Float]:
+def _detected(small: Pixels, size: Float) -> Float:
+    """The ends (N, 2, 2) of segments in a smaller photo, on the pixels of the photo itself."""
+    detector = cv2.createLineSegmentDetector(cv2.LSD_REFINE_STD, scale=DETECTOR_SCALE, quant=ERROR)
+    found = detector.detect(small)[0]
+    ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
+    ends = ends[lengths(ends[:, 1] - ends[:, 0]) >= LEAST]
+    on_photo: Float = (ends + 0.5) * size - 0.5
+    return on_photo
+
+
+def _colours(pixels: Pixels) -> list[tuple[Pixels, Float]]:
+    """What a photo shows in colour alone, green to red and blue to yellow, as grey photos; and sizes as `_smaller`."""
+    small, size = _smaller(pixels, WIDTH_OF_COLOURS)
+    lab = cv2.cvtColor(small.astype(np.float32) / 255, cv2.COLOR_RGB2Lab)
+    apart = (lab[..., 1:] - np.median(lab[..., 1:], axis=(0, 1))) * CONTRAST + MIDDLE
+    shades = np.clip(np.rint(apart), 0, 255).astype(np.uint8)
+    return [(np.ascontiguousarray(shades[..., channel]), size) for channel in range(2)]
+
+
+def _smaller(photo: Pixels, width: int) -> tuple[Pixels, Float]:
     """A photo of at most that width, px, and how many of its own pixels (2,) one of that is, across and down."""
-    scale = min(1.0, width / grey.shape[1])
+    scale = min(1.0, width / photo.shape[1])
     if scale == 1.0:
-        return grey, np.ones(2)
-    small = cv2.resize(grey, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
-    return np.asarray(small, np.uint8), np.array([grey.shape[1] / small.shape[1], grey.shape[0] / small.shape[0]])
+        return photo, np.ones(2)
+    small = cv2.resize(photo, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA)
+    return np.asarray(small, np.uint8), np.array([photo.shape[1] / small.shape[1], photo.shape[0] / small.shape[0]])
 
 
 def apart_from(segments: Segments, others: Segments, width: int) -> Segments:

@@ -1,5 +1,6 @@
 """Details: faint edges that are found at all, and segments apart from others."""
 
+import cv2
 import numpy as np
 import pytest
 from hypothesis import given
@@ -25,6 +26,19 @@ def grained(step, seed=3, width=WIDTH, height=HEIGHT):
     return grey.clip(0, 255).astype(np.uint8)
 
 
+def shown(grey):
+    """A photo without colour, and itself in grey."""
+    return np.repeat(grey[..., None], 3, axis=2), grey
+
+
+def painted(step, seed=5):
+    """A photo with grain whose lower half differs by `step` of b of CIE Lab, and nothing else."""
+    lab = np.zeros((HEIGHT, WIDTH, 3), np.float32)
+    lab[..., 0] = np.random.default_rng(seed).normal(60.0, 0.5, (HEIGHT, WIDTH))
+    lab[HEIGHT // 2 :, :, 2] += step
+    return np.rint(cv2.cvtColor(lab, cv2.COLOR_Lab2RGB) * 255).astype(np.uint8)
+
+
 def level(segments, at):
     """The length, px, of segments on the horizontal line `at`."""
     on = np.abs(segments.ends[..., 1] - at).max(axis=1) < 2.0
@@ -33,8 +47,22 @@ def level(segments, at):
 
 def test_details_show_more_of_a_faint_edge_than_segments_to_build_on():
     grey = grained(8.0)
-    assert level(find_details(grey), HEIGHT / 2 - 0.5) > 0.7 * WIDTH
+    assert level(find_details(*shown(grey)), HEIGHT / 2 - 0.5) > 0.7 * WIDTH
     assert level(find_segments(grey), HEIGHT / 2 - 0.5) == 0
+
+
+def test_an_edge_of_colour_alone_is_found():
+    photo = painted(12.0)
+    grey = cv2.cvtColor(photo, cv2.COLOR_RGB2GRAY)
+    without_colour = np.repeat(grey[..., None], 3, axis=2)
+    assert level(find_details(photo, grey), HEIGHT / 2 - 0.5) > 0.9 * WIDTH
+    assert level(find_details(without_colour, grey), HEIGHT / 2 - 0.5) < 0.2 * WIDTH
+
+
+def test_grain_without_colour_shows_no_edges_of_colour():
+    photo, grey = shown(grained(0.0))
+    blank = np.full_like(grey, 120)
+    assert len(find_details(photo, blank)) == 0
 
 
 def test_a_whole_line_stands_out_by_its_length_with_its_axis():
@@ -50,7 +78,7 @@ def test_details_are_in_the_pixels_of_the_photo(width):
     height = width // 2
     grey = np.full((height, width), 90, np.uint8)
     grey[:, width // 4 :] = 180
-    found = find_details(grey)
+    found = find_details(*shown(grey))
     assert len(found)
     assert (found.axis == -1).all()
     np.testing.assert_allclose(found.ends[..., 0], width // 4 - 0.5, atol=width / 1000)
