@@ -26,7 +26,7 @@ CONTRAST = 9.0  # grey levels that one unit of a or b of CIE Lab counts as
 MIDDLE = 128.0  # grey level of the photo's median colour
 EVIDENCE = 40.0  # nats, of such a line
 ERROR = 1.0  # grey levels, by which the detector takes brightness to be off; half of what it usually does
-LEAST = 10.0  # px, of a fragment in the smaller photo
+LEAST, LEAST_OF_COLOUR = 10.0, 16.0  # px, of a fragment in the smaller photo: stains differ in colour too
 DETECTOR_SCALE = 0.8
 TWIN = PhotoLength(4.0, floor=2.0)  # px across, within which a segment repeats another
 LEAST_STRETCH = PhotoLength(20.0, floor=8.0)  # px; what is left of a segment beside others is not worth less
@@ -37,7 +37,8 @@ def find_details(pixels: Pixels, grey: Pixels) -> Segments:
 
     Those of colour too: what differs in colour alone, as painted plaster does, is no edge in grey.
     """
-    ends = [_detected(*_smaller(grey, WIDTH)), *(_detected(*colour) for colour in _colours(pixels))]
+    ends = [_detected(*_smaller(grey, WIDTH), LEAST)]
+    ends += [_detected(*colour, LEAST_OF_COLOUR) for colour in _colours(pixels)]
     every = np.concatenate(ends)
     return Segments(every, np.full(len(every), -1))
 
@@ -54,12 +55,12 @@ def find_whole_details(grey: Pixels, camera: Camera, frame: ManhattanFrame) -> S
     return Segments((found.ends + 0.5) * size - 0.5, found.axis)
 
 
-def _detected(small: Pixels, size: Float) -> Float:
-    """The ends (N, 2, 2) of segments in a smaller photo, on the pixels of the photo itself."""
+def _detected(small: Pixels, size: Float, least: float) -> Float:
+    """The ends (N, 2, 2) of segments of `least` px or more in a smaller photo, on the pixels of the photo itself."""
     detector = cv2.createLineSegmentDetector(cv2.LSD_REFINE_STD, scale=DETECTOR_SCALE, quant=ERROR)
     found = detector.detect(small)[0]
     ends = np.zeros((0, 2, 2)) if found is None else found.reshape(-1, 2, 2).astype(float)
-    ends = ends[lengths(ends[:, 1] - ends[:, 0]) >= LEAST]
+    ends = ends[lengths(ends[:, 1] - ends[:, 0]) >= least]
     on_photo: Float = (ends + 0.5) * size - 0.5
     return on_photo
 
