@@ -21,10 +21,10 @@ Pixels = NDArray[np.uint8]
 
 WIDTH = 1920  # px; wider photos are made smaller first, where a faint edge stands out from the grain
 WIDTH_OF_WHOLE = 960  # px, the same for whole lines through vanishing points
+EVIDENCE = 40.0  # nats, of such a line
 WIDTH_OF_COLOURS = 960  # px; photos are stored with half of the resolution in colour
 CONTRAST = 9.0  # grey levels that one unit of a or b of CIE Lab counts as
 MIDDLE = 128.0  # grey level of the photo's median colour
-EVIDENCE = 40.0  # nats, of such a line
 ERROR = 1.0  # grey levels, by which the detector takes brightness to be off; half of what it usually does
 LEAST, LEAST_OF_COLOUR = 10.0, 16.0  # px, of a fragment in the smaller photo: stains differ in colour too
 DETECTOR_SCALE = 0.8
