@@ -161,11 +161,13 @@ def segment_coordinates(points: Float, ends: Float) -> tuple[Float, Float]:
     Points and segments are broadcast against each other; `beside` is positive to the right of a segment in the photo
     (x right, y down). A segment without length has no direction: both values are 0.
     """
-    along = ends[..., 1, :] - ends[..., 0, :]
-    along = along / np.maximum(np.linalg.norm(along, axis=-1, keepdims=True), np.finfo(float).tiny)
-    off = points - ends[..., 0, :]
-    place: Float = (off * along).sum(axis=-1)
-    beside: Float = along[..., 0] * off[..., 1] - along[..., 1] * off[..., 0]
+    start, along = ends[..., 0, :], ends[..., 1, :] - ends[..., 0, :]
+    # Written out by coordinates: sums over an axis of two take several times as long.
+    length = np.maximum(lengths(along), np.finfo(float).tiny)
+    along_x, along_y = along[..., 0] / length, along[..., 1] / length
+    off_x, off_y = points[..., 0] - start[..., 0], points[..., 1] - start[..., 1]
+    place: Float = off_x * along_x + off_y * along_y
+    beside: Float = along_x * off_y - along_y * off_x
     return place, beside
 
 

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Float
+from linecad.arrays import Float, Int
 from linecad.geometry import PhotoLength, lengths, resized_camera, segment_coordinates
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
@@ -29,6 +29,7 @@ ERROR = 1.0  # grey levels, by which the detector takes brightness to be off; ha
 LEAST, LEAST_OF_COLOUR = 10.0, 16.0  # px, of a fragment in the smaller photo: stains differ in colour too
 DETECTOR_SCALE = 0.8
 TWIN = PhotoLength(4.0, floor=2.0)  # px across, within which a segment repeats another
+AT_ONCE = 64  # segments that are compared with all others, so that the arrays stay in fast memory
 LEAST_STRETCH = PhotoLength(20.0, floor=8.0)  # px; what is left of a segment beside others is not worth less
 
 
@@ -88,26 +89,59 @@ def apart_from(segments: Segments, others: Segments, width: int) -> Segments:
 
     A segment may leave several stretches.
     """
-    across, least = TWIN.px(width), LEAST_STRETCH.px(width)
+    return left_of(segments, repeats(segments, others, width), width)
+
+
+Runs = list[list[tuple[float, float]]]  # of each of N segments, px from its first end on
+
+
+def repeats(segments: Segments, others: Segments, width: int) -> Runs:
+    """From where to where along segments (N) any of the others of their axis runs beside them."""
+    found: Runs = [[] for _ in range(len(segments))]
+    across = TWIN.px(width)
+    row, other = _near(segments, others, across)
+    place, beside = segment_coordinates(others.ends[other], segments.ends[row, None])
+    low, high = place.min(axis=1), place.max(axis=1)
+    runs = (np.abs(beside) <= across).all(axis=1) & (high > 0) & (low < segments.length[row])
+    for each, start, end in zip(row[runs].tolist(), low[runs].tolist(), high[runs].tolist(), strict=True):
+        found[each].append((start, end))
+    return found
+
+
+def left_of(segments: Segments, covered: Runs, width: int) -> Segments:
+    """The stretches of segments (N) that are not `covered` and worth a line in a photo of that width."""
+    least = LEAST_STRETCH.px(width)
     ends: list[Float] = []
-    axes: list[int] = []
-    for own, axis in zip(segments.ends, segments.axis.tolist(), strict=True):
-        along = (own[1] - own[0]) / max(float(np.linalg.norm(own[1] - own[0])), np.finfo(float).tiny)
-        for low, high in _left(own, others.ends[others.axis == axis], across):
+    rows: list[int] = []
+    for row, (length, runs) in enumerate(zip(segments.length.tolist(), covered, strict=True)):
+        for low, high in _gaps(length, runs):
             if high - low >= least:
-                ends.append(own[0] + np.array([[low], [high]]) * along)
-                axes.append(axis)
-    return Segments(np.array(ends).reshape(-1, 2, 2), np.array(axes, np.int64))
+                start, along = segments.ends[row, 0], segments.ends[row, 1] - segments.ends[row, 0]
+                ends.append(start + np.array([[low], [high]]) * (along / length))
+                rows.append(row)
+    return Segments(np.array(ends).reshape(-1, 2, 2), segments.axis[np.array(rows, np.int64)])
 
 
-def _left(segment: Float, others: Float, across: float) -> Iterable[tuple[float, float]]:
-    """From where to where along a segment (2, 2), px, none of the others (N, 2, 2) runs beside it."""
-    length = float(np.linalg.norm(segment[1] - segment[0]))
-    place, beside = segment_coordinates(others, segment)
-    low, high = np.sort(place, axis=1).T
-    runs = (np.abs(beside) <= across).all(axis=1) & (high > 0) & (low < length)
+def _near(segments: Segments, others: Segments, across: float) -> tuple[Int, Int]:
+    """Pairs of a segment and another of its axis whose boxes come so near, px; by segment."""
+    low, high = (reach(segments.ends, axis=1) for reach in (np.min, np.max))
+    other_low, other_high = (reach(others.ends, axis=1) for reach in (np.min, np.max))
+    pairs = [np.zeros((0, 2), np.int64)]
+    for start in range(0, len(segments), AT_ONCE):
+        few = np.s_[start : start + AT_ONCE]
+        near = segments.axis[few, None] == others.axis
+        for side in range(2):
+            near &= low[few, None, side] - across <= other_high[:, side]
+            near &= high[few, None, side] + across >= other_low[:, side]
+        pairs.append(np.argwhere(near) + [start, 0])
+    row, other = np.concatenate(pairs).T
+    return row, other
+
+
+def _gaps(length: float, covered: list[tuple[float, float]]) -> Iterable[tuple[float, float]]:
+    """From where to where along a segment of that length nothing is `covered`."""
     at = 0.0
-    for start, end in sorted(zip(low[runs].tolist(), high[runs].tolist(), strict=True)):
+    for start, end in sorted(covered):
         if start > at:
             yield at, start
         at = max(at, end)

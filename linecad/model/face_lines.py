@@ -12,7 +12,7 @@ from linecad.arrays import Bool, Float, Int, rows_of
 from linecad.directions import Turns, frame_axes
 from linecad.graph.connectivity import spanning_forest
 from linecad.line_graph import Segments
-from linecad.lines.details import apart_from
+from linecad.lines.details import apart_from, left_of, repeats
 from linecad.model.clean.absorbing import absorbed
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, sight_in, together
@@ -164,9 +164,13 @@ def _as_shown(framed: FramedLines) -> Segments:
 
 def _one_by_one(edges: Segments, face: Int, taken: Segments, camera: Camera) -> tuple[Segments, Int]:
     """The edges apart from lines `taken` and from each other, the longest first."""
-    kept, faces = Segments.none(), [np.zeros(0, np.int64)]
-    for row in np.argsort(-edges.length, kind="stable").tolist():
-        left = apart_from(edges.subset(np.array([row])), taken.joined(kept), camera.width)
+    order = np.argsort(-edges.length, kind="stable")
+    edges, face = edges.subset(order), face[order]
+    covered, kept, faces = repeats(edges, taken, camera.width), Segments.none(), [np.zeros(0, np.int64)]
+    for row in range(len(edges)):
+        edge = edges.subset(np.array([row]))
+        runs = covered[row] + repeats(edge, kept, camera.width)[0]
+        left = left_of(edge, [runs], camera.width)
         kept = kept.joined(left)
         faces.append(np.full(len(left), face[row]))
     return kept, np.concatenate(faces)

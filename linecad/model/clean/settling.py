@@ -115,25 +115,22 @@ def _seen(outlines: Float, sight: Sight) -> tuple[Float, Float]:
 def _outlines_on(strokes: Strokes, line: Int, edges: Float, depths: Float, sight: Sight) -> Float:
     """Where (P, E) along lines (P,) they cross edges in the photo that are not behind them; nan for nowhere."""
     ends = sight.pixels(strokes.points(strokes.reach))[line]  # (P, 2, 2)
-    start, along = ends[:, None, 0], (ends[:, 1] - ends[:, 0])[:, None]
-    first, across = edges[None, :, 0], (edges[:, 1] - edges[:, 0])[None]
+    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
+    first, across = edges[:, 0], edges[:, 1] - edges[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):
-        turn = _cross(along, across)
-        share = _cross(start - first, along) / -turn  # along the edge
-        pixel = first + share[..., None] * across
-        row, edge = np.nonzero((share >= -MEETS) & (share <= 1 + MEETS) & np.isfinite(pixel).all(axis=2))
+        turn = along[:, :1] * across[:, 1] - along[:, 1:] * across[:, 0]
+        off_x, off_y = (start[:, axis, None] - first[:, axis] for axis in range(2))
+        share = (off_x * along[:, 1:] - off_y * along[:, :1]) / -turn  # along the edge
+        row, edge = np.nonzero((share >= -MEETS) & (share <= 1 + MEETS))
+        pixel = first[edge] + share[row, edge, None] * across[edge]
+    seen = np.isfinite(pixel).all(axis=1)
+    row, edge, pixel = row[seen], edge[seen], pixel[seen]
     place = np.full(turn.shape, np.nan)
     own = line[row]
-    rays = world_rays(pixel[row, edge], sight.matrix, sight.rotation)
+    rays = world_rays(pixel, sight.matrix, sight.rotation)
     depth = depths_beside(rays, strokes.offset[own], strokes.axis[own])
     near, far = depths[edge].T
     behind = 1 / ((1 - share[row, edge]) / near + share[row, edge] / far) > depth * (1 + NEAR)
     keeps = (depth > NEAREST) & ~behind
     place[row[keeps], edge[keeps]] = (rays[np.arange(len(row)), strokes.axis[own]] * depth)[keeps]
     return place
-
-
-def _cross(first: Float, second: Float) -> Float:
-    """The turn from one vector (..., 2) to another."""
-    turn: Float = first[..., 0] * second[..., 1] - first[..., 1] * second[..., 0]
-    return turn

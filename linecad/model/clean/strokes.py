@@ -131,12 +131,12 @@ def parallel_pairs(strokes: Strokes, share: float) -> tuple[Int, Int, Float, Flo
         firsts.append(own[first])
         seconds.append(own[second])
     first, second = np.concatenate(firsts), np.concatenate(seconds)
-    same = (strokes.component[first] == strokes.component[second]) & (first != second)
-    count = np.int64(max(len(strokes.axis), 1))
-    both = np.unique((np.minimum(first, second) * count + np.maximum(first, second))[same])
-    first, second = both // count, both % count
+    # Each line finds the other where both are near by its own depth, so one way round is enough.
+    same = (strokes.component[first] == strokes.component[second]) & (first < second)
+    first, second = first[same], second[same]
     apart = np.linalg.norm(strokes.offset[first] - strokes.offset[second], axis=1)
-    near = apart <= share * np.minimum(depth[first], depth[second])
+    near = np.flatnonzero(apart <= share * np.minimum(depth[first], depth[second]))
+    near = near[np.lexsort((second[near], first[near]))]
     first, second, apart = first[near], second[near], apart[near]
     low, high = strokes.reach.T
     overlap = np.minimum(high[first], high[second]) - np.maximum(low[first], low[second])
