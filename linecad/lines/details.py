@@ -133,7 +133,7 @@ def _near(segments: Segments, others: Segments, across: float) -> tuple[Int, Int
         for side in range(2):
             near &= low[few, None, side] - across <= other_high[:, side]
             near &= high[few, None, side] + across >= other_low[:, side]
-        pairs.append(np.argwhere(near) + [start, 0])
+        pairs.append(np.argwhere(near) + np.array([start, 0]))
     row, other = np.concatenate(pairs).T
     return row, other
 
