@@ -6,11 +6,12 @@ not decided. The upright may move with the frames, the camera is known.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.camera.joint_fit import FREEDOM, View, angles_against, slope_by, student
+from linecad.camera.joint_fit import FREEDOM, Angles, View, angles_against, coordinates, student
 from linecad.geometry import rotation_about
 
 GRID = np.radians(np.arange(0.0, 90.0, 0.5))  # turns at which a further frame is looked for
@@ -33,14 +34,19 @@ class Observed:
     width: int
     height: int
 
-    def against(self, directions: Float) -> tuple[Float, Float, Float, Float, Float]:
+    @cached_property
+    def _places(self) -> Float:
+        """(2, 2, N) px, the `coordinates` of the segments."""
+        return coordinates(self.ends)
+
+    def against(self, directions: Float) -> Angles:
         """`angles_against` unit directions (M, 3) in the camera frame."""
-        return angles_against(self.ends, View(directions, self.focal, self.center), self.width, self.height)
+        return angles_against(self._places, View(directions, self.focal, self.center), self.width, self.height)
 
     def density(self, directions: Float) -> Float:
         """Densities (M, N) of the segments along unit directions (M, 3) in the camera frame."""
-        sine, scale, *_ = self.against(directions)
-        return student(sine / scale) / scale
+        angles = self.against(directions)
+        return student(angles.sine / angles.scale) / angles.scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +106,8 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
     rotation, turns, share = start.rotation, start.turns, start.share
     for _ in range(ROUNDS):
         directions = np.concatenate([rotation[:, 2][None], level_directions(rotation, turns)])
-        sine, scale, cosine, towards, middle = seen.against(directions)
+        angles = seen.against(directions)
+        sine, scale = angles.sine, angles.scale
         likely = share[:, None] * np.vstack([student(sine / scale) / scale, np.full((1, len(seen.ends)), 1 / np.pi)])
         density = likely.sum(axis=0)
         belongs = likely / density
@@ -114,7 +121,7 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
             change[own] = np.cross(rotation[:, 2], directions[own])
             changes.append(change)
         K = View(directions, seen.focal, seen.center).matrix
-        slope = np.stack([slope_by(change @ K.T, cosine, towards, middle) for change in changes])
+        slope = np.stack([angles.slope(change @ K.T) for change in changes])
         flat = slope.reshape(len(slope), -1)
         system = (flat * say.ravel()) @ flat.T + 1e-9 * np.eye(len(flat))
         inverse = np.linalg.inv(system)
