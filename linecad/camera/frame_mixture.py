@@ -16,6 +16,7 @@ from linecad.geometry import rotation_about
 
 GRID = np.radians(np.arange(0.0, 90.0, 0.5))  # turns at which a further frame is looked for
 FIRST_SHARE = 0.05  # of the segments, of either direction of a frame that is tried
+DENSITIES = 2**16  # looked at together on the grid: more would not fit into a processor's cache
 GRID_ROUNDS = 6  # of expectation maximisation of the shares on the grid
 SHARE_ROUNDS = 10
 ROUNDS = 30  # of the whole fit
@@ -135,9 +136,15 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
 
 def gains_on_grid(seen: Observed, mixture: Mixture) -> Float:
     """By how much, nats, one frame more at each turn of GRID makes the segments likelier; the others stay."""
-    density = seen.density(level_directions(mixture.rotation, GRID)) / mixture.density
+    some = max(1, DENSITIES // (2 * len(seen.ends)))
+    return np.concatenate([_gains(seen, mixture, GRID[first : first + some]) for first in range(0, len(GRID), some)])
+
+
+def _gains(seen: Observed, mixture: Mixture, turns: Float) -> Float:
+    """The same at some turns (T,)."""
+    density = seen.density(level_directions(mixture.rotation, turns)) / mixture.density
     first, second = density[0::2], density[1::2]
-    share = np.full((2, len(GRID)), FIRST_SHARE / 2)
+    share = np.full((2, len(turns)), FIRST_SHARE / 2)
     for _ in range(GRID_ROUNDS):
         left = 1 - share.sum(axis=0)
         total = left[:, None] + share[0][:, None] * first + share[1][:, None] * second
