@@ -163,19 +163,22 @@ def _runs(evidence: Float32) -> tuple[Int, Int, Int]:
     rows, columns = evidence.shape
     by_column = cv2.transpose(evidence)
     off, on = np.zeros(rows, np.float32), np.full(rows, -np.inf, np.float32)
-    switched_on, switched_off = np.zeros((columns, rows), bool), np.zeros((columns, rows), bool)
+    stayed_on, switched_off = np.zeros((columns, rows), bool), np.zeros((columns, rows), bool)
     for column in range(columns):
         starting = off - np.float32(START)
-        switched_off[column] = on > off
-        switched_on[column] = starting > on
-        off, on = np.maximum(off, on), np.maximum(starting, on) + by_column[column]
+        np.greater(on, off, out=switched_off[column])
+        np.greater_equal(on, starting, out=stayed_on[column])
+        np.maximum(off, on, out=off)
+        np.maximum(starting, on, out=on)
+        on += by_column[column]
     state = on > off
     is_on = np.zeros((columns + 2, rows), bool)
     for column in range(columns - 1, -1, -1):
         is_on[column + 1] = state
-        state = np.where(state, ~switched_on[column], switched_off[column])
-    start, row = np.nonzero(is_on[1:] & ~is_on[:-1])
-    end, same = np.nonzero(is_on[:-1] & ~is_on[1:])
+        state = np.where(state, stayed_on[column], switched_off[column])
+    # NumPy finds what is true in one row of numbers several times as fast as in a table.
+    start, row = np.divmod(np.flatnonzero(is_on[1:] & ~is_on[:-1]), rows)
+    end, same = np.divmod(np.flatnonzero(is_on[:-1] & ~is_on[1:]), rows)
     by_row, ends_by_row = np.argsort(row, kind="stable"), np.argsort(same, kind="stable")
     return row[by_row], start[by_row], end[ends_by_row] - 1
 
