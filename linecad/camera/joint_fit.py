@@ -148,11 +148,11 @@ def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, it
         share /= share.sum()
         say = belongs[:3] * (FREEDOM + 1) / (FREEDOM + (sine / scale) ** 2) / scale**2
         system, pull = np.zeros((unknowns, unknowns)), np.zeros(unknowns)
+        columns = np.stack([*slope, *slope[TURNS]], axis=-1)  # the turn of its own moves an axis as that of the frame
         for axis in range(3):
             which = np.r_[np.arange(len(free)), len(free) + 3 * axis + np.arange(3)]
-            rows = np.concatenate([slope[:, axis], slope[TURNS, axis]])
-            system[np.ix_(which, which)] += (rows * say[axis]) @ rows.T
-            pull[which] += rows @ (say[axis] * sine[axis])
+            system[np.ix_(which, which)] += (columns[axis] * say[axis][:, None]).T @ columns[axis]
+            pull[which] += columns[axis].T @ (say[axis] * sine[axis])
         off = np.zeros(PARAMETERS)
         off[FOCAL] = np.log(view.focal / prior.focal)
         off[[CENTER_X, CENTER_Y]] = (view.center - prior.center) / size
