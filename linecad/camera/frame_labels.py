@@ -33,7 +33,7 @@ def label_by_frames(segments: Segments, camera: Camera, frames: HorizontalFrames
     share = _local_shares(segments, density, frames.shares)
     label = (share * density).argmax(axis=0)
     is_along = label < len(directions)
-    sine = np.abs(seen.against(directions)[0])
+    sine = np.abs(seen.against(directions).sine)
     angle = np.take_along_axis(sine, np.where(is_along, label, 0)[None], axis=0)[0]
     labels: Int = np.where(is_along & (angle < np.sin(label_angle(camera.width))), label, -1)
     return labels

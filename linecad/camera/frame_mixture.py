@@ -6,15 +6,17 @@ not decided. The upright may move with the frames, the camera is known.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.camera.joint_fit import FREEDOM, View, angles_against, slope_by, student
+from linecad.camera.joint_fit import FREEDOM, Angles, View, angles_against, coordinates, student
 from linecad.geometry import rotation_about
 
 GRID = np.radians(np.arange(0.0, 90.0, 0.5))  # turns at which a further frame is looked for
 FIRST_SHARE = 0.05  # of the segments, of either direction of a frame that is tried
+DENSITIES = 2**16  # looked at together on the grid: more would not fit into a processor's cache
 GRID_ROUNDS = 6  # of expectation maximisation of the shares on the grid
 SHARE_ROUNDS = 10
 ROUNDS = 30  # of the whole fit
@@ -33,14 +35,19 @@ class Observed:
     width: int
     height: int
 
-    def against(self, directions: Float) -> tuple[Float, Float, Float, Float, Float]:
+    @cached_property
+    def _places(self) -> Float:
+        """(2, 2, N) px, the `coordinates` of the segments."""
+        return coordinates(self.ends)
+
+    def against(self, directions: Float) -> Angles:
         """`angles_against` unit directions (M, 3) in the camera frame."""
-        return angles_against(self.ends, View(directions, self.focal, self.center), self.width, self.height)
+        return angles_against(self._places, View(directions, self.focal, self.center), self.width, self.height)
 
     def density(self, directions: Float) -> Float:
         """Densities (M, N) of the segments along unit directions (M, 3) in the camera frame."""
-        sine, scale, *_ = self.against(directions)
-        return student(sine / scale) / scale
+        angles = self.against(directions)
+        return student(angles.sine / angles.scale) / angles.scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,7 +107,8 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
     rotation, turns, share = start.rotation, start.turns, start.share
     for _ in range(ROUNDS):
         directions = np.concatenate([rotation[:, 2][None], level_directions(rotation, turns)])
-        sine, scale, cosine, towards, middle = seen.against(directions)
+        angles = seen.against(directions)
+        sine, scale = angles.sine, angles.scale
         likely = share[:, None] * np.vstack([student(sine / scale) / scale, np.full((1, len(seen.ends)), 1 / np.pi)])
         density = likely.sum(axis=0)
         belongs = likely / density
@@ -114,7 +122,7 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
             change[own] = np.cross(rotation[:, 2], directions[own])
             changes.append(change)
         K = View(directions, seen.focal, seen.center).matrix
-        slope = np.stack([slope_by(change @ K.T, cosine, towards, middle) for change in changes])
+        slope = np.stack([angles.slope(change @ K.T) for change in changes])
         flat = slope.reshape(len(slope), -1)
         system = (flat * say.ravel()) @ flat.T + 1e-9 * np.eye(len(flat))
         inverse = np.linalg.inv(system)
@@ -128,9 +136,15 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
 
 def gains_on_grid(seen: Observed, mixture: Mixture) -> Float:
     """By how much, nats, one frame more at each turn of GRID makes the segments likelier; the others stay."""
-    density = seen.density(level_directions(mixture.rotation, GRID)) / mixture.density
+    some = max(1, DENSITIES // (2 * len(seen.ends)))
+    return np.concatenate([_gains(seen, mixture, GRID[first : first + some]) for first in range(0, len(GRID), some)])
+
+
+def _gains(seen: Observed, mixture: Mixture, turns: Float) -> Float:
+    """The same at some turns (T,)."""
+    density = seen.density(level_directions(mixture.rotation, turns)) / mixture.density
     first, second = density[0::2], density[1::2]
-    share = np.full((2, len(GRID)), FIRST_SHARE / 2)
+    share = np.full((2, len(turns)), FIRST_SHARE / 2)
     for _ in range(GRID_ROUNDS):
         left = 1 - share.sum(axis=0)
         total = left[:, None] + share[0][:, None] * first + share[1][:, None] * second

@@ -254,7 +254,7 @@ def _described(
 def _labelled(segments: Segments, camera: Camera, directions: Float, share: Float) -> Int:
     """(N,) the row of `directions` (M, 3) that each segment most likely runs along, or -1; `share` is (M + 1,)."""
     seen = _observed(segments.ends, camera)
-    sine = np.abs(seen.against(directions)[0])
+    sine = np.abs(seen.against(directions).sine)
     likely = np.vstack([share[:-1, None] * seen.density(directions), np.full((1, len(segments)), share[-1] / np.pi)])
     label = likely.argmax(axis=0)
     is_along = label < len(directions)

@@ -11,11 +11,12 @@ outvote one with ten, and the standard errors do not shrink below what the scene
 """
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.geometry import lengths, middles, rotation_about
+from linecad.geometry import rotation_about
 
 FREEDOM = 1.0  # degrees of freedom of Student's t: few, as detectors err far more often than by their usual error
 ANGLE_NOISE = 0.3  # px rad: the angle of a segment of L px is off by this over L ..
@@ -36,6 +37,7 @@ INVERSIONS = 12  # rounds of the fixed point that undoes a distortion
 
 TURNS, FOCAL, CENTER_X, CENTER_Y, RADIAL = slice(0, 3), 3, 4, 5, 6  # places of the parameters
 PARAMETERS = 7
+TURNING = np.cross(np.eye(3)[:, None], np.eye(3))  # times axes (M, 3): how they go with turns about x, y and z
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,13 +106,23 @@ def undistorted(points: Float, radial: float, center: Float, width: int, height:
     """
     if radial == 0.0:
         return points
-    half = np.hypot(width, height) / 2
-    taken = (points - center) / half
-    straight = taken
-    for _ in range(INVERSIONS):
-        straight = taken / (1 + radial * (straight**2).sum(axis=-1, keepdims=True))
-    result: Float = straight * half + center
-    return result
+    half = float(np.hypot(width, height)) / 2
+    return np.stack(_straight(points[..., 0], points[..., 1], radial, center, half), axis=-1)
+
+
+def _straight(x: Float, y: Float, radial: float, center: Float, half: float) -> tuple[Float, Float]:
+    """The same of coordinates (...) px in a photo whose half diagonal is `half` px."""
+    if radial == 0.0:
+        return x, y
+    x, y = (x - center[0]) / half, (y - center[1]) / half
+    taken = x * x + y * y
+    squared = taken
+    # The distortion moves points along rays from the center, so a fixed point of the squared radius tells all.
+    for _ in range(INVERSIONS - 1):
+        moved = 1 + radial * squared
+        squared = taken / (moved * moved)
+    moved = (1 + radial * squared) / half
+    return x / moved + center[0], y / moved + center[1]
 
 
 def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, iterations: int = ITERATIONS) -> Fit:
@@ -123,10 +135,11 @@ def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, it
     view, turns, turn = start, np.zeros((3, 3)), USUAL_TURN
     share = np.array(FIRST_SHARES)
     unknowns = len(free) + 9
+    places = coordinates(ends)
     for iteration in range(iterations):
         wider = max(FIRST_SCALE * SCALE_DECAY**iteration, 1.0)
         own = replace(view, axes=_turned(view.axes, turns))
-        sine, scale, slope = _angles(ends, own, width, height, free)
+        sine, scale, slope = _angles(places, own, width, height, free)
         scale = scale * wider
         density = student(sine / scale) / scale
         likely = np.vstack([share[:3, None] * density, np.full((1, len(ends)), share[3] / np.pi)])
@@ -135,11 +148,11 @@ def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, it
         share /= share.sum()
         say = belongs[:3] * (FREEDOM + 1) / (FREEDOM + (sine / scale) ** 2) / scale**2
         system, pull = np.zeros((unknowns, unknowns)), np.zeros(unknowns)
+        columns = np.stack([*slope, *slope[TURNS]], axis=-1)  # the turn of its own moves an axis as that of the frame
         for axis in range(3):
-            places = np.r_[np.arange(len(free)), len(free) + 3 * axis + np.arange(3)]
-            columns = np.concatenate([slope[axis], slope[axis][:, TURNS]], axis=1)
-            system[np.ix_(places, places)] += (columns * say[axis][:, None]).T @ columns
-            pull[places] += columns.T @ (say[axis] * sine[axis])
+            which = np.r_[np.arange(len(free)), len(free) + 3 * axis + np.arange(3)]
+            system[np.ix_(which, which)] += (columns[axis] * say[axis][:, None]).T @ columns[axis]
+            pull[which] += columns[axis].T @ (say[axis] * sine[axis])
         off = np.zeros(PARAMETERS)
         off[FOCAL] = np.log(view.focal / prior.focal)
         off[[CENTER_X, CENTER_Y]] = (view.center - prior.center) / size
@@ -181,61 +194,86 @@ def student(ratio: Float) -> Float:
     return density
 
 
-def _angles(ends: Float, view: View, width: int, height: int, free: "np.ndarray") -> tuple[Float, Float, Float]:
+def coordinates(ends: Float) -> Float:
+    """Segments (N, 2, 2) as (2, 2, N): x and y, of the starts and the ends, each in one piece of memory."""
+    # NumPy takes several times as long over pairs of numbers.
+    return np.ascontiguousarray(ends.T)
+
+
+@dataclass(frozen=True, eq=False)
+class Angles:
+    """How N segments lie against the directions to M vanishing points."""
+
+    middle: Float  # (2, N) px
+    along: Float  # (2, N) unit vectors
+    length: Float  # (N,) px
+    points: Float  # (M, 3) the vanishing points, homogeneous
+    towards: Float  # (2, M, N) vectors from the middles to them
+    square: Float  # (M, N) of the lengths of these
+    distance: Float  # (M, N) these lengths, never 0
+
+    @cached_property
+    def sine(self) -> Float:
+        """(M, N) signed."""
+        sine: Float = (self.towards[1] * self.along[0] - self.towards[0] * self.along[1]) / self.distance
+        return sine
+
+    @cached_property
+    def cosine(self) -> Float:
+        """(M, N) signed."""
+        cosine: Float = (self.towards[0] * self.along[0] + self.towards[1] * self.along[1]) / self.distance
+        return cosine
+
+    @cached_property
+    def scale(self) -> Float:
+        """(M, N) rad, of the distribution of the angles."""
+        near = PLACE_NOISE * np.abs(self.points[:, 2:]) / self.distance
+        scale: Float = np.sqrt(ANGLE_FLOOR**2 + (ANGLE_NOISE / self.length) ** 2 + near**2)
+        return scale
+
+    def slope(self, change: Float) -> Float:
+        """Slope (M, N) of the sines where the vanishing points change by `change` (M, 3)."""
+        moved_x, moved_y = (change[:, at, None] - self.middle[at] * change[:, 2:] for at in range(2))
+        slope: Float = self.cosine * (self.towards[0] * moved_y - self.towards[1] * moved_x) / self.square
+        return slope
+
+
+def angles_against(places: Float, view: View, width: int, height: int) -> Angles:
+    """The angles of segments, as `coordinates` (2, 2, N) px, against the axes of a view, of any number M."""
+    half = float(np.hypot(width, height)) / 2
+    (start_x, end_x), (start_y, end_y) = _straight(places[0], places[1], view.radial, view.center, half)
+    middle = np.stack([start_x + end_x, start_y + end_y]) / 2
+    along = np.stack([end_x - start_x, end_y - start_y])
+    length = np.sqrt(along[0] * along[0] + along[1] * along[1])
+    points = view.axes @ view.matrix.T
+    towards = np.stack([points[:, at, None] - middle[at] * points[:, 2:] for at in range(2)])
+    square = towards[0] * towards[0] + towards[1] * towards[1]
+    distance = np.maximum(np.sqrt(square), np.finfo(float).tiny)
+    return Angles(middle, along / length, length, points, towards, square, distance)
+
+
+def _angles(places: Float, view: View, width: int, height: int, free: "np.ndarray") -> tuple[Float, Float, Float]:
     """Sines (3, N) of the angles between segments and the directions to the axes, their scales and slopes.
 
-    The slopes (3, N, F) are by the `free` parameters.
+    The segments are `coordinates` (2, 2, N) px, the slopes (F, 3, N) by the `free` parameters.
     """
-    sine, scale, cosine, towards, middle = angles_against(ends, view, width, height)
+    seen = angles_against(places, view, width, height)
     size, K = float(max(width, height)), view.matrix
-
-    def by(change: Float) -> Float:
-        """Slope of the sine where the vanishing points (3, 3) change so."""
-        return slope_by(change, cosine, towards, middle)
-
-    changes = [by(np.cross(turn, view.axes) @ K.T) for turn in np.eye(3)]
-    for parameter in free[3:]:
-        if parameter == RADIAL or (parameter != FOCAL and RADIAL in free):
+    slopes = np.empty((len(free), *seen.sine.shape))
+    for number, parameter in enumerate(free):
+        if parameter < FOCAL:
+            slopes[number] = seen.slope(view.axes @ TURNING[parameter] @ K.T)
+        elif parameter == RADIAL or (parameter != FOCAL and RADIAL in free):
             # The center of the distortion moves with the principal point.
             step = np.zeros(PARAMETERS)
             step[parameter] = RADIAL_STEP
-            there = angles_against(ends, view.moved(step, size), width, height)[0]
-            changes.append((there - sine) / RADIAL_STEP)
-            continue
-        change = np.zeros((3, 3))
-        if parameter == FOCAL:
-            change[0, 0] = change[1, 1] = view.focal
+            there = angles_against(places, view.moved(step, size), width, height)
+            slopes[number] = (there.sine - seen.sine) / RADIAL_STEP
         else:
-            change[parameter - CENTER_X, 2] = size
-        changes.append(by(view.axes @ change.T))
-    return sine, scale, np.stack(changes, axis=-1)
-
-
-def slope_by(change: Float, cosine: Float, towards: Float, middle: Float) -> Float:
-    """Slope (M, N) of the signed sines where the M homogeneous vanishing points change by `change` (M, 3).
-
-    The other arguments are what `angles_against` gives.
-    """
-    moved_x, moved_y = (change[:, None, at] - middle[:, at] * change[:, None, 2] for at in range(2))
-    x, y = towards[..., 0], towards[..., 1]
-    slope: Float = cosine * (x * moved_y - y * moved_x) / (x * x + y * y)
-    return slope
-
-
-def angles_against(ends: Float, view: View, width: int, height: int) -> tuple[Float, Float, Float, Float, Float]:
-    """Signed sines, scales and cosines (M, N) against the axes; vectors to the vanishing points; middles.
-
-    The view may have any number M of axes, in rows.
-    """
-    ends = undistorted(ends, view.radial, view.center, width, height)
-    middle, along = middles(ends), ends[:, 1] - ends[:, 0]
-    length = lengths(along)
-    along = along / length[:, None]
-    points = view.axes @ view.matrix.T
-    towards = points[:, None, :2] - middle * points[:, None, 2:]
-    distance = np.maximum(lengths(towards), np.finfo(float).tiny)
-    sine = (towards[..., 1] * along[:, 0] - towards[..., 0] * along[:, 1]) / distance
-    cosine = (towards[..., 0] * along[:, 0] + towards[..., 1] * along[:, 1]) / distance
-    near = PLACE_NOISE * np.abs(points[:, None, 2]) / distance
-    scale = np.sqrt(ANGLE_FLOOR**2 + (ANGLE_NOISE / length) ** 2 + near**2)
-    return sine, scale, cosine, towards, middle
+            change = np.zeros((3, 3))
+            if parameter == FOCAL:
+                change[0, 0] = change[1, 1] = view.focal
+            else:
+                change[parameter - CENTER_X, 2] = size
+            slopes[number] = seen.slope(view.axes @ change.T)
+    return seen.sine, seen.scale, slopes

@@ -10,7 +10,7 @@ from linecad.arrays import Bool, Float
 from linecad.camera.estimate import Calibrated, calibrate, calibrate_again
 from linecad.camera.photo import Photo
 from linecad.corrections.edits import SetFrame
-from linecad.geometry import PhotoLength, segment_coordinates
+from linecad.geometry import PhotoLength, lengths, middles, segment_coordinates
 from linecad.graph.build import build_line_graph
 from linecad.graph.connectivity import components
 from linecad.line_graph import Segments
@@ -20,7 +20,7 @@ from linecad.progress import StageReport, silent
 from solver.robust import RobustFit
 
 NEAR_LINE = PhotoLength(3.0, floor=0.9)  # across a line: what lies within it is a piece of it
-MATCHED_AT_ONCE = 500  # segments; bounds the memory
+PAIRS = 2**16  # of segments and lines that are compared at a time: more would not fit into a processor's cache
 
 
 def find_calibration(
@@ -54,9 +54,12 @@ def _lines_that_meet(photo: Photo, raw: Segments, calibrated: Calibrated) -> Seg
 
 def _lies_on(ends: Float, lines: Float, reach: float) -> Bool:
     """Which segments (N, 2, 2) have their middle within `reach` px of one of the lines (M, 2, 2)."""
-    length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
-    near = []
-    for some in np.array_split(ends.mean(axis=1), max(len(ends) // MATCHED_AT_ONCE, 1)):
-        place, beside = segment_coordinates(some[:, None], lines)
-        near.append(((np.abs(beside) < reach) & (place > -reach) & (place < length + reach)).any(axis=1))
-    return np.concatenate(near)
+    length = lengths(lines[:, 1] - lines[:, 0])
+    middle = middles(ends)
+    some = max(1, PAIRS // len(lines))
+    near = np.zeros(len(ends), bool)
+    for first in range(0, len(ends), some):
+        own = slice(first, first + some)
+        place, beside = segment_coordinates(middle[own, None], lines)
+        near[own] = ((np.abs(beside) < reach) & (place > -reach) & (place < length + reach)).any(axis=1)
+    return near

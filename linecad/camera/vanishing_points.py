@@ -12,7 +12,8 @@ SEARCH_ANGLE = np.radians(1.25)  # the residual beyond which a segment has no sa
 INLIER_ANGLE = np.radians(2.0)  # the residual up to which a segment counts as explained and has a say
 ERROR_FLOOR = 1e-4  # rad; no axis is known better than that
 DRAWS = 3000  # random triples of segments
-BATCH = 200  # triples scored at once: bounds the memory
+BATCH = 200  # triples drawn at once
+SINES = 2**16  # looked at together when triples are scored: more would not fit into a processor's cache
 MIN_LENGTH = 12.0  # px; the direction of shorter segments is mostly noise
 MAX_SCORED = 1500  # the longest segments decide; more cost time and change nothing
 REFINEMENTS = 30
@@ -101,11 +102,24 @@ def _score(ends: Float, weight: Float, K: Float, triples: Float) -> Float:
     Per axis the explained length, weighted by a truncated square of the residual; then the sum of the square roots.
     The root matters: with the plain sum, one direction that gathers the segments of two beats the right frame.
     """
-    sines = angles_to(ends, (triples @ K.T).reshape(-1, 3)).reshape(*triples.shape[:2], -1)
-    label, residual = sines.argmin(axis=1), sines.min(axis=1) / np.sin(SEARCH_ANGLE)
-    explained = np.clip(1 - residual**2, 0, None) * weight
-    by_axis = np.stack([np.where(label == axis, explained, 0).sum(axis=1) for axis in range(3)])
-    return np.asarray(np.sqrt(by_axis).sum(axis=0))
+    some = max(1, SINES // (3 * len(ends)))
+    return np.concatenate(
+        [_score_of_some(ends, weight, K, triples[first : first + some]) for first in range(0, len(triples), some)]
+    )
+
+
+def _score_of_some(ends: Float, weight: Float, K: Float, triples: Float) -> Float:
+    """The same of few triples."""
+    sines = angles_to(ends, (triples @ K.T).transpose(1, 0, 2).reshape(-1, 3)).reshape(3, len(triples), -1)
+    least = np.minimum(np.minimum(sines[0], sines[1]), sines[2])
+    residual = least / np.sin(SEARCH_ANGLE)
+    explained = np.maximum(1 - residual * residual, 0) * weight
+    is_first = sines[0] == least
+    is_second = (sines[1] == least) & ~is_first
+    score = np.zeros(len(triples))
+    for own in (is_first, is_second, ~(is_first | is_second)):
+        score += np.sqrt((explained * own).sum(axis=1))
+    return score
 
 
 def search_axes(ends: Float, K: Float, draws: int, seed: int = 0) -> Float:

@@ -82,8 +82,9 @@ def group_segments(
     for axis in range(len(points)):
         own = segments.ends[segments.axis == axis]
         lines = _gathered(own, points[axis], across, along)
-        centre = _centres(own, lines)
-        ends.append(_stretched(own, lines, centre, directions_to(centre, points[axis])))
+        alike = _of_one_size(lines)
+        centre = _centres(own, alike, len(lines))
+        ends.append(_stretched(own, alike, centre, directions_to(centre, points[axis])))
         axes += [axis] * len(lines)
     return Segments(np.concatenate(ends), np.array(axes, np.int64))
 
@@ -94,8 +95,9 @@ def fit_whole(ends: Float, vanishing: Float, width: int) -> Float:
     They are gathered as by `group_segments` but not turned to the vanishing point, so that they can tell where it is.
     """
     lines = _gathered(ends, vanishing, *_reach(width, SHORT_REACH.largest_gap))
-    centre = _centres(ends, lines)
-    return _stretched(ends, lines, centre, _fitted_directions(ends, lines, centre))
+    alike = _of_one_size(lines)
+    centre = _centres(ends, alike, len(lines))
+    return _stretched(ends, alike, centre, _fitted_directions(ends, alike, centre))
 
 
 def _reach(width: int, largest_gap: float) -> tuple[float, float]:
@@ -103,25 +105,23 @@ def _reach(width: int, largest_gap: float) -> tuple[float, float]:
     return GROUP_ACROSS.px(width), PhotoLength(largest_gap, GAP_FLOOR).px(width)
 
 
-def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> list[Int]:
+def _gathered(ends: Float, vanishing: Float, across: float, along: float) -> list[list[int]]:
     """The fragments of each line, as indices of fragments (N, 2, 2) of one axis, the longest leader first."""
     order = np.argsort(-_length(ends), kind="stable")
     free = np.ones(len(ends), bool)
     direction = directions_to(middles(ends), vanishing)
-    lines: list[Int] = []
-    rows = max(1, PAIRS // max(1, len(ends)))
-    for first in range(0, len(order), rows):
-        leaders = order[first : first + rows]
-        leaders = leaders[free[leaders]]
-        pairs = _near(ends, direction, leaders, across)
+    lines: list[list[int]] = []
+    while len(order):
+        leaders = order[: max(1, PAIRS // len(order))]
+        pairs = _near(ends, direction, leaders, np.flatnonzero(free), across)
+        is_free = free.tolist()
         for leader, start, end in zip(leaders.tolist(), pairs.start[:-1], pairs.start[1:], strict=True):
-            if not free[leader]:
-                continue
-            own = np.arange(start, end)[free[pairs.other[start:end]]]
-            if len(own) > 1:
-                own = own[_touching(pairs.low[own], pairs.high[own], along, int((pairs.other[own] == leader).argmax()))]
-            lines.append(pairs.other[own])
-            free[lines[-1]] = False
+            if is_free[leader]:
+                lines.append(_touching(pairs, range(start, end), is_free, along, leader))
+                for own in lines[-1]:
+                    is_free[own] = False
+        free = np.array(is_free)
+        order = order[free[order]]
     return lines
 
 
@@ -130,34 +130,44 @@ class _Pairs:
     """Leaders with the fragments that are on their image lines, P pairs in the order of the L leaders."""
 
     start: list[int]  # L + 1, the first pair of each leader, and P
-    other: Int  # (P,) the fragment, as they begin along the line of each leader, which is among them
-    low: Float  # (P,) px, where it begins along the line
-    high: Float  # (P,) px, where it ends
+    other: list[int]  # P, the fragment, as they begin along the line of each leader, which is among them
+    low: list[float]  # P, px, where it begins along the line
+    high: list[float]  # P, px, where it ends
 
 
-def _near(ends: Float, direction: Float, leaders: Int, across: float) -> _Pairs:
-    """The fragments (N, 2, 2) with directions (N, 2) to their vanishing point that are near the leaders' lines."""
+def _near(ends: Float, direction: Float, leaders: Int, others: Int, across: float) -> _Pairs:
+    """Those `others` of fragments (N, 2, 2), of directions (N, 2) to their vanishing point, near the leaders' lines."""
     middle = middles(ends)
     normal = direction[leaders] @ np.array([[0.0, 1.0], [-1.0, 0.0]])
-    off = np.abs(normal @ middle.T - (normal * middle[leaders]).sum(axis=1, keepdims=True))
+    off = np.abs(normal @ middle[others].T - (normal * middle[leaders]).sum(axis=1, keepdims=True))
     # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
-    one_side = direction[leaders] @ direction.T > 0
-    row, other = np.nonzero(one_side & (off < across))
-    leader = leaders[row]
+    one_side = direction[leaders] @ direction[others].T > 0
+    row, column = np.nonzero(one_side & (off < across))
+    leader, other = leaders[row], others[column]
     from_leader, along = ends[other] - middle[leader, None], direction[leader]
     reach = from_leader[..., 0] * along[:, None, 0] + from_leader[..., 1] * along[:, None, 1]
     low, high = np.minimum(*reach.T), np.maximum(*reach.T)
     order = np.lexsort((low, row))
     start = np.searchsorted(row, np.arange(len(leaders) + 1)).tolist()
-    return _Pairs(start, other[order], low[order], high[order])
+    return _Pairs(start, other[order].tolist(), low[order].tolist(), high[order].tolist())
 
 
-def _touching(low: Float, high: Float, gap: float, leader: int) -> slice:
-    """Which intervals, in ascending order of `low`, hang together with the leader's over gaps of at most `gap`."""
-    furthest = np.maximum.accumulate(high)
-    breaks = np.flatnonzero(low[1:] > furthest[:-1] + gap) + 1
-    run = np.searchsorted(breaks, leader, side="right")
-    return slice(int(breaks[run - 1]) if run > 0 else 0, int(breaks[run]) if run < len(breaks) else len(low))
+def _touching(pairs: _Pairs, among: range, is_free: list[bool], gap: float, leader: int) -> list[int]:
+    """The free fragments of a leader's pairs `among` all that hang together with it over gaps of at most `gap` px."""
+    # Plain numbers, as a leader has a handful of pairs: NumPy would take longer to be called.
+    run: list[int] = []
+    furthest = -np.inf
+    for at in among:
+        other = pairs.other[at]
+        if not is_free[other]:
+            continue
+        if pairs.low[at] > furthest + gap:
+            if leader in run:
+                break
+            run = []
+        run.append(other)
+        furthest = max(furthest, pairs.high[at])
+    return run
 
 
 def _length(ends: Float) -> Float:
@@ -165,29 +175,41 @@ def _length(ends: Float) -> Float:
     return lengths(ends[:, 1] - ends[:, 0])
 
 
-def _centres(ends: Float, lines: list[Int]) -> Float:
-    """The mean (G, 2) of the middles of the fragments of each line, by their length."""
+def _of_one_size(lines: list[list[int]]) -> list[tuple[Int, Int]]:
+    """The numbers (L,) of the lines of K fragments and these (L, K), for each K: lines of one K are done at once."""
+    size = np.array([len(own) for own in lines], np.int64)
+    alike = [np.flatnonzero(size == count) for count in np.unique(size)]
+    return [(which, np.array([lines[number] for number in which.tolist()])) for which in alike]
+
+
+def _centres(ends: Float, alike: list[tuple[Int, Int]], count: int) -> Float:
+    """The mean (G, 2) of the middles of the fragments of each of `count` lines, by their length."""
     length = _length(ends)
     weighted = middles(ends) * length[:, None]
-    return np.array([weighted[own].sum(axis=0) / length[own].sum() for own in lines]).reshape(-1, 2)
+    centre = np.empty((count, 2))
+    for which, own in alike:
+        centre[which] = weighted[own].sum(axis=1) / length[own].sum(axis=1)[:, None]
+    return centre
 
 
-def _fitted_directions(ends: Float, lines: list[Int], centre: Float) -> Float:
+def _fitted_directions(ends: Float, alike: list[tuple[Int, Int]], centre: Float) -> Float:
     """The direction (G, 2) of each line that has the least squares of distance along all of its fragments."""
     along, middle, length = ends[:, 1] - ends[:, 0], middles(ends), _length(ends)[:, None]
-    spread = []
-    for own, at in zip(lines, centre, strict=True):
-        off = middle[own] - at
-        spread.append((off * length[own]).T @ off + (along[own] * length[own]).T @ along[own] / 12)
-    directions: Float = np.linalg.eigh(np.array(spread).reshape(-1, 2, 2))[1][:, :, 1]
+    spread = np.empty((len(centre), 2, 2))
+    for which, own in alike:
+        off = middle[own] - centre[which, None]
+        spread[which] = (off * length[own]).swapaxes(1, 2) @ off
+        spread[which] += (along[own] * length[own]).swapaxes(1, 2) @ along[own] / 12
+    directions: Float = np.linalg.eigh(spread)[1][:, :, 1]
     return directions
 
 
-def _stretched(ends: Float, lines: list[Int], centre: Float, direction: Float) -> Float:
+def _stretched(ends: Float, alike: list[tuple[Int, Int]], centre: Float, direction: Float) -> Float:
     """Segments (G, 2, 2) through the centres (G, 2), along the directions (G, 2) as far as the fragments reach."""
-    reach = np.empty((len(lines), 2, 1))
-    for number, own in enumerate(lines):
-        along = (ends[own].reshape(-1, 2) - centre[number]) @ direction[number]
-        reach[number] = [[along.min()], [along.max()]]
+    reach = np.empty((len(centre), 2, 1))
+    for which, own in alike:
+        off = ends[own].reshape(len(which), -1, 2) - centre[which, None]
+        along = off @ direction[which, :, None]
+        reach[which, 0], reach[which, 1] = along.min(axis=1), along.max(axis=1)
     segments: Float = centre[:, None] + reach * direction[:, None]
     return segments

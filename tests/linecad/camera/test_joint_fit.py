@@ -69,20 +69,20 @@ def turn_between(one, other):
 def test_slopes_are_those_of_small_steps(x, y, z, focal, off, radial, seed):
     """Sines go by the parameters as central differences say; where a vanishing point is far from the segments."""
     straight = View(rotation_about(np.array([x, y, z])), focal, MIDDLE + np.array([off, -off]))
-    ends = anywhere(40, seed)
+    places = camerafit.coordinates(anywhere(40, seed))
     for view, free in ((straight, np.arange(RADIAL)), (replace(straight, radial=radial), np.arange(PARAMETERS))):
-        sine, _, slope = camerafit._angles(ends, view, WIDTH, HEIGHT, free)
-        towards = camerafit.angles_against(ends, view, WIDTH, HEIGHT)[3]
-        far = np.linalg.norm(towards, axis=-1) > 100 * np.abs((view.axes @ view.matrix.T)[:, None, 2])
-        assert slope.shape == (*sine.shape, len(free))
-        for parameter in free:
+        sine, _, slope = camerafit._angles(places, view, WIDTH, HEIGHT, free)
+        towards = camerafit.angles_against(places, view, WIDTH, HEIGHT).towards
+        far = np.linalg.norm(towards, axis=0) > 100 * np.abs((view.axes @ view.matrix.T)[:, None, 2])
+        assert slope.shape == (len(free), *sine.shape)
+        for parameter, own in zip(free, slope, strict=True):
             step = 1e-6 * np.eye(PARAMETERS)[parameter]
             ahead, behind = (
-                camerafit.angles_against(ends, view.moved(sign * step, float(WIDTH)), WIDTH, HEIGHT)[0]
+                camerafit.angles_against(places, view.moved(sign * step, float(WIDTH)), WIDTH, HEIGHT).sine
                 for sign in (1, -1)
             )
             differences = ((ahead - behind) / 2e-6)[far]
-            assert np.abs(slope[..., parameter][far] - differences).max(initial=0) < 2e-3
+            assert np.abs(own[far] - differences).max(initial=0) < 2e-3
 
 
 def test_exact_segments_give_the_exact_view():
