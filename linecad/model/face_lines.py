@@ -9,7 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int, rows_of
-from linecad.directions import Turns, frame_axes
+from linecad.directions import UP, Turns, frame_axes
+from linecad.geometry import PhotoLength
 from linecad.graph.connectivity import spanning_forest
 from linecad.line_graph import Segments
 from linecad.lines.details import apart_from, left_of, repeats
@@ -24,6 +25,7 @@ from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.scene import Camera, Intersections, Lines, Plane
 
 UNKNOWN = 0.5  # the probability of a plane that no line shows
+LEAST_ON_GROUND = PhotoLength(150.0, floor=30.0)  # px; shorter edges there are stones, stains and leaves
 
 
 @dataclass(frozen=True, eq=False)
@@ -177,12 +179,17 @@ def _one_by_one(edges: Segments, face: Int, taken: Segments, camera: Camera) -> 
 
 
 def _on_faces(segments: Segments, seen: SeenFaces) -> tuple[Segments, Int]:
-    """The stretches of segments with one face on both sides that they can lie in, and that face (P,)."""
+    """The stretches of segments with one face on both sides that they can lie in, and that face (P,).
+
+    Below the camera, on the ground, only long ones.
+    """
     samples = Samples.of(segments.ends, seen.camera.width)
     first, second = seen.beside(samples.pixel, samples.along)
     lies = (first == second) & can_lie(segments.axis[samples.row], seen.axis[first])
     found = stretches(samples, np.where(lies, first, NO_FACE), segments, seen.camera.width)
-    return found.segments(segments), found.face
+    on_faces, below = found.segments(segments), np.array([p.axis == UP and p.offset < 0 for p in seen.plane], bool)
+    worth = ~below[found.face] | (on_faces.length >= LEAST_ON_GROUND.px(seen.camera.width))
+    return on_faces.subset(worth), found.face[worth]
 
 
 def _records(framed: FramedLines, segments: Segments, face: Int, ends: Float, frame: Int, seen: SeenFaces) -> Lines:

@@ -2,7 +2,8 @@
 
 Clutter that surfaces surround is given to them, cut along the lines in which they meet; what the sky or the photo's
 border surrounds as well stays clutter, since nothing tells what is behind it. Outdoors no wall goes on behind them
-beyond where the photo shows it somewhere; a room is closed. Regions too small for a face go the same way.
+beyond where the photo shows it somewhere; a room is closed. Regions too small for a face go the same way, and what a
+wall was said to show beyond a corner that it has with another one.
 """
 
 from dataclasses import dataclass, replace
@@ -11,8 +12,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Bool, Float
-from linecad.directions import UP, components, partner
-from linecad.geometry import directions_to, vanishing_points, world_rays
+from linecad.directions import partner
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, expand
 from linecad.model.regions.evidence import sums
@@ -21,6 +21,7 @@ from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.roofs import Roof
 from linecad.model.regions.segments import View
+from linecad.model.regions.wall_ends import Ends, ends_of_walls
 from linecad.scene import Camera
 
 SURROUNDED = 0.5  # share of the outline of clutter that is along surfaces
@@ -28,9 +29,7 @@ LEAST_AREA = 0.0015  # of the photo, of a region that becomes a face
 NEVER = 10**7  # cost of a label that a cell may not take
 TOUCH = 1e-3  # px
 UNREACHED, BEYOND = 10.0, 50.0  # cost a sample, from which on a good part of a cell lies where a surface is not seen
-LARGE = 0.1  # of the largest part of a wall, of those that tell how far it goes
 SLACK = 0.01  # of its offset, by which samples may be beyond
-UPRIGHT = 0.02  # of the photo's width, of the piece of an upright that is drawn out
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,11 +58,11 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     """Labels of cells that are cut along `meets` (N, 2, 2) px of surfaces too, with clutter between them filled in."""
     camera = view.camera
     clutter = shapely.union_all([region for number, region in found.regions if number == found.clutter])
-    open_regions = _to_fill(found, camera)
+    ends = ends_of_walls(found, raster, view)
+    open_regions = _to_fill(found, camera) + [part for each in ends.values() for part in each.beyond]
     if not open_regions:
         return Filled(found, clutter)
-    ends = _ends_of_walls(found, view)
-    uprights = [upright for _, _, two in ends.values() for upright in two]
+    uprights = [upright for each in ends.values() for upright in each.uprights]
     cuts = np.concatenate([meets, np.array(uprights).reshape(-1, 2, 2)])
     cells = _cut_along(found, cuts, open_regions, camera, raster)
     inside = _inside(cells, open_regions)
@@ -93,34 +92,13 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     return Filled(filled, clutter)
 
 
-def _ends_of_walls(found: Labels, view: View) -> dict[int, tuple[float, float, Float]]:
-    """For each wall the components along it from and to which the photo shows it, and uprights (2, 2, 2) px there."""
-    camera = view.camera
-    axes = components(view.rotation, view.turns)
-    upward = vanishing_points(camera.matrix, view.rotation)[UP]
-    is_room = any(surface.kind == "ceiling" for surface in found.surfaces)
-    ends = {}
-    for number, surface in enumerate(() if is_room else found.surfaces):
-        parts = [region for own, region in found.regions if own == number]
-        if surface.kind != "wall" or not parts:
-            continue
-        largest = max(part.area for part in parts)
-        corners = np.concatenate([shapely.get_coordinates(part) for part in parts if part.area >= LARGE * largest])
-        rays = world_rays(corners, camera.matrix, axes)
-        along = surface.offset * rays[:, int(partner(surface.axis))] / rays[:, surface.axis]
-        last = corners[[along.argmin(), along.argmax()]]
-        half = UPRIGHT * camera.width * directions_to(last, np.stack([upward, upward]))
-        ends[number] = (float(along.min()), float(along.max()), np.stack([last - half, last + half], axis=1))
-    return ends
-
-
-def _not_beyond(found: Labels, ends: dict[int, tuple[float, float, Float]], raster: Raster) -> Float:
+def _not_beyond(found: Labels, ends: dict[int, Ends], raster: Raster) -> Float:
     """Costs (S, K + 2) of samples with those of walls beyond their ends; one that is not shown is nowhere."""
     costs = found.of_samples.copy(order="F")
     for number, surface in enumerate(found.surfaces):
         if surface.kind != "wall" or not ends:
             continue
-        low, high, _ = ends.get(number, (np.inf, -np.inf, None))
+        low, high = (ends[number].low, ends[number].high) if number in ends else (np.inf, -np.inf)
         with np.errstate(divide="ignore", invalid="ignore"):
             along = surface.offset * raster.rays[:, int(partner(surface.axis))] / raster.rays[:, surface.axis]
         slack = SLACK * abs(surface.offset)

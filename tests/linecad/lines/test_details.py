@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from linecad.geometry import central_camera, segment_coordinates
 from linecad.line_graph import ManhattanFrame, Segments
-from linecad.lines.details import LEAST_STRETCH, TWIN, apart_from, find_details, find_whole_details
+from linecad.lines.details import LEAST_STRETCH, TWIN, apart_from, find_details, find_whole_details, repeats
 from linecad.lines.segments import find_segments
 from linecad.scene import Camera
 
@@ -127,3 +127,20 @@ def test_what_is_left_is_every_place_that_no_other_runs_beside(spans, angle):
 
 def _at_the_limit(spans):
     return any(abs(abs(off) - ACROSS) < 1e-9 for _, _, off in spans)
+
+
+@given(seed=st.integers(0, 2**32 - 1), count=st.integers(0, 12))
+def test_runs_beside_others_are_those_of_all_pairs(seed, count):
+    """Against every pair, looked at one by one; the boxes of the others are only a way to them."""
+    rng = np.random.default_rng(seed)
+    ends = rng.uniform(0, 60, (2, 12, 2, 2)) * [1.0, 0.1]  # nearly level, so that many run beside others
+    axis = rng.integers(0, 2, (2, 12))
+    own, others = Segments(ends[0], axis[0]), Segments(ends[1, :count], axis[1, :count])
+    found = repeats(own, others, WIDTH)
+    for row in range(len(own)):
+        wanted = []
+        for other in range(count):
+            place, beside = segment_coordinates(others.ends[other], own.ends[row])
+            runs = (np.abs(beside) <= ACROSS).all() and place.max() > 0 and place.min() < own.length[row]
+            wanted += [(place.min(), place.max())] if runs and own.axis[row] == others.axis[other] else []
+        np.testing.assert_allclose(np.reshape(found[row], (-1, 2)), np.reshape(wanted, (-1, 2)))

@@ -9,7 +9,7 @@ from linecad.arrays import rows_of
 from linecad.geometry import project
 from linecad.line_graph import Segments
 from linecad.model.clean.sight import Sight
-from linecad.model.face_lines import UNKNOWN, add_lines
+from linecad.model.face_lines import LEAST_ON_GROUND, UNKNOWN, add_lines
 from linecad.model.faces import find_faces
 from linecad.model.frames import FramedLines, together
 from linecad.scene import Face, Intersections, Lines, Plane
@@ -62,6 +62,24 @@ def test_an_edge_on_a_face_comes_back_where_it_is(add, edge):
     found = [each for each in new(add([edge])) if each not in new(add([]))]
     assert [each for each, _ in found] == [axis]
     np.testing.assert_allclose(np.sort(np.array(found[0][1]), axis=0), np.sort(np.array(ends), axis=0), atol=2e-3)
+
+
+def test_short_edges_on_the_ground_are_stones_and_stains(add, house):
+    def along(axis, start, length):
+        return axis, [start, [start[0], start[1] + length, start[2]] if axis == Y else [start[0] + length, *start[1:]]]
+
+    def pixels(edge):
+        first, second = project(np.array(edge[1]), house.camera.matrix, house.rotation)
+        return float(np.linalg.norm(second - first))
+
+    stone, kerb = along(X, [2.5, 6.0, GROUND], 0.25), along(X, [2.5, 6.0, GROUND], 0.4)
+    sill = along(X, [3.0, FRONT, -1.2], 0.3)
+    least = LEAST_ON_GROUND.px(house.camera.width)
+    assert pixels(sill) < least > pixels(stone)
+    assert pixels(kerb) > least
+    nothing = new(add([]))
+    assert new(add([stone])) == nothing
+    assert len(new(add([kerb]))) == len(new(add([sill]))) == len(nothing) + 1
 
 
 def test_the_coordinate_of_the_plane_is_exact(add):
