@@ -16,7 +16,6 @@ from linecad.model.body_scales import join_bodies
 from linecad.model.clean.roles import with_roles
 from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
-from linecad.model.clean.ticks import without_ticks
 from linecad.model.coplanar import join_planes
 from linecad.model.depth_evidence import depths_of, normals_of
 from linecad.model.face_lines import add_lines, without_repeats
@@ -38,6 +37,7 @@ from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet
+from linecad.model.ticks import without_ticks
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Opening, Plane, Scene, SolveReport
@@ -159,7 +159,7 @@ def build_scene(
         openings=openings,
         turns=graph.turns,
     )
-    scene = scene if graph.turns else without_ticks(scene, sight, MIN_COMPONENT)
+    scene = without_ticks(scene, framed, sight, MIN_COMPONENT)
     return replace(scene, notes=(*scene.notes, *on_faces.notes(scene.lines)))
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, rows_of
 from linecad.confidence import with_lines
 from linecad.graph.connectivity import spanning_forest
 from linecad.model.clean.ends import NEAR, ends_that_meet, ends_that_miss, nearest_crossings
@@ -16,6 +16,7 @@ from linecad.model.clean.joining import by_size, with_closed_ends
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import Strokes, strokes_of
+from linecad.model.frames import FramedLines, in_frame, sight_in
 from linecad.scene import DETAIL, Lines, Scene
 
 LONGEST = 2 * NEAR  # of the depth; whatever its one end meets, the other end of a longer line is no near miss of it
@@ -23,21 +24,24 @@ LEAST_FREE = 0.2  # of the depth; a shorter line that only a face placed is none
 MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by then
 
 
-def without_ticks(scene: Scene, sight: Sight, least: int = 1) -> Scene:
+def without_ticks(scene: Scene, framed: FramedLines, sight: Sight, least: int = 1) -> Scene:
     """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
 
     Lines stay that a person said something about, that alone connect others, and all of components that would have
-    fewer than `least` lines. Planes go that only ticks showed; a note counts the ticks.
+    fewer than `least` lines. Planes go that only ticks showed; a note counts the ticks. `framed` are the lines of the
+    scene, row by row: what they meet and miss is looked for among those of their frame.
     """
     outlines = outlines_of(scene.planes)
     found = scene
     for _ in range(MOST_ROUNDS):
-        strokes = strokes_of(found.lines, sight.forward)
-        ticks = _spare(found, _ticks(found, strokes, outlines, sight), least)
+        ticks = _spare(found, _ticks(found, framed, outlines, sight), least)
         if not ticks.any():
             break
         found = with_lines(found, ~ticks)
-        found = replace(found, lines=with_closed_ends(found.lines, sight.forward))
+        framed = framed.of_rows(np.flatnonzero(~ticks)).each(
+            lambda lines, frame: with_closed_ends(lines, sight_in(sight, frame, scene.turns).forward)
+        )
+        found = replace(found, lines=framed.in_world())
     gone = len(scene.lines) - len(found.lines)
     if gone == 0:
         return scene
@@ -70,16 +74,26 @@ def _spanning(scene: Scene, cost: Bool | Int) -> Bool:
     return tree
 
 
-def _ticks(scene: Scene, strokes: Strokes, outlines: Float, sight: Sight) -> Bool:
-    """Which lines (N,) are ticks."""
+def _ticks(scene: Scene, framed: FramedLines, outlines: Float, sight: Sight) -> Bool:
+    """Which lines (N,) are ticks, by the edges (E, 2, 3) of faces."""
     crossings = scene.intersections
     said = np.unique(crossings.lines[np.asarray(crossings.reason) == "annotated"])
+    ticks = np.zeros(len(framed.lines), bool)
+    for frame in framed.frames:
+        rows, seen = framed.of(frame), sight_in(sight, frame, scene.turns)
+        ticks[rows] = _ticks_among(rows_of(framed.lines, rows), in_frame(outlines, frame, scene.turns), seen)
+    return ticks & ~np.isin(scene.lines.id, said)
+
+
+def _ticks_among(lines: Lines, outlines: Float, sight: Sight) -> Bool:
+    """Which lines (N,) of one frame are ticks, all in its axes."""
+    strokes = strokes_of(lines, sight.forward)
     meets = ends_that_meet(strokes)
     ticks: Bool = (np.ptp(strokes.reach, axis=1) < LONGEST * np.abs(strokes.depth)) & ~meets.all(axis=1)
-    ticks &= (scene.lines.role == DETAIL) & ~np.isin(scene.lines.id, said)
+    ticks &= lines.role == DETAIL
     ends_well = meets[ticks] | (at_outlines(strokes.of(ticks), outlines, sight) & ~_misses(strokes, ticks))
     ticks[ticks] = ~ends_well.all(axis=1)
-    return ticks | (_hanging(scene.lines, strokes, meets, outlines, sight) & ~np.isin(scene.lines.id, said))
+    return ticks | _hanging(lines, strokes, meets, outlines, sight)
 
 
 def _hanging(lines: Lines, strokes: Strokes, meets: Bool, outlines: Float, sight: Sight) -> Bool:

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linecad.directions import directions_of, frame_axes
 from linecad.model.clean.sight import Sight
-from linecad.model.clean.ticks import without_ticks
+from linecad.model.frames import FramedLines
+from linecad.model.ticks import without_ticks
 from linecad.scene import Face, Plane, Scene, SolveReport
 
 X, Y, Z = range(3)
@@ -18,6 +20,11 @@ LEFT = (Z, (-2, DEPTH, -1), (-2, DEPTH, 0))
 def tick(height, x=0.0):
     """An upright line of that height on the sill."""
     return (Z, (x, DEPTH, 0), (x, DEPTH, height))
+
+
+def one_frame(scene):
+    """The lines of a scene that has one frame."""
+    return FramedLines(scene.lines, np.zeros(len(scene.lines), np.int64), ())
 
 
 @pytest.fixture
@@ -34,7 +41,7 @@ def drawn(lines, crossings, camera, rotation):
             planes=planes or (Plane(0, Y, DEPTH, tuple(range(len(rows))), ()),),
             solve=SolveReport("SCIP 10.0", "bodies", "optimal", 0, 0, 0), notes=("before",),
         )  # fmt: skip
-        return scene, without_ticks(scene, Sight.of(camera, rotation, None))
+        return scene, without_ticks(scene, one_frame(scene), Sight.of(camera, rotation, None))
 
     return draw
 
@@ -96,9 +103,9 @@ def test_a_tick_that_alone_connects_another_line_stays(drawn, crossings, camera,
     scene, _ = drawn([tick(0.07), (X, (0, DEPTH, 0.03), (1, DEPTH, 0.03))])
     hangs = replace(scene, intersections=crossings([(0, 1), (0, 2), (2, 3)]))
     sight = Sight.of(camera, rotation, None)
-    assert without_ticks(hangs, sight) is hangs
+    assert without_ticks(hangs, one_frame(hangs), sight) is hangs
     stands = replace(scene, intersections=crossings([(0, 1), (0, 2), (2, 3), (0, 3)]))
-    found = without_ticks(stands, sight)
+    found = without_ticks(stands, one_frame(stands), sight)
     assert found.lines.id.tolist() == [0, 1, 3]
     assert found.intersections.in_tree.tolist() == [True, True]
     assert found.intersections.lines.tolist() == [[0, 1], [0, 3]]
@@ -107,7 +114,7 @@ def test_a_tick_that_alone_connects_another_line_stays(drawn, crossings, camera,
 @pytest.mark.parametrize(("least", "left"), [(4, 4), (3, 3)])
 def test_a_component_keeps_as_many_lines_as_it_must_have(drawn, camera, rotation, least, left):
     scene, _ = drawn([tick(0.07), tick(0.3, 1)])
-    assert len(without_ticks(scene, Sight.of(camera, rotation, None), least).lines) == left
+    assert len(without_ticks(scene, one_frame(scene), Sight.of(camera, rotation, None), least).lines) == left
 
 
 @pytest.mark.parametrize(
@@ -126,3 +133,16 @@ def test_details_that_a_face_placed_hang_nowhere(drawn, row, stays):
     assert (2 in found.lines.id) == stays
     before, after = drawn([row])
     assert len(after.lines) == len(before.lines)
+
+
+def test_a_tick_of_a_turned_wall_goes_as_it_would_in_the_first(drawn, camera, rotation):
+    scene, straight = drawn([tick(0.07), tick(0.3, 1), (X, (0, DEPTH, 0.3), (0.995, DEPTH, 0.3))])
+    turns = (0.4,)
+    frame = np.ones(len(scene.lines), np.int64)
+    framed = FramedLines(scene.lines, frame, turns)
+    turned = replace(scene, lines=framed.in_world(), planes=(), turns=turns)
+    sight = Sight.of(camera, rotation @ directions_of(turns)[frame_axes(1)], None)
+    found = without_ticks(turned, framed, sight)
+    assert found.lines.id.tolist() == straight.lines.id.tolist() == [0, 1, 3, 4]
+    back = found.lines.ends @ directions_of(turns)[frame_axes(1)].T
+    np.testing.assert_allclose(back, straight.lines.ends, atol=1e-9)
