@@ -17,6 +17,7 @@ from linecad.graph.connectivity import group_numbers
 from linecad.line_graph import LineDepths, LineGraph
 from linecad.model.plane_merging import MIN_TOLERANCE, NOISE_FACTOR, Merges, find_merges
 
+LEAST_LEFT = 0.1  # of a line's length, that junctions at both of its ends must leave
 ANCHOR = 1e-9  # weight that pins the free scale of a component to the solver's depths
 
 
@@ -199,6 +200,10 @@ def _end_at_junctions(graph: LineGraph, chosen: Bool, offset: Float, along: Floa
     moved = along.copy()
     own = np.unique(end)
     moved[own // 2, own % 2] = outermost[own]
+    # Between two lines whose planes became one nothing would be left of a line: its end that was nearer goes there.
+    flat = np.flatnonzero(np.abs(np.diff(moved)[:, 0]) < LEAST_LEFT * np.abs(np.diff(along)[:, 0]))
+    further = np.abs(moved[flat] - along[flat]).argmax(axis=1)
+    moved[flat, further] = along[flat, further]
     return moved
 
 

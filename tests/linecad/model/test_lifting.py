@@ -171,3 +171,27 @@ def test_inconsistent_depths_are_balanced_by_their_certainty(made):
     exact = fit_log_depths(graph, chosen, np.zeros(len(graph.segments)))
     i, j = graph.edges[chosen].T
     np.testing.assert_allclose(exact[i] - exact[j], graph.log_ratio[chosen], atol=1e-8)
+
+
+def test_a_line_between_two_that_became_one_keeps_its_length():
+    """Two bars of nearly one height meet a level line that ends in both corners; a short post stands between them."""
+    axis = np.array([0, 0, 1, 2])
+    ends = np.array(
+        [
+            [[1.0, 8, -1.0], [3.0, 8, -1.0]],
+            [[1.0, 8, -0.9], [3.0, 8, -0.9]],
+            [[1.0, 8, -0.95], [1.0, 10, -0.95]],
+            [[2.5, 8, -1.0], [2.5, 8, -0.9]],
+        ]
+    )
+    pixels = project(ends, CAMERA.matrix, FRAME.rotation)
+    graph = build_line_graph(Segments(pixels, axis), CAMERA, FRAME, replace(SHORT_REACH, extension=60.0))
+    across = {tuple(sorted(edge)) for edge in graph.edges.tolist()}
+    assert across >= {(0, 2), (1, 2), (0, 3), (1, 3)}
+    chosen = graph.axis[graph.edges[:, 0]] != graph.axis[graph.edges[:, 1]]
+    lifted = lift(graph, chosen, true_log_depths(graph, ends))
+    height = lifted.ends[:2, 0, 2]
+    assert height[0] == height[1]
+    post = lifted.ends[3]
+    assert np.linalg.norm(post[1] - post[0]) > 0.04
+    assert np.abs(post[:, 2] - height[0]).min() == 0

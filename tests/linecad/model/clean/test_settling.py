@@ -70,6 +70,12 @@ def test_an_end_near_an_outline_ends_there(end_of_course, x):
     assert end_of_course(outlines=edge(2 * x, DEPTH)) == 0
 
 
+def test_both_ends_of_a_short_line_near_one_outline_stay(lines, camera, rotation):
+    strokes = strokes_of(lines([course(0.08, start=0), START]), rotation[2])
+    found = settle_ends(strokes, edge(0.04, DEPTH), Sight(camera.matrix, rotation, None))
+    assert found.reach[0].tolist() == [0, 0.08]
+
+
 def test_an_end_goes_on_to_an_outline_where_the_photo_shows_it(end_of_course):
     assert end_of_course(outlines=edge(1.0, DEPTH), shown=[course(3)]) == pytest.approx(1)
     assert end_of_course(outlines=edge(1.0, DEPTH)) == 0
