@@ -60,7 +60,8 @@ def settle_ends(strokes: Strokes, outlines: Float, sight: Sight) -> Strokes:
         if np.array_equal(drawn.reach, found.reach):
             break
         found = close_ends(drawn)[0]
-    return close_ends(_cut(found, strokes, at_outlines(found, outlines, sight)))[0]
+    found = close_ends(_cut(found, strokes, at_outlines(found, outlines, sight)))[0]
+    return without_new_twins(strokes, found)  # closing ends may bring pieces of one line near, too
 
 
 def _drawn_once(found: Strokes, seen: Strokes, edges: Float, depths: Float, sight: Sight) -> Strokes:

@@ -70,6 +70,14 @@ def test_an_end_near_an_outline_ends_there(end_of_course, x):
     assert end_of_course(outlines=edge(2 * x, DEPTH)) == 0
 
 
+def test_closing_ends_brings_no_two_pieces_of_one_line_together(lines, camera, rotation):
+    sight = Sight(camera.matrix, rotation, None)
+    before = strokes_of(lines([course(0.1), START, course(2, start=0.24), post(0.15)]), sight.forward)
+    assert settle_ends(before, NO_OUTLINES, sight).reach[[0, 2]].tolist() == [[-2, 0.1], [0.24, 2]]
+    alone = strokes_of(lines([course(0.1), START, post(0.15)]), sight.forward)
+    assert settle_ends(alone, NO_OUTLINES, sight).reach[0].tolist() == [-2, 0.15]
+
+
 def test_both_ends_of_a_short_line_near_one_outline_stay(lines, camera, rotation):
     strokes = strokes_of(lines([course(0.08, start=0), START]), rotation[2])
     found = settle_ends(strokes, edge(0.04, DEPTH), Sight(camera.matrix, rotation, None))
