@@ -18,6 +18,7 @@ from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
 from linecad.scene import Camera
 
 Pixels = NDArray[np.uint8]
+Runs = list[list[tuple[float, float]]]  # from where to where, of each of N segments, px from its first end on
 
 WIDTH = 1920  # px; wider photos are made smaller first, where a faint edge stands out from the grain
 WIDTH_OF_WHOLE = 960  # px, the same for whole lines through vanishing points
@@ -90,9 +91,6 @@ def apart_from(segments: Segments, others: Segments, width: int) -> Segments:
     A segment may leave several stretches.
     """
     return left_of(segments, repeats(segments, others, width), width)
-
-
-Runs = list[list[tuple[float, float]]]  # of each of N segments, px from its first end on
 
 
 def repeats(segments: Segments, others: Segments, width: int) -> Runs:

@@ -30,11 +30,16 @@ def close_ends(strokes: Strokes) -> tuple[Strokes, Bool]:
         if np.array_equal(reach, found.reach):
             break
         found = replace(found, reach=reach)
-    lost = np.ptp(found.reach, axis=1) < LEAST_LEFT * np.ptp(strokes.reach, axis=1)
-    if lost.any():
-        found = replace(found, reach=np.where(lost[:, None], strokes.reach, found.reach))
-        meets = _closed_once(found, pairs)[1]
-    return found, meets
+    kept = without_lost(strokes, found)
+    if kept is not found:
+        meets = _closed_once(kept, pairs)[1]
+    return kept, meets
+
+
+def without_lost(before: Strokes, after: Strokes) -> Strokes:
+    """The strokes `after` their ends were moved, but for those that lost more than half of their length by it."""
+    lost = np.diff(after.reach)[:, 0] < LEAST_LEFT * np.ptp(before.reach, axis=1)
+    return replace(after, reach=np.where(lost[:, None], before.reach, after.reach)) if lost.any() else after
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,12 +12,12 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.geometry import depths_beside, ring_sides, world_rays
 from linecad.model.clean.ends import (
-    LEAST_LEFT,
     MEETS,
     NEAR,
     close_ends,
     ends_that_meet,
     nearest_crossings,
+    without_lost,
     without_new_twins,
 )
 from linecad.model.clean.joining import with_ends
@@ -77,8 +77,7 @@ def _drawn_once(found: Strokes, seen: Strokes, edges: Float, depths: Float, sigh
     reach = found.reach.copy()
     reach[line[goes], end[goes]] = stops.place[goes]
     # Both ends of a short line may be near one outline, which would leave nothing of it.
-    lost = np.diff(reach)[:, 0] < LEAST_LEFT * np.ptp(found.reach, axis=1)
-    return replace(found, reach=np.where(lost[:, None], found.reach, reach))
+    return without_lost(found, replace(found, reach=reach))
 
 
 def _cut(found: Strokes, seen: Strokes, stopped: Bool) -> Strokes:

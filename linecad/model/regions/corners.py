@@ -63,6 +63,16 @@ class End:
 
 
 @dataclass(frozen=True, eq=False)
+class WallsBeside:
+    """B pairs of samples side by side in a row that show two walls."""
+
+    walls: Int  # (B, 2) surfaces, the left one first
+    left: Float  # (B, K) rays
+    right: Float  # (B, K)
+    at: Int  # (B, 2) row and column of the left sample
+
+
+@dataclass(frozen=True, eq=False)
 class Side:
     """A wall that begins where another one ends, and what it hides."""
 
@@ -100,20 +110,26 @@ def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
 
 def find_ends(known: Known) -> list[End]:
     """The ends of walls before others, beyond which hardly a line of theirs lies."""
-    raster = known.raster
-    image, rays = known.shown.reshape(raster.shape), raster.rays.reshape(*raster.shape, -1)
-    is_wall = np.array([*(each.kind == "wall" and len(each.lines) > 0 for each in known.surfaces), False, False])
-    border = is_wall[image[:, :-1]] & is_wall[image[:, 1:]] & (image[:, :-1] != image[:, 1:])
-    left, right = image[:, :-1][border], image[:, 1:][border]
-    before, after = rays[:, :-1][border], rays[:, 1:][border]
-    least = LEAST_HEIGHT * raster.shape[0]
+    is_wall = [each.kind == "wall" and len(each.lines) > 0 for each in known.surfaces]
+    beside = walls_beside(known.shown, is_wall, known.raster)
+    least = LEAST_HEIGHT * known.raster.shape[0]
     found = []
-    for one, other in np.unique(np.column_stack([left, right]), axis=0).tolist():
-        own = (left == one) & (right == other)
+    for one, other in np.unique(beside.walls, axis=0).tolist():
+        own = (beside.walls == (one, other)).all(axis=1)
         if own.sum() >= least:
-            found += _ends_at(known.surfaces, (one, other), before[own], after[own], least)
-            found += _ends_at(known.surfaces, (other, one), after[own], before[own], least)
+            left, right = beside.left[own], beside.right[own]
+            found += _ends_at(known.surfaces, (one, other), left, right, least)
+            found += _ends_at(known.surfaces, (other, one), right, left, least)
     return [end for end in found if _ends_there(end, known)]
+
+
+def walls_beside(shown: Int, is_wall: list[bool], raster: Raster) -> WallsBeside:
+    """Where walls border on each other, by what samples show (S,): a surface, the sky or clutter, in this order."""
+    image, rays = shown.reshape(raster.shape), raster.rays.reshape(*raster.shape, -1)
+    counts = np.array([*is_wall, False, False])
+    border = counts[image[:, :-1]] & counts[image[:, 1:]] & (image[:, :-1] != image[:, 1:])
+    walls = np.column_stack([image[:, :-1][border], image[:, 1:][border]])
+    return WallsBeside(walls, rays[:, :-1][border], rays[:, 1:][border], np.argwhere(border))
 
 
 def _ends_at(surfaces: list[Surface], pair: tuple[int, int], inner: Float, outer: Float, least: float) -> list[End]:

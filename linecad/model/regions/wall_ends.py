@@ -9,6 +9,7 @@ from linecad.arrays import Float, Int
 from linecad.directions import UP, components, partner
 from linecad.geometry import directions_to, vanishing_points, world_rays
 from linecad.model.regions import partition
+from linecad.model.regions.corners import LEAST_HEIGHT, walls_beside
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
@@ -16,7 +17,6 @@ from linecad.model.regions.segments import View
 LARGE = 0.1  # of the largest part of a wall, of those that tell how far it goes
 UPRIGHT = 0.02  # of the photo's width, of the piece of an upright that is drawn out
 CORNER = 0.03  # log depth, by which two walls may differ at their border for this to be their corner
-LEAST_HEIGHT = 0.05  # of the photo's height, of such a border
 MOST_BEYOND = 0.1  # of what the photo shows of a wall; with more of it beyond, another wall only abuts on it
 
 
@@ -78,11 +78,9 @@ def _beyond(part: shapely.Polygon, corner: _Corner, least: float) -> list[shapel
 
 def _corners(found: Labels, raster: Raster, view: View) -> dict[int, list[_Corner]]:
     """The corners at which walls end, by wall."""
-    image, rays = found.label[found.cell].reshape(raster.shape), raster.rays.reshape(*raster.shape, -1)
-    is_wall = np.array([*(surface.kind == "wall" for surface in found.surfaces), False, False])
-    border = is_wall[image[:, :-1]] & is_wall[image[:, 1:]] & (image[:, :-1] != image[:, 1:])
-    pairs = np.sort(np.column_stack([image[:, :-1][border], image[:, 1:][border]]), axis=1)
-    at, between = np.argwhere(border), ((rays[:, :-1] + rays[:, 1:]) / 2)[border]
+    is_wall = [surface.kind == "wall" for surface in found.surfaces]
+    beside = walls_beside(found.label[found.cell], is_wall, raster)
+    pairs, between = np.sort(beside.walls, axis=1), (beside.left + beside.right) / 2
     corners: dict[int, list[_Corner]] = {}
     for one, other in np.unique(pairs, axis=0).tolist():
         first, second = found.surfaces[one], found.surfaces[other]
@@ -92,16 +90,16 @@ def _corners(found: Labels, raster: Raster, view: View) -> dict[int, list[_Corne
         meets = (pairs == (one, other)).all(axis=1) & (ratio > 0) & (np.abs(np.log(np.abs(ratio))) < CORNER)
         if meets.sum() < LEAST_HEIGHT * raster.shape[0]:
             continue
-        pixel = (at[meets].mean(axis=0)[::-1] + np.array([1.0, 0.5])) * raster.step - 0.5
-        for wall, beside in ((one, other), (other, one)):
-            corner = _corner(found, wall, beside, raster, view, pixel)
+        pixel = (beside.at[meets].mean(axis=0)[::-1] + np.array([1.0, 0.5])) * raster.step - 0.5
+        for wall, another in ((one, other), (other, one)):
+            corner = _corner(found, wall, another, raster, view, pixel)
             corners.setdefault(wall, []).extend([] if corner is None else [corner])
     return corners
 
 
-def _corner(found: Labels, wall: int, beside: int, raster: Raster, view: View, pixel: Float) -> _Corner | None:
+def _corner(found: Labels, wall: int, another: int, raster: Raster, view: View, pixel: Float) -> _Corner | None:
     """The corner of one wall with another that is beside it at a pixel (2,); None where it goes on beyond."""
-    own, other = found.surfaces[wall], found.surfaces[beside]
+    own, other = found.surfaces[wall], found.surfaces[another]
     rays: Float = raster.rays[found.label[found.cell] == wall]
     along = own.offset * rays[:, other.axis] / rays[:, own.axis]
     inside: Int = np.array([(along < other.offset).sum(), (along > other.offset).sum()])
