@@ -43,7 +43,7 @@ class Candidate:
     features: Features
 
 
-class _Pair:
+class Pair:
     """What candidates of one pair of bodies share."""
 
     def __init__(
@@ -61,7 +61,7 @@ class _Pair:
             "colour": like,
         }
 
-    def candidate(self, kind: Kind, log_ratio: float, own: Features, normal: int = -1) -> Candidate:
+    def _candidate(self, kind: Kind, log_ratio: float, own: Features, normal: int = -1) -> Candidate:
         match = self.levels.at(log_ratio)
         common = {
             "level excess": min(match.excess, MOST_EXCESS),
@@ -73,6 +73,7 @@ class _Pair:
         return Candidate(kind, self.bodies, log_ratio, normal, {**self.features, **common, **own})
 
     def of_bundle(self, bundle: Bundle, planes: list[SharedPlane]) -> Candidate:
+        """The ratio of a bundle, with those of the bodies' shared planes that ask for the same."""
         supported, connected = self.setting.support(*self.bodies, bundle.log_ratio)
         at_once = [plane for plane in planes if abs(plane.log_ratio - bundle.log_ratio) < SAME_RATIO]
         implied = [min(plane.shares) for plane in at_once if plane.normal in bundle.coordinates]
@@ -92,9 +93,10 @@ class _Pair:
             "plane of it": max(implied, default=0.0),
             "plane beside": max(more, default=0.0),
         }
-        return self.candidate("bundle", bundle.log_ratio, own)
+        return self._candidate("bundle", bundle.log_ratio, own)
 
     def of_plane(self, plane: SharedPlane, supported: float, connected: float) -> Candidate:
+        """The ratio of a shared plane, with the shares of the fits that give it and that connect the bodies at all."""
         own = {
             "planes near": float(np.exp(-plane.distance / NEAR_PLANES)),
             "planes not far": float(np.exp(-plane.distance / FAR_PLANES)),
@@ -107,11 +109,12 @@ class _Pair:
             "supported": supported,
             "connected": connected,
         }
-        return self.candidate("plane", plane.log_ratio, own, plane.normal)
+        return self._candidate("plane", plane.log_ratio, own, plane.normal)
 
     def of_level(self, peak: Match) -> Candidate:
+        """The ratio at which most levels match."""
         own = {"matches": float(np.log(peak.matches)), "by chance": float(np.log(peak.by_chance + 0.5))}
-        return self.candidate("level", peak.log_ratio, own)
+        return self._candidate("level", peak.log_ratio, own)
 
 
 def find_candidates(setting: Setting) -> list[Candidate]:
@@ -130,12 +133,12 @@ def find_candidates(setting: Setting) -> list[Candidate]:
             pair = LevelPair(levels[first], levels[second])
             if bodies in bundles or bodies in planes or pair.peaks:
                 of_sizes = SizePair(sizes[first], sizes[second])
-                known = _Pair(setting, bodies, pair, of_sizes, likeness(colours, first, second))
+                known = Pair(setting, bodies, pair, of_sizes, likeness(colours, first, second))
                 found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []))
     return found
 
 
-def _of_pair(pair: _Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> list[Candidate]:
+def _of_pair(pair: Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> list[Candidate]:
     found = [pair.of_bundle(bundle, planes) for bundle in bundles]
     taken = [bundle.log_ratio for bundle in bundles]
     for plane in planes:

@@ -14,6 +14,7 @@ from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, hear, report_of, ties_to_map
 from linecad.ties.probability import probabilities
+from linecad.ties.seams import find_seams, hold
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates
 from solver.annotations import check_annotations, read_annotations
@@ -107,7 +108,8 @@ def place_lines(
         log_depth=log_depth,
     )
     mapped = found.mapped
-    probability = probabilities(setting, placement, found.reference, log_depth, mapped)
+    held = hold(len(body), find_seams(setting))
+    probability = probabilities(setting, placement, found.reference, log_depth, held, mapped)
     by_map = np.zeros(len(body), bool) if mapped is None else (body >= 0) & mapped.by_map[np.maximum(body, 0)]
     told = None if sight.depth is None else report_of(sight.depth, found.heard, mapped)
     return Placed(solution, setting, found.ties, placement, found.reference, probability, by_map, told)

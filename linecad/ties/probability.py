@@ -11,33 +11,33 @@ from solver.bodies.ties import Placement
 
 LARGEST_MARGIN = 12.0
 FARTHEST_OFF = 6.0  # widths
-# Logistic regression on lines of known depth, by tests/benchmarks/ties.py (docs/results/ties.md).
-AT_ONCE = -9.3621
+# Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
+AT_ONCE = -4.8570
 LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.8369,
-    "margin": -0.2177,
-    "root of margin": 1.4574,
-    "lines of the body": -0.0338,
-    "share of the reference": 3.5404,
-    "together": 2.2483,
-    "agreement of all": -0.6617,
-    "agreement of the line": 2.1726,
-    "bodies": 0.9728,
+    "of the reference": 2.4394,
+    "margin": -0.3206,
+    "root of margin": 2.1794,
+    "lines of the body": -0.0979,
+    "share of the reference": 3.9925,
+    "together": 0.8203,
+    "agreement of all": -3.3440,
+    "agreement of the line": 2.3376,
+    "bodies": 0.5692,
 }
 # The same where a depth map was heard.
-WITH_MAP_AT_ONCE = -8.9349
+WITH_MAP_AT_ONCE = -5.9709
 WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.3505,
-    "margin": 0.0702,
-    "root of margin": -0.0706,
-    "lines of the body": 0.1902,
-    "share of the reference": 3.7171,
-    "together": 1.6920,
-    "agreement of all": 1.3260,
-    "agreement of the line": 2.5316,
-    "bodies": 0.3522,
-    "map's word": 0.3580,
-    "off the map": -0.1236,
+    "of the reference": 1.8917,
+    "margin": -0.0916,
+    "root of margin": 0.9285,
+    "lines of the body": 0.0221,
+    "share of the reference": 2.9980,
+    "together": 0.8031,
+    "agreement of all": -0.1727,
+    "agreement of the line": 2.6143,
+    "bodies": 0.5292,
+    "map's word": 0.0754,
+    "off the map": -0.2288,
 }
 
 
@@ -89,10 +89,19 @@ def _by_the_map(mapped: MapPlaces, count: int) -> tuple[Float, Float]:
 
 
 def probabilities(
-    setting: Setting, placement: Placement, reference: int, log_depth: Float, mapped: MapPlaces | None = None
+    setting: Setting,
+    placement: Placement,
+    reference: int,
+    log_depth: Float,
+    held: Float,
+    mapped: MapPlaces | None = None,
 ) -> Float:
-    """(N,) from 0 to 1; 0 for lines of no body. `mapped` as for `features`."""
+    """(N,) from 0 to 1; 0 for lines of no body. `mapped` as for `features`.
+
+    A line is right where its body stands where it should, and where it is `held` (N,) in its body: the probability that
+    it is (`linecad.ties.seams`).
+    """
     known = features(setting, placement, reference, log_depth, mapped)
     at_once, slopes = (AT_ONCE, LOG_ODDS) if mapped is None else (WITH_MAP_AT_ONCE, WITH_MAP_LOG_ODDS)
     log_odds = at_once + sum((slopes[name] * value for name, value in known.items()), np.zeros(len(setting.log_depth)))
-    return np.where(setting.bodies.body >= 0, 1 / (1 + np.exp(-log_odds)), 0.0)
+    return np.where(setting.bodies.body >= 0, held / (1 + np.exp(-log_odds)), 0.0)

@@ -2,14 +2,12 @@
 
 DATASET is a folder that `linecad evaluate` knows and whose truth has depth. A candidate (linecad.ties.candidates) is
 right where its ratio is that of the true scales of its two bodies within 3 %. Prints how well each kind of evidence
-tells right from wrong, what each is worth to the placement, and how far the probabilities of lines hold. All of it is
-cross-validated: a scene is judged by the others; the photos of one real dataset are one scene, and so are their parts
-(parts.py). One table tells little: ties_tables.py judges by many, and writes the mean of them. `--write` puts the
-probabilities fitted to all photos into linecad/ties/probability.py.
+tells right from wrong and what each is worth to the placement. All of it is cross-validated: a scene is judged by the
+others; the photos of one real dataset are one scene, and so are their parts (parts.py). One table tells little:
+ties_tables.py judges by many, and writes the mean of them; probability.py fits how sure the places are.
 """
 
 import argparse
-import re
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +19,6 @@ from parts import PARTS
 from ties_truth import PARTED, Judged, densest, judge
 
 import linecad.ties.placing
-import linecad.ties.probability
 import linecad.ties.table
 import linecad.ties.weights
 from linecad.arrays import Float, Int
@@ -35,8 +32,7 @@ from solver.options import SolveOptions
 RIGHT = 0.03  # log ratio of a candidate
 RIGHT_DEPTH = 0.05
 LEAST_REFERENCE = 10  # points on the reference body, for the others to be relative to
-RIDGE, RIDGE_OF_LINES = 3.0, 30.0
-SURE = 0.9
+RIDGE = 3.0
 FEW_NODES = 300  # of the search on parts of photos, of which there are many
 WIDTHS = (0.012, 0.035, 0.08)  # of simulated depth maps
 
@@ -156,6 +152,7 @@ class Placed:
     heard: bool  # a depth map was given and used
     features: Float  # (P, F) of the lines at the points that are judged; none where the reference body shows too few
     right: Float  # (P,) 0 or 1
+    line: Int  # (P,) that shows each of these points
 
 
 def placed(
@@ -179,13 +176,13 @@ def placed(
     right = np.abs(np.expm1(error)) < RIGHT_DEPTH
     of_lines = np.array([value[line] for value in known.values()]).T
     is_proven, is_heard = placement.status == "optimal", places.mapped is not None
-    return Placed(photo.score(log_depth), is_proven, is_heard, of_lines, right.astype(np.float64))
+    return Placed(photo.score(log_depth), is_proven, is_heard, of_lines, right.astype(np.float64), line)
 
 
 def print_ablation(
     photos: list[Judged], rows: dict[Kind, Rows], datasets: list[str], pool: ProcessPoolExecutor
-) -> list[Placed]:
-    """Print a row for each part of the evidence; the placements with all of it."""
+) -> None:
+    """Print a row for each part of the evidence."""
     print("\n| recall / precision at 5 % | " + " | ".join(datasets) + " |\n| --- " + "| --- " * len(datasets) + "|")
     _print_row("the robust fit alone", photos, [photo.score(photo.setting.log_depth) for photo in photos], datasets)
     at_truth = [photo.score(at_true_scales(photo)) for photo in photos]
@@ -200,24 +197,19 @@ def print_ablation(
         complete = complete or found
     whole = [one.proven for photo, one in zip(photos, complete, strict=True) if not photo.is_part]
     print(f"\nwith all evidence {sum(whole)} of {len(whole)} whole photos are proven", flush=True)
-    return complete
 
 
-def print_maps(
-    photos: list[Judged], rows: dict[Kind, Rows], datasets: list[str], pool: ProcessPoolExecutor
-) -> list[list[Placed]]:
-    """Print a row for simulated depth maps of each of WIDTHS; the placements with them."""
+def print_maps(photos: list[Judged], rows: dict[Kind, Rows], datasets: list[str], pool: ProcessPoolExecutor) -> None:
+    """Print a row for simulated depth maps of each of WIDTHS."""
     print("\n| with a depth map | " + " | ".join(datasets) + " |\n| --- " + "| --- " * len(datasets) + "|")
     scenes = sorted({photo.scene for photo in photos})
     table = {scene: tables(fits_without(photos, rows, scene, ()), rows) for scene in scenes}
-    found = []
     for width in WIDTHS:
         jobs = [pool.submit(placed, photo, (), table[photo.scene], (width, seed)) for seed, photo in enumerate(photos)]
-        found.append([job.result() for job in jobs])
-        _print_row(f"{width:.1%}", photos, [one.score for one in found[-1]], datasets)
-        heard = sum(one.heard for one in found[-1])
-        print(f"{heard} of {len(photos)} maps are heard, {sum(one.proven for one in found[-1])} proven", flush=True)
-    return found
+        found = [job.result() for job in jobs]
+        _print_row(f"{width:.1%}", photos, [one.score for one in found], datasets)
+        heard = sum(one.heard for one in found)
+        print(f"{heard} of {len(photos)} maps are heard, {sum(one.proven for one in found)} proven", flush=True)
 
 
 def at_true_scales(photo: Judged) -> Float:
@@ -239,70 +231,19 @@ def _print_row(name: str, photos: list[Judged], scores: list[tuple[float, float]
     print(f"| {name} | " + " | ".join(cells) + " |", flush=True)
 
 
-def print_probabilities(known: list[tuple[str, Judged, Placed]]) -> logistic.Logistic:
-    """Print how far the probabilities of lines hold, by the names given; the regression over all, each of one weight.
-
-    All with a map that is heard, or all without one. A scene is left out with all its maps.
-    """
-    known = [one for one in known if len(one[2].right)]
-    of_lines = np.concatenate([one.features for _, _, one in known])
-    right = np.concatenate([one.right for _, _, one in known])
-    weight = np.concatenate([np.full(len(one.right), 1 / len(one.right)) for _, _, one in known])
-    weight /= weight.mean()
-    scene = np.concatenate([np.full(len(one.right), photo.scene) for _, photo, one in known])
-    dataset = np.concatenate([np.full(len(one.right), name) for name, _, one in known])
-    predicted = np.zeros(len(right))
-    for name in np.unique(scene):
-        out = scene == name
-        fitted = logistic.fit(of_lines[~out], right[~out], RIDGE_OF_LINES, weight[~out])
-        predicted[out] = fitted.probability(of_lines[out])
-    print("\n| lines | " + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10)) + " | at 0.9: precision | recall |")
-    print("| --- " * 13 + "|")
-    for name in dict.fromkeys(name for name, _, _ in known):
-        own = dataset == name
-        cells = [_cell(tenth) for tenth in logistic.tenths(right[own], predicted[own], weight[own])]
-        sure = own & (predicted >= SURE)
-        share = (weight[sure] * right[sure]).sum() / (weight[own] * right[own]).sum()
-        precision = np.average(right[sure], weights=weight[sure]) if sure.any() else np.nan
-        print(f"| {name} | " + " | ".join([*cells, f"{precision:.3f}", f"{share:.2f}"]) + " |", flush=True)
-    return logistic.fit(of_lines, right, RIDGE_OF_LINES, weight)
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--workers", type=int, default=2, help="processes")
-    parser.add_argument("--write", action="store_true", help="the fits into linecad/ties/probability.py")
     chosen = parser.parse_args()
     with ProcessPoolExecutor(chosen.workers) as pool:
         photos = judge_all(chosen.datasets, pool)
         datasets = list(dict.fromkeys(photo.dataset for photo in photos))
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
         print_kinds(rows, datasets)
-        found = print_ablation(photos, rows, datasets, pool)
+        print_ablation(photos, rows, datasets, pool)
         whole = [photo for photo in photos if not photo.is_part]
-        with_maps = print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
-    of_lines = print_probabilities([
-        (photo.dataset, photo, one) for photo, one in zip(photos, found, strict=True) if not photo.is_part
-    ])  # fmt: skip
-    of_maps = print_probabilities([
-        (f"{photo.dataset}, map", photo, one)
-        for of_width in with_maps for photo, one in zip(whole, of_width, strict=True) if one.heard
-    ])  # fmt: skip
-    print_changes(of_lines, of_maps)
-    if chosen.write:
-        write_probability(of_lines, of_maps)
-
-
-def print_changes(of_lines: logistic.Logistic, of_maps: logistic.Logistic) -> None:
-    """By how much the fits to all photos differ from what the project has, at most."""
-    now = linecad.ties.probability
-    for what, known, fitted in (
-        ("lines", [now.AT_ONCE, *now.LOG_ODDS.values()], of_lines),
-        ("lines with a map", [now.WITH_MAP_AT_ONCE, *now.WITH_MAP_LOG_ODDS.values()], of_maps),
-    ):
-        change = np.array(known) - np.r_[fitted.at_once, fitted.slope]
-        print(f"{what}: the fit differs from the table by up to {np.abs(change).max():.4f}")
+        print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
 
 
 def write_table(table: dict[str, dict]) -> None:
@@ -314,25 +255,6 @@ def write_table(table: dict[str, dict]) -> None:
     for kind, slopes in table["LOG_ODDS"].items():
         lines += [f'    "{kind}": {{', *(f'        "{name}": {value:.4f},' for name, value in slopes.items()), "    },"]
     path.write_text(head + "\n".join([*lines, "}", ""]), encoding="utf-8")
-
-
-def write_probability(of_lines: logistic.Logistic, of_maps: logistic.Logistic) -> None:
-    path = Path(linecad.ties.probability.__file__)
-    text = path.read_text(encoding="utf-8")
-    now = linecad.ties.probability
-    for prefix, names, fitted in (("", now.LOG_ODDS, of_lines), ("WITH_MAP_", now.WITH_MAP_LOG_ODDS, of_maps)):
-        slopes = "".join(
-            f'    "{name}": {value:.4f},\n' for name, value in zip(names, fitted.slope.tolist(), strict=True)
-        )
-        table = f"{prefix}AT_ONCE = {fitted.at_once:.4f}\n{prefix}LOG_ODDS: dict[str, float] = {{\n{slopes}}}\n"
-        text = re.sub(
-            rf"^{prefix}AT_ONCE = .*?^}}\n",
-            lambda _, table=table: table,
-            text,
-            count=1,
-            flags=re.DOTALL | re.MULTILINE,
-        )
-    path.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -18,9 +18,10 @@ from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.options import LONG_REACH, Options
 from linecad.scene import Camera
-from linecad.ties.bodies import find_rigid_bodies
+from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.placing import FITS
+from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
 from solver.robust import RobustFit
 
@@ -43,6 +44,7 @@ class Judged:
     log_true: Float  # (P,)
     true_scale: Float  # (B + 1,) log, that of the ground last; NaN where the points do not tell
     true_depth: TrueDepth  # of the photo's pixels
+    seams: list[tuple[Seam, float]]  # with by how much the true log scales of their sides differ; NaN where not known
 
     @property
     def is_part(self) -> bool:
@@ -138,7 +140,16 @@ def judge(dataset: str, case: Case, part: str | None = None) -> Judged | None:
         seen.log_true,
         np.append(seen.true_scale, densest(np.array(feet)) if feet else np.nan),
         true_depth(seen.reference, seen.camera),
+        [(seam, _error_of(seam, seen)) for seam in find_seams(setting)],
     )
+
+
+def _error_of(seam: Seam, seen: Seen) -> float:
+    side = np.full(len(seen.setting.log_depth), -1)
+    side[seam.larger], side[seam.smaller] = 0, 1
+    of_sides = replace(seen.setting, bodies=RigidBodies(side, 2))
+    first, second = true_scales(of_sides, seen.on, seen.log_true - seen.log_factor)
+    return float(abs(first - second))
 
 
 def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, Float]:

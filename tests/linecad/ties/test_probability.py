@@ -40,8 +40,9 @@ def known(setting, margins=(6.0, 2.0), reference=0, depth=None):
     return features(setting, placement(*margins), reference, setting.log_depth if depth is None else depth)
 
 
-def sure(setting, margins=(6.0, 2.0), reference=0, depth=None):
-    return probabilities(setting, placement(*margins), reference, setting.log_depth if depth is None else depth)
+def sure(setting, margins=(6.0, 2.0), reference=0, depth=None, held=1.0):
+    depth = setting.log_depth if depth is None else depth
+    return probabilities(setting, placement(*margins), reference, depth, np.full(len(depth), held))
 
 
 def test_every_feature_has_log_odds(placed):
@@ -62,6 +63,10 @@ def test_lines_of_no_body_are_sure_of_nothing(placed):
     assert (sure(placed)[alone] == 0).all()
     assert (sure(placed)[~alone] > 0).all()
     assert all((value[alone] == 0).all() for value in known(placed).values())
+
+
+def test_a_line_is_as_sure_as_its_body_and_as_it_is_held_there(placed):
+    np.testing.assert_allclose(sure(placed, held=0.3), 0.3 * sure(placed))
 
 
 @pytest.mark.parametrize("reference", [0, 1])
@@ -175,7 +180,7 @@ def test_the_map_counts_as_the_table_says(placed, monkeypatch):
     monkeypatch.setitem(WITH_MAP_LOG_ODDS, "map's word", 0.5)
     monkeypatch.setitem(WITH_MAP_LOG_ODDS, "off the map", -0.4)
     silent, near, far = (
-        probabilities(placed, places, 0, placed.log_depth, mapped)
+        probabilities(placed, places, 0, placed.log_depth, np.ones(len(placed.log_depth)), mapped)
         for mapped in (by_map(np.nan, np.nan), by_map(0.0, 0.0), by_map(0.0, 0.08))
     )
     assert (silent < near)[placed.bodies.body >= 0].all()
