@@ -119,7 +119,7 @@ def _nearest(end: Float, depth: Float, pairs: _Pairs, short: Float) -> tuple[Int
     """Which pair (N,) brings each end (N,) nearest to a line, FREE for none within NEAR, and the share of the depth."""
     apart = np.hypot(pairs.place - end[pairs.line], short) / depth[pairs.line]
     near = np.flatnonzero(apart <= NEAR)
-    order = near[np.lexsort((near, apart[near]))][::-1]
+    order = near[np.argsort(apart[near], kind="stable")][::-1]
     pair, distance = np.full(len(end), FREE), np.full(len(end), np.inf)
     pair[pairs.line[order]], distance[pairs.line[order]] = order, apart[order]  # the nearest is written last
     return pair, distance
