@@ -29,7 +29,7 @@ def distinct(box: Int, value: Float, double: float = DOUBLE, most: int = MOST) -
         tall = np.minimum(v1[0], v1) - np.maximum(v0[0], v0)
         shared = np.maximum(wide, 0) * np.maximum(tall, 0)
         apart = np.flatnonzero(shared < double * (area[0] + area - shared))
-        order, left = order[apart], left[:, apart]
+        order, left = order[apart], left.take(apart, axis=1)  # a third of the time of an index
     return np.array(kept, np.int64)
 
 
