@@ -12,7 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int, Text
+from linecad.arrays import Bool, Float, Int, Text, true_places
 from linecad.directions import across, third
 from linecad.geometry import PhotoLength, directions_to, lengths, vanishing_points, world_rays
 from linecad.graph.cues import Known, weigh
@@ -175,7 +175,7 @@ def _pairs(count: int, may_be: Callable[[Int, Int], Bool]) -> Int:
     found = [np.zeros((0, 2), np.int64)]
     every, rows = np.arange(count), max(1, PAIRS // max(1, count))
     for first in range(0, count, rows):
-        row, column = np.nonzero(may_be(every[first : first + rows, None], every))
+        row, column = true_places(may_be(every[first : first + rows, None], every))
         found.append(np.column_stack([row + first, column])[column > row + first])
     return np.concatenate(found)
 

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.directions import count_of
 from linecad.geometry import lengths
 from linecad.line_graph import LineGraph
@@ -124,7 +124,7 @@ def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
         if len(own) < 2:
             continue
         apart = lengths(place[own, None] - place[None, own]) >= SHOWN_STEP
-        first, second = np.nonzero(apart & (at[own, None] < at[None, own]))
+        first, second = true_places(apart & (at[own, None] < at[None, own]))
         found.append(at[own[first]] * classes + at[own[second]])
     return {divmod(pair, classes) for pair in np.unique(np.concatenate(found)).tolist()}
 
