@@ -130,10 +130,10 @@ def plane_normals(ends: Float, K: Float) -> Float:
 
 def rotation_about(vector: Float) -> Float:
     """Rotation matrix (3, 3) of a rotation vector (3,), rad (Rodrigues' formula)."""
-    angle = float(np.linalg.norm(vector))
+    angle = float(np.sqrt(vector @ vector))
     if angle < 1e-15:
         return np.eye(3)
-    x, y, z = vector / angle
+    x, y, z = (vector / angle).tolist()
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     rotation: Float = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     return rotation

@@ -153,7 +153,13 @@ def _elimination_order(count: int, i: Int, j: Int) -> Int:
     links = csc_matrix((np.ones(2 * len(i)), (np.r_[i, j], np.r_[j, i])), (count, count))
     links.data[:] = -1.0
     heavy = csc_matrix((np.full(count, 1.0 + count), (np.arange(count), np.arange(count))), (count, count))
+    # The order alone counts, and the factors are found soonest one column at a time. Those of a step are not: it would
+    # round them in another way.
     factors = splu(
-        (links + heavy).tocsc(), permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}, diag_pivot_thresh=0.0
+        (links + heavy).tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        panel_size=1,
+        options={"SymmetricMode": True},
+        diag_pivot_thresh=0.0,
     )
     return np.argsort(factors.perm_c)

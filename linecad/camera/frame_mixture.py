@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.camera.joint_fit import FREEDOM, Angles, View, angles_against, coordinates, student
+from linecad.camera.joint_fit import FREEDOM, Angles, Places, View, angles_against, student
 from linecad.geometry import rotation_about
 
 GRID = np.radians(np.arange(0.0, 90.0, 0.5))  # turns at which a further frame is looked for
@@ -36,9 +36,8 @@ class Observed:
     height: int
 
     @cached_property
-    def _places(self) -> Float:
-        """(2, 2, N) px, the `coordinates` of the segments."""
-        return coordinates(self.ends)
+    def _places(self) -> Places:
+        return Places(self.ends)
 
     def against(self, directions: Float) -> Angles:
         """`angles_against` unit directions (M, 3) in the camera frame."""

@@ -135,31 +135,33 @@ def fit_view(ends: Float, width: int, height: int, start: View, prior: Prior, it
     view, turns, turn = start, np.zeros((3, 3)), USUAL_TURN
     share = np.array(FIRST_SHARES)
     unknowns = len(free) + 9
-    places = coordinates(ends)
+    # Of each axis: the free parameters and the turn of its own, which moves it as that of the frame does.
+    which = [np.r_[np.arange(len(free)), len(free) + 3 * axis + np.arange(3)] for axis in range(3)]
+    places = Places(ends)
     for iteration in range(iterations):
         wider = max(FIRST_SCALE * SCALE_DECAY**iteration, 1.0)
         own = replace(view, axes=_turned(view.axes, turns))
         sine, scale, slope = _angles(places, own, width, height, free)
         scale = scale * wider
-        density = student(sine / scale) / scale
+        ratio = sine / scale
+        density = student(ratio) / scale
         likely = np.vstack([share[:3, None] * density, np.full((1, len(ends)), share[3] / np.pi)])
         belongs = likely / likely.sum(axis=0)
         share = np.maximum(belongs.mean(axis=1), LEAST_SHARE)
         share /= share.sum()
-        say = belongs[:3] * (FREEDOM + 1) / (FREEDOM + (sine / scale) ** 2) / scale**2
+        say = belongs[:3] * (FREEDOM + 1) / (FREEDOM + ratio**2) / scale**2
         system, pull = np.zeros((unknowns, unknowns)), np.zeros(unknowns)
-        columns = np.stack([*slope, *slope[TURNS]], axis=-1)  # the turn of its own moves an axis as that of the frame
-        for axis in range(3):
-            which = np.r_[np.arange(len(free)), len(free) + 3 * axis + np.arange(3)]
-            system[np.ix_(which, which)] += (columns[axis] * say[axis][:, None]).T @ columns[axis]
-            pull[which] += columns[axis].T @ (say[axis] * sine[axis])
+        columns = np.stack([*slope, *slope[TURNS]], axis=-1)
+        for own_slope, own_say, own_sine, own_unknowns in zip(columns, say, sine, which, strict=True):
+            system[own_unknowns[:, None], own_unknowns] += (own_slope * own_say[:, None]).T @ own_slope
+            pull[own_unknowns] += own_slope.T @ (own_say * own_sine)
         off = np.zeros(PARAMETERS)
         off[FOCAL] = np.log(view.focal / prior.focal)
         off[[CENTER_X, CENTER_Y]] = (view.center - prior.center) / size
         off[RADIAL] = view.radial
         diagonal = np.arange(unknowns)
-        system[diagonal, diagonal] += np.r_[precision[free], np.full(9, turn**-2)] + 1e-9
-        pull += np.r_[(precision * off)[free], turns.ravel() * turn**-2]
+        system[diagonal, diagonal] += np.concatenate([precision[free], np.full(9, turn**-2)]) + 1e-9
+        pull += np.concatenate([(precision * off)[free], turns.ravel() * turn**-2])
         inverse = np.linalg.inv(system)
         move = np.clip(-inverse @ pull, -LARGEST_STEP, LARGEST_STEP)
         step = np.zeros(PARAMETERS)
@@ -194,10 +196,40 @@ def student(ratio: Float) -> Float:
     return density
 
 
-def coordinates(ends: Float) -> Float:
-    """Segments (N, 2, 2) as (2, 2, N): x and y, of the starts and the ends, each in one piece of memory."""
-    # NumPy takes several times as long over pairs of numbers.
-    return np.ascontiguousarray(ends.T)
+@dataclass(frozen=True, eq=False)
+class Straight:
+    """N segments in a photo without distortion."""
+
+    middle: Float  # (2, N) px
+    along: Float  # (2, N) unit vectors
+    noise: Float  # (N,) rad^2, the squared scale of their angles far from vanishing points
+
+    @classmethod
+    def of(cls, x: Float, y: Float) -> "Straight":
+        """Of the coordinates (2, N) px of starts and ends."""
+        along = np.stack([x[1] - x[0], y[1] - y[0]])
+        length = np.sqrt(along[0] * along[0] + along[1] * along[1])
+        noise = ANGLE_FLOOR**2 + (ANGLE_NOISE / length) ** 2
+        return cls(np.stack([x[0] + x[1], y[0] + y[1]]) / 2, along / length, noise)
+
+
+class Places:
+    """Segments (N, 2, 2) px of a photo as it was taken."""
+
+    def __init__(self, ends: Float) -> None:
+        # x and y, of the starts and the ends, (2, 2, N), each in one piece of memory: NumPy takes several times as long
+        # over pairs of numbers.
+        self._x, self._y = np.ascontiguousarray(ends.T)
+
+    @cached_property
+    def _as_taken(self) -> Straight:
+        return Straight.of(self._x, self._y)
+
+    def straight(self, radial: float, center: Float, half: float) -> Straight:
+        """The segments without a distortion, as `undistorted`, in a photo whose half diagonal is `half` px."""
+        if radial == 0.0:
+            return self._as_taken
+        return Straight.of(*_straight(self._x, self._y, radial, center, half))
 
 
 @dataclass(frozen=True, eq=False)
@@ -206,7 +238,7 @@ class Angles:
 
     middle: Float  # (2, N) px
     along: Float  # (2, N) unit vectors
-    length: Float  # (N,) px
+    noise: Float  # (N,) rad^2, as of the segments
     points: Float  # (M, 3) the vanishing points, homogeneous
     towards: Float  # (2, M, N) vectors from the middles to them
     square: Float  # (M, N) of the lengths of these
@@ -228,34 +260,32 @@ class Angles:
     def scale(self) -> Float:
         """(M, N) rad, of the distribution of the angles."""
         near = PLACE_NOISE * np.abs(self.points[:, 2:]) / self.distance
-        scale: Float = np.sqrt(ANGLE_FLOOR**2 + (ANGLE_NOISE / self.length) ** 2 + near**2)
+        scale: Float = np.sqrt(self.noise + near**2)
         return scale
 
     def slope(self, change: Float) -> Float:
         """Slope (M, N) of the sines where the vanishing points change by `change` (M, 3)."""
-        moved_x, moved_y = (change[:, at, None] - self.middle[at] * change[:, 2:] for at in range(2))
+        moved_x, moved_y = change[:, :1], change[:, 1:2]
+        if change[:, 2].any():  # none where focal length or center change
+            moved_x, moved_y = moved_x - self.middle[0] * change[:, 2:], moved_y - self.middle[1] * change[:, 2:]
         slope: Float = self.cosine * (self.towards[0] * moved_y - self.towards[1] * moved_x) / self.square
         return slope
 
 
-def angles_against(places: Float, view: View, width: int, height: int) -> Angles:
-    """The angles of segments, as `coordinates` (2, 2, N) px, against the axes of a view, of any number M."""
-    half = float(np.hypot(width, height)) / 2
-    (start_x, end_x), (start_y, end_y) = _straight(places[0], places[1], view.radial, view.center, half)
-    middle = np.stack([start_x + end_x, start_y + end_y]) / 2
-    along = np.stack([end_x - start_x, end_y - start_y])
-    length = np.sqrt(along[0] * along[0] + along[1] * along[1])
+def angles_against(places: Places, view: View, width: int, height: int) -> Angles:
+    """The angles of segments against the axes of a view, of any number M."""
+    seen = places.straight(view.radial, view.center, float(np.hypot(width, height)) / 2)
     points = view.axes @ view.matrix.T
-    towards = np.stack([points[:, at, None] - middle[at] * points[:, 2:] for at in range(2)])
+    towards = points.T[:2, :, None] - seen.middle[:, None] * points[:, 2:]
     square = towards[0] * towards[0] + towards[1] * towards[1]
     distance = np.maximum(np.sqrt(square), np.finfo(float).tiny)
-    return Angles(middle, along / length, length, points, towards, square, distance)
+    return Angles(seen.middle, seen.along, seen.noise, points, towards, square, distance)
 
 
-def _angles(places: Float, view: View, width: int, height: int, free: "np.ndarray") -> tuple[Float, Float, Float]:
+def _angles(places: Places, view: View, width: int, height: int, free: "np.ndarray") -> tuple[Float, Float, Float]:
     """Sines (3, N) of the angles between segments and the directions to the axes, their scales and slopes.
 
-    The segments are `coordinates` (2, 2, N) px, the slopes (F, 3, N) by the `free` parameters.
+    The slopes (F, 3, N) are those by the `free` parameters.
     """
     seen = angles_against(places, view, width, height)
     size, K = float(max(width, height)), view.matrix

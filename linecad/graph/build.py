@@ -7,13 +7,14 @@ not a free parameter: it is how far the equation moves when the segments move by
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int, Text
+from linecad.arrays import Bool, Float, Int, Text, true_places
 from linecad.directions import across, third
-from linecad.geometry import PhotoLength, directions_to, vanishing_points, world_rays
+from linecad.geometry import PhotoLength, directions_to, lengths, vanishing_points, world_rays
 from linecad.graph.cues import Known, weigh
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments
 from linecad.options import SHORT_REACH, Reach, Weights
@@ -174,7 +175,7 @@ def _pairs(count: int, may_be: Callable[[Int, Int], Bool]) -> Int:
     found = [np.zeros((0, 2), np.int64)]
     every, rows = np.arange(count), max(1, PAIRS // max(1, count))
     for first in range(0, count, rows):
-        row, column = np.nonzero(may_be(every[first : first + rows, None], every))
+        row, column = true_places(may_be(every[first : first + rows, None], every))
         found.append(np.column_stack([row + first, column])[column > row + first])
     return np.concatenate(found)
 
@@ -205,18 +206,19 @@ def _junction_kinds(found: _Crossings, zone: float) -> Text:
 
 def _corners(found: _Crossings, axis: Int, reach: float) -> Bool:
     """Crossings (E,) next to which one of the two lines also crosses a line of the third axis: a Y or W junction."""
-    at_node: list[list[int]] = [[] for _ in range(len(axis))]
-    for edge, (i, j) in enumerate(found.edges.tolist()):
-        at_node[i].append(edge)
-        at_node[j].append(edge)
-    normal = third(*axis[found.edges].T)
+    node = found.edges.ravel()
+    order = np.argsort(node, kind="stable")
+    first = np.searchsorted(node[order], np.arange(len(axis) + 1)).tolist()
+    edge, normal = order // 2, third(*axis[found.edges].T)
     is_corner = np.zeros(len(found.edges), bool)
-    for own in at_node:
-        mine = np.array(own, np.int64)
-        if len(mine) < 2:
+    for low, high in pairwise(first):
+        mine = edge[low:high]
+        own = normal[mine]
+        if high - low < 2 or (own == own[0]).all():
             continue
-        near = np.linalg.norm(found.point[mine, None] - found.point[None, mine], axis=2) <= reach
-        is_corner[mine] |= (near & (normal[mine, None] != normal[None, mine])).any(axis=1)
+        point = found.point[mine]
+        near = lengths(point[:, None] - point) <= reach
+        is_corner[mine] |= (near & (own[:, None] != own)).any(axis=1)
     return is_corner
 
 

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Float, Int, true_places
 from linecad.geometry import PhotoLength, lengths, resized_camera, segment_coordinates
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
@@ -131,7 +131,8 @@ def _near(segments: Segments, others: Segments, across: float) -> tuple[Int, Int
         for side in range(2):
             near &= low[few, None, side] - across <= other_high[:, side]
             near &= high[few, None, side] + across >= other_low[:, side]
-        pairs.append(np.argwhere(near) + np.array([start, 0]))
+        row, other = true_places(near)
+        pairs.append(np.column_stack([row + start, other]))
     row, other = np.concatenate(pairs).T
     return row, other
 

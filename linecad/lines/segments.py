@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Float, Int, true_places
 from linecad.geometry import PhotoLength, angles_to, directions_to, lengths, middles, reach_across, vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.options import SHORT_REACH
@@ -142,7 +142,7 @@ def _near(ends: Float, direction: Float, leaders: Int, others: Int, across: floa
     off = np.abs(normal @ middle[others].T - (normal * middle[leaders]).sum(axis=1, keepdims=True))
     # A line that went through its vanishing point would be at infinity there: what lies beyond is another one.
     one_side = direction[leaders] @ direction[others].T > 0
-    row, column = np.nonzero(one_side & (off < across))
+    row, column = true_places(one_side & (off < across))
     leader, other = leaders[row], others[column]
     from_leader, along = ends[other] - middle[leader, None], direction[leader]
     reach = from_leader[..., 0] * along[:, None, 0] + from_leader[..., 1] * along[:, None, 1]

@@ -6,13 +6,13 @@ length (the idea of MCMLSD: Almazan, Tal, Qian and Elder, CVPR 2017). A detector
 stand out by itself; a faint line that stands out by its length alone is found here, for its direction is known.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.geometry import vanishing_points
 from linecad.line_graph import ManhattanFrame, Segments
 from linecad.scene import Camera
@@ -120,22 +120,43 @@ def _lines_of_rows(
     """Segments (M, 2, 2) on some neighbouring rows."""
     margin = 1  # a row on either side, with which steps are compared
     first, last = max(rows[0] - margin, 0), min(rows[-1] + margin, len(grid.angle) - 1)
+    grid = _within_photo(grid, np.arange(first, last + 1), noise.shape)
+    if not len(grid.radius):
+        return np.zeros((0, 2, 2))
     step, step_noise, inside = _sample(grid, np.arange(first, last + 1), gradient, noise)
     strength = np.abs(cv2.blur(step, (ALONG, 1)))
     padded = np.pad(strength, ((1, 1), (0, 0)))
     is_peak = (strength >= padded[:-2]) & (strength >= padded[2:])
     vote = np.where(is_peak, np.clip(step / step_noise, -LARGEST_STEP, LARGEST_STEP), 0)
     own = slice(rows[0] - first, rows[0] - first + len(rows))
-    ends = [np.zeros((0, 2, 2))]
-    for sign in (1, -1):  # from dark to bright and back: one line keeps its sign
-        evidence = np.where(inside[own], STEP * sign * vote[own] - STEP**2 / 2, np.float32(-START))
-        row, start, end = _runs(evidence)
-        enough = _sums(evidence, row, start, end) >= least
-        row, start, end = row[enough], start[enough], end[enough]
-        angle = grid.angle[rows[row]] + _between_rows(grid, step, row + own.start, start, end)
-        away = grid.directions(angle)
-        ends.append(grid.vanishing + grid.radius[np.stack([start, end], axis=1)][..., None] * away[:, None])
-    return np.concatenate(ends)
+    # From dark to bright, then all rows again from bright to dark: one line keeps its sign.
+    evidence = np.concatenate(
+        [np.where(inside[own], STEP * sign * vote[own] - STEP**2 / 2, np.float32(-START)) for sign in (1, -1)]
+    )
+    row, start, end = _runs(evidence)
+    enough = _sums(evidence, row, start, end) >= least
+    row, start, end = row[enough] % len(rows), start[enough], end[enough]
+    angle = grid.angle[rows[row]] + _between_rows(grid, step, row + own.start, start, end)
+    away = grid.directions(angle)
+    return grid.vanishing + grid.radius[np.stack([start, end], axis=1)][..., None] * away[:, None]
+
+
+def _within_photo(grid: _PolarGrid, rows: Int, shape: tuple[int, ...]) -> _PolarGrid:
+    """The grid without the columns that none of the rows has in a photo of that `shape`, (H, W).
+
+    ALONG columns more are kept at both ends, so that what lies in the photo has the neighbours that it had.
+    """
+    away = grid.directions(grid.angle[rows])
+    away = np.where(away == 0, np.finfo(float).tiny, away)  # meets the sides beside it at infinity
+    corners = np.array([[0, 0], [shape[1] - 1, shape[0] - 1]])
+    with np.errstate(over="ignore"):
+        sides = (corners[:, None] - grid.vanishing) / away
+    enter, leave = sides.min(axis=0).max(axis=1), sides.max(axis=0).min(axis=1)
+    meets = enter <= leave
+    if not meets.any():
+        return replace(grid, radius=grid.radius[:0])
+    reach = enter[meets].min() - ALONG, leave[meets].max() + ALONG
+    return replace(grid, radius=grid.radius[slice(*np.searchsorted(grid.radius, reach))])
 
 
 def _sample(
@@ -176,9 +197,8 @@ def _runs(evidence: Float32) -> tuple[Int, Int, Int]:
     for column in range(columns - 1, -1, -1):
         is_on[column + 1] = state
         state = np.where(state, stayed_on[column], switched_off[column])
-    # NumPy finds what is true in one row of numbers several times as fast as in a table.
-    start, row = np.divmod(np.flatnonzero(is_on[1:] & ~is_on[:-1]), rows)
-    end, same = np.divmod(np.flatnonzero(is_on[:-1] & ~is_on[1:]), rows)
+    start, row = true_places(is_on[1:] & ~is_on[:-1])
+    end, same = true_places(is_on[:-1] & ~is_on[1:])
     by_row, ends_by_row = np.argsort(row, kind="stable"), np.argsort(same, kind="stable")
     return row[by_row], start[by_row], end[ends_by_row] - 1
 

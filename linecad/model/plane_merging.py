@@ -12,8 +12,9 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import splu
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.directions import count_of
+from linecad.geometry import lengths
 from linecad.line_graph import LineGraph
 
 NOISE_FACTOR = 3.0  # standard deviations; the tolerances of the crossings cover as many
@@ -122,8 +123,8 @@ def _steps(graph: LineGraph, chosen: Bool, shared: Int) -> set[tuple[int, int]]:
         own = order[start:end]
         if len(own) < 2:
             continue
-        apart = np.linalg.norm(place[own, None] - place[None, own], axis=2) >= SHOWN_STEP
-        first, second = np.nonzero(apart & (at[own, None] < at[None, own]))
+        apart = lengths(place[own, None] - place[None, own]) >= SHOWN_STEP
+        first, second = true_places(apart & (at[own, None] < at[None, own]))
         found.append(at[own[first]] * classes + at[own[second]])
     return {divmod(pair, classes) for pair in np.unique(np.concatenate(found)).tolist()}
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.directions import UP, lies_across
 from linecad.geometry import PhotoLength, directions_to, vanishing_points
 from linecad.graph.connectivity import group_numbers
@@ -121,7 +121,7 @@ def _coincidences(
 
 def _image_lines(same: Bool) -> int:
     """The number of groups of segments that pairs of the mask (A, B) put on one image line."""
-    one, other = np.nonzero(same)
+    one, other = true_places(same)
     if len(one) == 0:
         return 0
     group = group_numbers(sum(same.shape), np.column_stack([one, len(same) + other]))

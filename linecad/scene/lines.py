@@ -55,9 +55,10 @@ class Lines:
 
     def _freeze_pieces(self) -> None:
         """Make the pieces read-only, and none where they are left out."""
-        given = self.pieces or (np.zeros((0, 2, 2)),) * len(self.id)
-        frozen = tuple(np.array(each, np.float64).reshape(-1, 2, 2) for each in given)
-        for each in frozen:
+        none = np.zeros((0, 2, 2))  # most lines have none, and share it
+        given = self.pieces or (none,) * len(self.id)
+        frozen = tuple(np.array(each, np.float64).reshape(-1, 2, 2) if len(each) else none for each in given)
+        for each in (none, *filter(len, frozen)):
             each.flags.writeable = False
         object.__setattr__(self, "pieces", frozen)
 

@@ -98,7 +98,9 @@ class StripDrawer:
         pixels, depth = self.seen_at(wall, along[None], -np.exp(log_height)[:, None])
         height, width = self._pixels.shape[:2]
         at = pixels * self._shrunk
-        seen = (depth > 0) & ((at > BORDER) & (at < np.array([width, height]) - 1 - BORDER)).all(axis=2)
+        seen = depth > 0
+        for number, size in enumerate((width, height)):
+            seen &= (at[..., number] > BORDER) & (at[..., number] < size - 1 - BORDER)
         if seen.mean() < LEAST_SEEN:
             return None
         colour = self._colours(at, seen)

@@ -62,13 +62,14 @@ def _crowd(segments: Segments, middle: Float, along: Float, which: Int, place: F
     """How many parallel segments per px lie beside the end (M,) of segments `which` at the gap in `place` (M, 2)."""
     found = np.zeros(len(which))
     for axis in np.unique(segments.axis[which]).tolist():
-        parallel = np.flatnonzero(segments.axis == axis)
+        parallel = segments.axis == axis
+        own_ends, own_middle = segments.ends[parallel], middle[parallel]
         for number in np.flatnonzero(segments.axis[which] == axis).tolist():
             line = which[number]
             ends = segments.ends[line]
             near = ends[np.linalg.norm(ends - place[number], axis=1).argmin()]
-            reach = (segments.ends[parallel] - near) @ along[line] * scale
-            offset = (middle[parallel] - near) @ np.array([-along[line, 1], along[line, 0]]) * scale
+            reach = (own_ends - near) @ along[line] * scale
+            offset = (own_middle - near) @ np.array([-along[line, 1], along[line, 0]]) * scale
             beside: Bool = (np.abs(offset) < CROWD_ACROSS) & (reach.min(axis=1) < CROWD_ALONG)
             beside &= reach.max(axis=1) > -CROWD_ALONG
             found[number] = beside.sum() - 1

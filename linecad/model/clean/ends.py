@@ -67,13 +67,14 @@ def _meeting(strokes: Strokes, share: float) -> _Pairs:
         step = len(places) + 1
         key = strokes.number[others, third] * step + np.searchsorted(places, strokes.offset[others, axis])
         order = np.argsort(key, kind="stable")
+        key, others = key[order], others[order]
         for end in range(2):
             at, number = strokes.reach[line, end], strokes.number[line, third] * step
-            low = np.searchsorted(key[order], number + np.searchsorted(places, at - near[line], "left"))
-            high = np.searchsorted(key[order], number + np.searchsorted(places, at + near[line], "right"))
+            low = np.searchsorted(key, number + np.searchsorted(places, at - near[line], "left"))
+            high = np.searchsorted(key, number + np.searchsorted(places, at + near[line], "right"))
             row, place = ragged(low, high - low)
             firsts.append(line[row])
-            seconds.append(others[order[place]])
+            seconds.append(others[place])
     first, second = np.concatenate(firsts), np.concatenate(seconds)
     across = strokes.offset[first, strokes.axis[second]]
     keep = strokes.component[first] == strokes.component[second]
@@ -117,11 +118,14 @@ def _closed_once(strokes: Strokes, pairs: _Pairs) -> tuple[Float, Bool]:
 
 def _nearest(end: Float, depth: Float, pairs: _Pairs, short: Float) -> tuple[Int, Float]:
     """Which pair (N,) brings each end (N,) nearest to a line, FREE for none within NEAR, and the share of the depth."""
-    apart = np.hypot(pairs.place - end[pairs.line], short) / depth[pairs.line]
-    near = np.flatnonzero(apart <= NEAR)
-    order = near[np.lexsort((near, apart[near]))][::-1]
+    along, limit = pairs.place - end[pairs.line], depth[pairs.line]
+    near = np.flatnonzero(np.abs(along) <= 2 * NEAR * limit)  # few, for which alone the distance is worth its time
+    apart = np.hypot(along[near], short[near]) / limit[near]
+    order = np.argsort(apart, kind="stable")[::-1]
+    order = order[apart[order] <= NEAR]
+    nearest, line = near[order], pairs.line[near[order]]
     pair, distance = np.full(len(end), FREE), np.full(len(end), np.inf)
-    pair[pairs.line[order]], distance[pairs.line[order]] = order, apart[order]  # the nearest is written last
+    pair[line], distance[line] = nearest, apart[order]  # the nearest is written last
     return pair, distance
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.geometry import depths_beside, ring_sides, world_rays
 from linecad.model.clean.ends import (
     MEETS,
@@ -131,7 +131,7 @@ def _outlines_on(strokes: Strokes, line: Int, edges: Float, depths: Float, sight
         turn = along[:, :1] * across[:, 1] - along[:, 1:] * across[:, 0]
         off_x, off_y = (start[:, axis, None] - first[:, axis] for axis in range(2))
         share = (off_x * along[:, 1:] - off_y * along[:, :1]) / -turn  # along the edge
-        row, edge = np.nonzero((share >= -MEETS) & (share <= 1 + MEETS))
+        row, edge = true_places((share >= -MEETS) & (share <= 1 + MEETS))
         pixel = first[edge] + share[row, edge, None] * across[edge]
     seen = np.isfinite(pixel).all(axis=1)
     row, edge, pixel = row[seen], edge[seen], pixel[seen]

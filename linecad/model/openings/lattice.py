@@ -6,7 +6,7 @@ columns, or equal distances in a row, say that there should be one more, it is p
 
 import numpy as np
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.model.openings.raster import Raster
 
 SAME = 0.08  # of a rectangle's side, by which those of one row or column may differ
@@ -29,7 +29,7 @@ def distinct(box: Int, value: Float, double: float = DOUBLE, most: int = MOST) -
         tall = np.minimum(v1[0], v1) - np.maximum(v0[0], v0)
         shared = np.maximum(wide, 0) * np.maximum(tall, 0)
         apart = np.flatnonzero(shared < double * (area[0] + area - shared))
-        order, left = order[apart], left[:, apart]
+        order, left = order[apart], left.take(apart, axis=1)  # a third of the time of an index
     return np.array(kept, np.int64)
 
 
@@ -79,10 +79,10 @@ def propose(box: Int, raster: Raster) -> Int:
         np.abs(np.subtract.outer(tall, tall)) <= 0.6 * tall[:, None]
     )
     has_mate = np.any(same_row | same_column, axis=1)
-    a, b = np.nonzero(alike & has_mate[:, None] & has_mate)
+    a, b = true_places(alike & has_mate[:, None] & has_mate)
     found.append(np.column_stack([seeds[a, :2], seeds[b, 2:]]))
     # The distance between two of a row, once more on either side and half-way.
-    a, b = np.nonzero(same_row)
+    a, b = true_places(same_row)
     shift = flat[b, 0] - flat[a, 0]
     for times in (-1.0, 0.5, 2.0):
         start = flat[a, 0] + times * shift
@@ -90,7 +90,7 @@ def propose(box: Int, raster: Raster) -> Int:
         inside = (moved[:, 0] > raster.u[0]) & (moved[:, 1] < raster.u[-1])
         columns = np.rint(np.interp(moved[inside], raster.u, np.arange(len(raster.u)))).astype(np.int64)
         found.append(np.column_stack([columns, seeds[a[inside], 2:]]))
-    a, b = np.nonzero(same_column)
+    a, b = true_places(same_column)
     shift_v = seeds[b, 2] - seeds[a, 2]
     for times in (-1.0, 0.5, 2.0):
         start_v = np.rint(seeds[a, 2] + times * shift_v).astype(np.int64)

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.model.openings.raster import Raster
 
 LEAST_SIDE = 5  # columns or rows; facades seen obliquely show no more of a window
@@ -120,8 +120,8 @@ def _sticks(raster: Raster) -> tuple[Int, Int]:
     closed = cv2.morphologyEx(wide, cv2.MORPH_CLOSE, np.ones((GAP, 1), np.uint8))
     opened = cv2.morphologyEx(closed, cv2.MORPH_OPEN, np.ones((LEAST_STICK, 1), np.uint8))
     change = np.diff(np.pad(opened, ((1, 1), (0, 0))).astype(np.int8), axis=0)
-    column, start = np.nonzero(change.T == 1)
-    _, end = np.nonzero(change.T == -1)
+    column, start = true_places(change.T == 1)
+    _, end = true_places(change.T == -1)
     own = np.pad(np.cumsum(thin, axis=0, dtype=np.int64), ((1, 0), (0, 0)))
     around = np.pad(np.cumsum(wide, axis=0, dtype=np.int64), ((1, 0), (0, 0)))
     weight = own[end, column] - own[start, column] + (around[end, column] - around[start, column])

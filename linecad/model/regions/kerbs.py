@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.directions import UP, components, directions_of, partner
-from linecad.geometry import world_rays
+from linecad.geometry import lengths, world_rays
 from linecad.model.regions import partition
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.labelling import Labels
@@ -70,6 +70,16 @@ class _Lane:
     colour: NDArray[Any]  # (R, C, 3) CIE L*a*b*
     shown: Bool  # (R, C) whether the photo shows ground there
     length: Float  # (R, C) of the photo, along the row, as a share of its width
+
+
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Where the photo shows a lane."""
+
+    at: Float  # (R, C, 2) px, 0 where it does not
+    inside: Bool  # (R, C) whether it does
+    shown: Bool  # (R, C) as of the lane
+    length: Float  # (R, C)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,15 +153,14 @@ def find_kerbs(labels: Labels, raster: Raster, view: View) -> list[Kerb]:
     if view.photo is None or "ground" not in kinds or "ceiling" in kinds:
         return []
     is_ground = (labels.label[labels.cell] == _ground(labels)) & ~raster.plants
-    colour = cv2.cvtColor(cv2.GaussianBlur(view.photo, (3, 3), 0).astype(np.float32) / 255, cv2.COLOR_RGB2Lab)
-    lanes = {
+    places = {
         (along, side): [
-            lane for way in (1.0, -1.0)
-            if (lane := _lane((along, way, side), colour, is_ground, raster, view)) is not None
+            seen for way in (1.0, -1.0) if (seen := _places((along, way, side), is_ground, raster, view)) is not None
         ]
         for along in (axis for axis in range(len(directions_of(view.turns))) if axis != UP)
         for side in (1.0, -1.0)
     }  # fmt: skip
+    lanes = _lanes(places, view.photo)
     found = [kerb for key, own in lanes.items() for lane in own for kerb in _kerbs(lane, *key, LONG)]
     if not found:
         return []
@@ -161,9 +170,7 @@ def find_kerbs(labels: Labels, raster: Raster, view: View) -> list[Kerb]:
     return [best, *sorted(opposite, key=lambda kerb: -kerb.weight)[:1]]
 
 
-def _lane(
-    where: tuple[int, float, float], colour: NDArray[Any], is_ground: Bool, raster: Raster, view: View
-) -> _Lane | None:
+def _places(where: tuple[int, float, float], is_ground: Bool, raster: Raster, view: View) -> _Places | None:
     """The ground along an axis, one way and on one side; None where the photo does not show enough of it."""
     along, way, side = where
     axes = directions_of(view.turns)
@@ -174,23 +181,45 @@ def _lane(
     seen = points @ (view.camera.matrix @ view.rotation).T
     depth = seen[..., 2]
     before = depth > NEAREST * np.finfo(np.float32).eps
-    pixels = seen[..., :2] / np.where(before, depth, 1.0)[..., None]
-    size = np.array([view.camera.width, view.camera.height])
-    inside = before & ((pixels > 0) & (pixels < size - 1)).all(axis=2)
+    pixels, inside = np.empty((*before.shape, 2)), before
+    for number, size in enumerate((view.camera.width, view.camera.height)):
+        at = seen[..., number] / np.where(before, depth, 1.0)
+        inside = inside & (at > 0) & (at < size - 1)
+        pixels[..., number] = at
     if not inside.any():
         return None
-    pixels = np.where(inside[..., None], pixels, 0.0)
+    pixels[~inside] = 0.0
     column, row = np.rint(raster.samples_of(pixels)).astype(np.int64).transpose(2, 0, 1)
     height, width = raster.shape
     sample = np.clip(row, 0, height - 1) * width + np.clip(column, 0, width - 1)
-    step = np.linalg.norm(np.diff(pixels, axis=0, append=pixels[-1:]), axis=2)
-    shown = inside & is_ground[sample] & (step > FINEST * size[0])
+    step = lengths(np.diff(pixels, axis=0, append=pixels[-1:]))
+    shown = inside & is_ground[sample] & (step > FINEST * view.camera.width)
     if not shown.any():
         return None
-    at = pixels.astype(np.float32)
-    length = np.linalg.norm(np.diff(pixels, axis=1, append=pixels[:, -1:]), axis=2) / size[0]
+    length = lengths(np.diff(pixels, axis=1, append=pixels[:, -1:])) / view.camera.width
     length[:, :-1] *= inside[:, 1:]
-    return _Lane(cv2.remap(colour, at[..., 0], at[..., 1], cv2.INTER_LINEAR), shown, np.where(shown, length, 0.0))
+    return _Places(pixels, inside, shown, np.where(shown, length, 0.0))
+
+
+def _lanes(
+    places: dict[tuple[int, float], list[_Places]], photo: NDArray[np.uint8]
+) -> dict[tuple[int, float], list[_Lane]]:
+    """The lanes at places of a photo (H, W, 3) RGB; what is outside the photo has the colour of its first pixel."""
+    tops = [seen.at[seen.inside][:, 1].min() for own in places.values() for seen in own]
+    if not tops:
+        return {key: [] for key in places}
+    top = int(min(tops))
+    # Half of the photo is above the horizon, and its conversion would take longer than all else here.
+    smooth = cv2.GaussianBlur(photo, (3, 3), 0)
+    rows = np.concatenate([smooth[:1], smooth[top:]])
+    colour = cv2.cvtColor(np.divide(rows, np.float32(255), dtype=np.float32), cv2.COLOR_RGB2Lab)
+    lanes: dict[tuple[int, float], list[_Lane]] = {key: [] for key in places}
+    for key, own in places.items():
+        for seen in own:
+            across, down = seen.at.astype(np.float32).transpose(2, 0, 1)
+            row = np.where(seen.inside, down - top + 1, 0)
+            lanes[key].append(_Lane(cv2.remap(colour, across, row, cv2.INTER_LINEAR), seen.shown, seen.length))
+    return lanes
 
 
 def _kerbs(lane: _Lane, along: int, side: float, least: float) -> list[Kerb]:

@@ -11,7 +11,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Bool, Float, Int, true_places
 from linecad.depth.normals import UNTOLD, Normals
 from linecad.directions import Turns, components
 from linecad.geometry import depths_beside, directions_to, vanishing_points, world_rays
@@ -183,7 +183,7 @@ def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, 
     fine = (shape[0] * FINER, shape[1] * FINER)
     resized = np.asarray(cv2.resize(photo, fine[::-1], interpolation=cv2.INTER_AREA), np.uint8)
     across, down, strength = _gradients(_grey(resized), 0.8)
-    row, column = np.nonzero(strength > EDGE)
+    row, column = true_places(strength > EDGE)
     pixels = np.column_stack([column + 0.5, row + 0.5]) * (step / FINER) - 0.5
     along = np.column_stack([-down[row, column], across[row, column]])
     along /= np.linalg.norm(along, axis=1, keepdims=True)

@@ -69,7 +69,7 @@ def turn_between(one, other):
 def test_slopes_are_those_of_small_steps(x, y, z, focal, off, radial, seed):
     """Sines go by the parameters as central differences say; where a vanishing point is far from the segments."""
     straight = View(rotation_about(np.array([x, y, z])), focal, MIDDLE + np.array([off, -off]))
-    places = camerafit.coordinates(anywhere(40, seed))
+    places = camerafit.Places(anywhere(40, seed))
     for view, free in ((straight, np.arange(RADIAL)), (replace(straight, radial=radial), np.arange(PARAMETERS))):
         sine, _, slope = camerafit._angles(places, view, WIDTH, HEIGHT, free)
         towards = camerafit.angles_against(places, view, WIDTH, HEIGHT).towards

@@ -15,6 +15,7 @@ from linecad.evaluation.references import open_case
 from linecad.finding import find_lines
 from linecad.geometry import angles_to, central_camera, rotation_about, vanishing_points
 from linecad.line_graph import ManhattanFrame
+from linecad.lines import vanishing_point_lines
 from linecad.lines.segments import find_segments
 from linecad.lines.vanishing_point_lines import START, _runs, find_vanishing_point_lines, least_evidence
 from linecad.scene import Camera
@@ -98,6 +99,17 @@ def test_a_line_ends_where_its_edge_ends():
     upright = lines.ends[(lines.axis == 2) & (np.abs(lines.ends[..., 0] - ends[0, 0]).max(axis=1) < 1)]
     assert len(upright) == 1
     assert np.sort(upright[0, :, 1]) == pytest.approx(np.sort(ends[:, 1]), abs=4)
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_what_is_not_in_the_photo_tells_nothing_of_it(view, monkeypatch):
+    camera, frame = seen(view)
+    photo = with_edge(edge_towards(camera, frame, 2, 300), 20, 4)
+    found = find_vanishing_point_lines(photo, camera, frame)
+    monkeypatch.setattr(vanishing_point_lines, "_within_photo", lambda grid, *_: grid)
+    everywhere = find_vanishing_point_lines(photo, camera, frame)
+    assert len(found)
+    np.testing.assert_array_equal(found.ends, everywhere.ends)
 
 
 def test_two_lines_far_apart_on_one_row_stay_two():
