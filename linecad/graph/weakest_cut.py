@@ -1,6 +1,7 @@
 """The weakest place of a graph: the cut of least conductance along its slowest ways of swinging."""
 
 import numpy as np
+from scipy.linalg import eigh
 from scipy.sparse import csr_matrix, identity
 from scipy.sparse.linalg import eigsh
 
@@ -43,7 +44,7 @@ def _slowest_ways(count: int, edges: Int, link: Float) -> Float:
         matrix = np.eye(count)
         np.subtract.at(matrix, tuple(edges.T), link)
         np.subtract.at(matrix, tuple(edges.T[::-1]), link)
-        return np.asarray(np.linalg.eigh(matrix)[1].T[1 : WAYS + 1])
+        return np.asarray(eigh(matrix, subset_by_index=(1, WAYS), overwrite_a=True, check_finite=False)[1].T)
     both = np.concatenate([edges, edges[:, ::-1]])
     laplacian = identity(count) - csr_matrix((np.r_[link, link], tuple(both.T)), (count, count))
     # A fixed start, so that the same graph has the same cut.

@@ -117,9 +117,10 @@ def _cuts(lines: Int, edges: Int, weight: Float) -> list[tuple[Int, Int]]:
             continue
         cut = weakest_cut(len(part), own, own_weight, LEAST_SIDE)
         if cut is not None and cut[1] < WEAKEST:
-            one, other = part[cut[0]], part[~cut[0]]
-            found.append((one, other) if len(one) >= len(other) else (other, one))
-            left += [one, other]
+            # Of sides of one size that with the first line counts as the larger, whatever the sign of the way was.
+            sides = sorted((part[cut[0]], part[~cut[0]]), key=lambda side: (-len(side), int(side[0])))
+            found.append((sides[0], sides[1]))
+            left += sides
     return found
 
 

@@ -12,7 +12,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from linecad.arrays import Float
+from linecad.arrays import Float, true_places
 from linecad.directions import UP, across, count_of, level_axes
 from linecad.geometry import depths_beside
 from linecad.ties.setting import Setting
@@ -108,16 +108,16 @@ def _distances(points: Float, reach: Float, depth: Float, across: int, normal: i
     order = np.argsort(points[:, across], kind="stable")
     points, reach, depth = points[order], reach[order], depth[order]
     length = reach[:, 1] - reach[:, 0]
-    found = []
-    for first in range(len(order) - 1):
-        rest = slice(first + 1, None)
-        apart = points[rest, across] - points[first, across]
-        shorter, longer = np.minimum(length[rest], length[first]), np.maximum(length[rest], length[first])
-        beside = np.minimum(reach[rest, 1], reach[first, 1]) - np.maximum(reach[rest, 0], reach[first, 0])
-        near = np.abs(points[rest, normal] - points[first, normal]) < ONE_PLANE * depth[first]
-        near &= (apart > LEAST_SIZE * depth[first]) & (beside > BESIDE * shorter) & (shorter > LIKE * longer)
-        found.append(apart[near][:NEAREST])
-    return np.log(np.concatenate(found)) if found else np.zeros(0)
+    in_plane = np.abs(points[:, normal] - points[:, normal, None]) < ONE_PLANE * depth[:, None]
+    first, second = true_places(np.triu(in_plane, 1))
+    apart = points[second, across] - points[first, across]
+    shorter, longer = np.minimum(length[second], length[first]), np.maximum(length[second], length[first])
+    beside = np.minimum(reach[second, 1], reach[first, 1]) - np.maximum(reach[second, 0], reach[first, 0])
+    near = (apart > LEAST_SIZE * depth[first]) & (beside > BESIDE * shorter) & (shorter > LIKE * longer)
+    first, apart = first[near], apart[near]
+    # Pairs stand line by line, each line's next ones first.
+    is_next = np.arange(len(first)) - np.searchsorted(first, first) < NEAREST
+    return np.asarray(np.log(apart[is_next]))
 
 
 def _spectrum(sizes: Float) -> Spectrum | None:

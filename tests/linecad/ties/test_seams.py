@@ -71,8 +71,9 @@ def test_without_a_photo_the_shade_is_the_usual_one(one_body):
     assert find_seams(one_body)[0].features["shade"] == TYPICAL_SHADE
 
 
-def test_sides_beside_each_other_overlap_down_and_not_across(one_body):
-    found = find_seams(one_body)[0].features
+def test_sides_beside_each_other_overlap_down_and_not_across(build_town, build_row, build_setting):
+    touching = build_town(*build_row(3, end=0.9))
+    found = find_seams(build_setting(touching, body=np.zeros(len(touching.part), int)))[0].features
     assert found["overlap across"] < 0.2
     assert found["overlap down"] > 0.8
 
