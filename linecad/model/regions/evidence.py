@@ -32,7 +32,6 @@ NARROWEST = 0.02  # of its offset, of a surface: what is less is relief
 FURTHEST, NEARLY_ALL = 1.25, 0.98  # times the depth of so many of a surface's lines; it does not go on for ever
 RARE_COST = 0.3  # of levels that are no ground: soffits and tops of walls are small
 WALLED_COST = 0.5  # of ground and ceiling behind a wall
-ENCLOSED_COST = 3.0  # of the same behind all walls there, in a room, whose walls go from floor to ceiling
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
 MAPPED_COST = 0.8  # of a wall that only a depth map shows
@@ -117,8 +116,6 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     colour = raster.colour.reshape(-1, 3)
     green = GREEN_COST * ((colour[:, 1] < GREEN[0]) & (colour[:, 2] > GREEN[1]))
     ground = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
-    # A depth map tells by itself which wall ends where.
-    is_room = raster.map_depth is None and any(surface.kind == "ceiling" for surface in surfaces)
     for number, surface in enumerate(surfaces):
         cost = _surface_cost(raster, lines, surface, depth[:, number])
         if ground is not None and surface.kind != "ground":
@@ -126,8 +123,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
         turned = (raster.facing != UNTOLD) & (raster.facing != surface.axis)
         is_level = surface.kind in ("ground", "ceiling")
         if is_level:
-            behind, enclosed = _behind_walls(raster, lines, surfaces, depth, number)
-            cost = cost + np.where(enclosed & is_room, ENCLOSED_COST, WALLED_COST * behind)
+            cost = cost + WALLED_COST * _behind_walls(raster, lines, surfaces, depth, number)
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
@@ -200,12 +196,9 @@ def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Fl
     return over
 
 
-def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> tuple[Bool, Bool]:
-    """Where (S,) a level would be seen through a wall between the wall's ends, and where through all that are there.
-
-    A wall may go on beyond its lines, where no other is. `depth` (S, K) are those of the surfaces.
-    """
-    hidden, through, before_some = (np.zeros(raster.size, bool) for _ in range(3))
+def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> Bool:
+    """Where (S,) a level would be seen through a wall between the wall's ends, by the depths (S, K) of surfaces."""
+    hidden = np.zeros(raster.size, bool)
     reach = depth[:, level] / BEHIND
     for number, surface in enumerate(surfaces):
         if surface.kind != "wall":
@@ -217,12 +210,8 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
             low, high = surface.box[:, along]
         before = depth[:, number]
         at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
-        is_met, is_before = np.isfinite(before), before < reach
-        there = is_met & (at > low) & (at < high)
-        hidden |= there & is_before
-        before_some |= there & ~is_before
-        through |= is_met & is_before & (at > 2 * low - high) & (at < 2 * high - low)
-    return hidden, through & ~before_some
+        hidden |= (before < reach) & (at > low) & (at < high)
+    return hidden
 
 
 def _beyond(raster: Raster, kind: str) -> Float:

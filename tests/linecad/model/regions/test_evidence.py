@@ -10,7 +10,6 @@ from linecad.model.regions.evidence import (
     BESIDE_COST,
     CLUTTER,
     CLUTTER_COST,
-    ENCLOSED_COST,
     GREEN_COST,
     NEAR_COST,
     NEVER,
@@ -188,39 +187,6 @@ def test_the_ground_is_not_seen_through_walls(house, raster):
     assert more[sample(700, 450)] == pytest.approx(WALLED_COST)
     assert more[sample(700, 600)] == 0  # before the wall
     assert more[sample(300, 450)] == more[sample(950, 450)] == 0  # beside it
-
-
-def test_in_a_room_walls_go_from_floor_to_ceiling(house, raster):
-    room = [Surface("ground", 2, -2.0, NO_LINES, None), Surface("ceiling", 2, 2.0, NO_LINES, None)]
-    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
-
-    def more(*walls):
-        """By how much walls make floor (0) and ceiling (1) dearer."""
-        alone, both = (
-            sample_costs(raster, house.lines, surfaces, NO_HEAVEN, np.inf) for surfaces in (room, [*room, *walls])
-        )
-        return both[:, :2] - alone[:, :2]
-
-    box = np.array([[-90.0, 40.0, -9.0], [90.0, 40.0, 9.0]])
-    near, far = wall(8.0, rows), Surface("wall", 1, 40.0, NO_LINES, None, box=box)
-    one = more(near)
-    assert one[sample(700, 450), 0] == one[sample(700, 270), 1] == pytest.approx(ENCLOSED_COST)
-    assert one[sample(700, 600), 0] == one[sample(700, 120), 1] == 0  # before the wall
-    # A little beside its lines the wall goes on, where no other is.
-    assert one[sample(300, 450), 0] == pytest.approx(ENCLOSED_COST)
-    # Behind a shelf, and before the wall behind it, there may be floor.
-    two = more(near, far)
-    assert two[sample(700, 450), 0] == pytest.approx(WALLED_COST)
-    assert two[sample(700, 375), 0] == pytest.approx(ENCLOSED_COST)
-
-
-def test_with_a_depth_map_a_room_is_no_other_scene(house, raster):
-    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
-    told = replace(raster, map_depth=np.full(raster.size, np.nan), map_width=0.02)
-    ground, ceiling = Surface("ground", 2, -2.0, NO_LINES, None), Surface("ceiling", 2, 2.0, NO_LINES, None)
-    outdoors = sample_costs(told, house.lines, [ground, wall(8.0, rows)], NO_HEAVEN, np.inf)
-    room = sample_costs(told, house.lines, [ground, wall(8.0, rows), ceiling], NO_HEAVEN, np.inf)
-    np.testing.assert_allclose(room[:, :2], outdoors[:, :2])
 
 
 def test_a_depth_map_that_says_another_axis_speaks_against_a_surface(house, raster):
