@@ -174,7 +174,8 @@ def test_a_key_goes_through_the_frames(new_screen, start, two_frames):
     screen.press("x")
     screen.press("q")
     screen.wait("linecad.draft.proposal?.axis === 'x2'")
-    assert "Along x2, fixed" in screen.page.locator("#inspector").inner_text()
+    # What is drawn is told when the page paints next.
+    screen.wait("document.querySelector('#inspector').innerText.includes('Along x2, fixed')")
     screen.page.mouse.up()
     screen.settle()
     assert [each["axis"] for each in screen.state["lines"] if each["origin"] == "drawn"] == ["x2"]
