@@ -7,6 +7,7 @@ not decided. The upright may move with the frames, the camera is known.
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from math import gamma
 
 import numpy as np
 
@@ -26,6 +27,23 @@ LEAST_SHARE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
+class Noise:
+    """How far segments lie off the directions that they run along: Student's t, and walls off their frame."""
+
+    freedom: float  # degrees of freedom: the more there are, the seldomer a segment errs by far more than usual
+    scale: float  # times that of `joint_fit`
+    turn: float  # rad, by which the level directions of real walls lie off their frame
+    upright: Float  # (3,) about which they are turned, in the camera frame
+
+    def density(self, ratio: Float) -> Float:
+        """Of Student's t."""
+        freedom = self.freedom
+        most = gamma((freedom + 1) / 2) / gamma(freedom / 2) / np.sqrt(freedom * np.pi)
+        density: Float = most * (1 + ratio**2 / freedom) ** (-(freedom + 1) / 2)
+        return density
+
+
+@dataclass(frozen=True, eq=False)
 class Observed:
     """Segments before a camera that is known."""
 
@@ -34,6 +52,7 @@ class Observed:
     center: Float  # (2,) px
     width: int
     height: int
+    noise: Noise | None = None  # that of `joint_fit`
 
     @cached_property
     def _places(self) -> Places:
@@ -46,7 +65,26 @@ class Observed:
     def density(self, directions: Float) -> Float:
         """Densities (M, N) of the segments along unit directions (M, 3) in the camera frame."""
         angles = self.against(directions)
-        return student(angles.sine / angles.scale) / angles.scale
+        scale = self.scale(angles, directions)
+        return self.student(angles.sine / scale) / scale
+
+    @property
+    def freedom(self) -> float:
+        """Degrees of freedom of the angles."""
+        return FREEDOM if self.noise is None else self.noise.freedom
+
+    def student(self, ratio: Float) -> Float:
+        """Density of angles over their scales."""
+        return student(ratio) if self.noise is None else self.noise.density(ratio)
+
+    def scale(self, angles: Angles, directions: Float) -> Float:
+        """(M, N) rad, of the angles against unit directions (M, 3) in the camera frame."""
+        if self.noise is None:
+            return angles.scale
+        K = View(directions, self.focal, self.center).matrix
+        slope = angles.slope(np.cross(self.noise.upright, directions) @ K.T)
+        scale: Float = np.hypot(self.noise.scale * angles.scale, self.noise.turn * slope)
+        return scale
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,13 +145,15 @@ def fit_mixture(seen: Observed, start: Mixture) -> Mixture:
     for _ in range(ROUNDS):
         directions = np.concatenate([rotation[:, 2][None], level_directions(rotation, turns)])
         angles = seen.against(directions)
-        sine, scale = angles.sine, angles.scale
-        likely = share[:, None] * np.vstack([student(sine / scale) / scale, np.full((1, len(seen.ends)), 1 / np.pi)])
+        sine, scale = angles.sine, seen.scale(angles, directions)
+        likely = share[:, None] * np.vstack(
+            [seen.student(sine / scale) / scale, np.full((1, len(seen.ends)), 1 / np.pi)]
+        )
         density = likely.sum(axis=0)
         belongs = likely / density
         share = np.maximum(belongs.mean(axis=1), LEAST_SHARE)
         share = share / share.sum()
-        say = belongs[:-1] * (FREEDOM + 1) / (FREEDOM + (sine / scale) ** 2) / scale**2
+        say = belongs[:-1] * (seen.freedom + 1) / (seen.freedom + (sine / scale) ** 2) / scale**2
         changes = [np.cross(rotation[:, axis], directions) for axis in range(2)]
         for number in range(len(turns)):
             change = np.zeros_like(directions)

@@ -12,6 +12,7 @@ from linecad.arrays import Float, Int
 from linecad.camera.frame_mixture import (
     GRID,
     Mixture,
+    Noise,
     Observed,
     fit_mixture,
     fixed_mixture,
@@ -36,6 +37,11 @@ LARGEST_MOVE = np.radians(3.0)  # of the single frame, a mean of several: so far
 WEDGE = np.radians(1.0)  # of planes through one direction
 MOST_OF_WEDGE = 5.0  # nats
 MOST_FRAMES = 8
+# Where there are several frames, lines that are a few scales off one belong to another: tails as long as those that
+# find the camera would leave them where they are (docs/decisions/0095).
+FREEDOM_OF_SEVERAL = 4.0
+SCALE_OF_SEVERAL = 0.9
+TURN_OF_SEVERAL = np.radians(0.2)
 QUARTER = np.pi / 2
 LEAST_SHARE = 0.05  # of the segment length; shadows of a window and wings at an odd angle made frames of 2 to 4 %
 LARGEST_ERROR = np.radians(0.5)  # of a turn; a tenth of what neighbours in a street are usually turned
@@ -86,18 +92,28 @@ class HorizontalFrames:
 
     def labelled(self, segments: Segments, camera: Camera) -> Int:
         """(N,) the direction that each segment most likely runs along, as its row in `directions`, or -1 for none."""
-        return _labelled(segments, camera, self.directions, self.shares)
+        return _labelled(_observed(segments.ends, camera), self.directions, self.shares)
 
 
 def find_horizontal_frames(raw: Segments, camera: Camera, frame: ManhattanFrame) -> HorizontalFrames:
     """The horizontal frames of segments `raw`, begun at a single Manhattan frame, which comes back where it suffices.
 
-    Where there are more, the main frame is that with the most evidence, fitted together with the others.
+    Where there are more, the main frame is that with the most evidence, fitted together with the others. Long tails
+    tell whether there are more, as clutter would make frames otherwise; shorter ones then tell which.
     """
     seen = _observed(longest(raw), camera)
+    found = _search(raw, camera, frame, seen)
+    if found is None:
+        return only_frame(raw, camera, frame)
+    noise = Noise(FREEDOM_OF_SEVERAL, SCALE_OF_SEVERAL, TURN_OF_SEVERAL, found.main.rotation[:, 2])
+    return _search(raw, camera, frame, replace(seen, noise=noise)) or found
+
+
+def _search(raw: Segments, camera: Camera, frame: ManhattanFrame, seen: Observed) -> HorizontalFrames | None:
+    """The horizontal frames of `seen`, the segments that decide, or None where the single frame suffices."""
     single = fixed_mixture(seen, frame.rotation, np.zeros(1))
     if _best_beside(seen, single)[1] < _cost(seen) / 2:
-        return only_frame(raw, camera, frame)
+        return None
     upright = fixed_mixture(seen, frame.rotation, np.zeros(0))
     found = fit_mixture(seen, upright.with_frame(_best_beside(seen, upright)[0]))
     while len(found.turns) < MOST_FRAMES:
@@ -109,10 +125,9 @@ def find_horizontal_frames(raw: Segments, camera: Camera, frame: ManhattanFrame)
         without, evidence = _without_each(seen, found)
         least = int(evidence.argmin())
         if evidence[least] >= _cost(seen):
-            several = _several(raw, camera, seen, found) if _explains(found, frame) else None
-            return several if several is not None else only_frame(raw, camera, frame)
+            return _several(raw, camera, seen, found) if _explains(found, frame) else None
         found = without[least]  # what came later explains what it did
-    return only_frame(raw, camera, frame)
+    return None
 
 
 def _observed(ends: Float, camera: Camera) -> Observed:
@@ -198,7 +213,7 @@ def only_frame(raw: Segments, camera: Camera, frame: ManhattanFrame) -> Horizont
     fixed = fixed_mixture(seen, frame.rotation, np.zeros(1))
     error = _errors(fit_mixture(seen, fixed))
     gain = fixed.likelihood - fixed_mixture(seen, frame.rotation, np.zeros(0)).likelihood
-    return _described(raw, camera, frame, fixed, error, np.array([gain / TOGETHER]))
+    return _described(raw, None, camera, frame, fixed, error, np.array([gain / TOGETHER]))
 
 
 def _explains(found: Mixture, frame: ManhattanFrame) -> bool:
@@ -231,15 +246,22 @@ def _several(raw: Segments, camera: Camera, seen: Observed, found: Mixture) -> H
         return None
     turns = _within(found.turns[order] - found.turns[order[0]])
     mixture = fixed_mixture(seen, main.rotation, turns)
-    return _described(raw, camera, main, mixture, _errors(found)[order], evidence[order])
+    return _described(raw, seen.noise, camera, main, mixture, _errors(found)[order], evidence[order])
 
 
 def _described(
-    raw: Segments, camera: Camera, main: ManhattanFrame, mixture: Mixture, errors: Float, evidence: Float
+    raw: Segments,
+    noise: Noise | None,
+    camera: Camera,
+    main: ManhattanFrame,
+    mixture: Mixture,
+    errors: Float,
+    evidence: Float,
 ) -> HorizontalFrames:
     """The frames of a mixture (K,) with their errors, evidence and shares of the segment length."""
     shares = np.r_[mixture.share[[1, 2, 0]], mixture.share[3:]]
-    label = _labelled(raw, camera, mixture.directions, mixture.share)
+    seen = replace(_observed(raw.ends, camera), noise=noise)
+    label = _labelled(seen, mixture.directions, mixture.share)
     of_frame = np.where(label > 0, (label - 1) // 2, -1)
     length = raw.length
     frames = tuple(
@@ -251,13 +273,12 @@ def _described(
     return HorizontalFrames(main, frames, shares)
 
 
-def _labelled(segments: Segments, camera: Camera, directions: Float, share: Float) -> Int:
+def _labelled(seen: Observed, directions: Float, share: Float) -> Int:
     """(N,) the row of `directions` (M, 3) that each segment most likely runs along, or -1; `share` is (M + 1,)."""
-    seen = _observed(segments.ends, camera)
     sine = np.abs(seen.against(directions).sine)
-    likely = np.vstack([share[:-1, None] * seen.density(directions), np.full((1, len(segments)), share[-1] / np.pi)])
+    likely = np.vstack([share[:-1, None] * seen.density(directions), np.full((1, len(seen.ends)), share[-1] / np.pi)])
     label = likely.argmax(axis=0)
     is_along = label < len(directions)
     angle = np.take_along_axis(sine, np.where(is_along, label, 0)[None], axis=0)[0]
-    labels: Int = np.where(is_along & (angle < np.sin(label_angle(camera.width))), label, -1)
+    labels: Int = np.where(is_along & (angle < np.sin(label_angle(seen.width))), label, -1)
     return labels

@@ -117,6 +117,20 @@ def test_a_start_between_two_houses_is_parted():
     assert (abs(azimuth) + 45) % 90 - 45 == pytest.approx(2.5, abs=0.3) or abs(azimuth) == pytest.approx(87.5, abs=0.3)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_houses_three_degrees_apart_are_told_apart_where_a_third_is_turned_more(seed):
+    """With tails as long as those that find the camera, two of the three are found as their mean."""
+    ends = [
+        along(ROTATION, (60, 60, 80), seed, 0.4, 40.0),
+        along(turned(3), (20, 20, 0), seed + 10, 0.4, 40.0),
+        along(turned(15), (50, 50, 0), seed + 20, 0.4, 40.0),
+    ]
+    found = find(*ends, clutter(40, seed))
+    x = ROTATION.T @ found.main.rotation[:, 0]
+    azimuth = np.degrees(np.arctan2(x[1], x[0]) + [frame.turn for frame in found.frames])
+    assert sorted((azimuth + 45) % 90 - 45) == pytest.approx([0.0, 3.0, 15.0], abs=0.7)
+
+
 def test_the_main_frame_is_that_with_the_most_evidence():
     found = find(along(ROTATION, (25, 25, 40), 0, 0.2), along(turned(20), (120, 120, 40), 1, 0.2))
     assert [round(turn) for turn in turns(found)] in ([-20], [70])
