@@ -99,12 +99,15 @@ def find_horizontal_frames(raw: Segments, camera: Camera, frame: ManhattanFrame)
     """The horizontal frames of segments `raw`, begun at a single Manhattan frame, which comes back where it suffices.
 
     Where there are more, the main frame is that with the most evidence, fitted together with the others. Long tails
-    tell whether there are more, as clutter would make frames otherwise; shorter ones then tell which.
+    tell whether there are more that lines are given to, as clutter would make frames otherwise; shorter ones then tell
+    which.
     """
     seen = _observed(longest(raw), camera)
     found = _search(raw, camera, frame, seen)
     if found is None:
         return only_frame(raw, camera, frame)
+    if len(found.sound.frames) == 1:
+        return found  # others that are small would only take lines away from it
     noise = Noise(FREEDOM_OF_SEVERAL, SCALE_OF_SEVERAL, TURN_OF_SEVERAL, found.main.rotation[:, 2])
     return _search(raw, camera, frame, replace(seen, noise=noise)) or found
 

@@ -131,6 +131,19 @@ def test_houses_three_degrees_apart_are_told_apart_where_a_third_is_turned_more(
     assert sorted((azimuth + 45) % 90 - 45) == pytest.approx([0.0, 3.0, 15.0], abs=0.7)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_frames_too_small_to_be_given_lines_part_no_other(seed):
+    """The lines of a wall that is 3 degrees off were left out with a frame of their own."""
+    found = find(
+        along(ROTATION, (150, 150, 150), seed, 0.4, 60.0),
+        along(turned(3), (15, 15, 0), seed + 10, 0.4, 40.0),
+        along(turned(25), (12, 12, 0), seed + 20, 0.4, 50.0),
+    )
+    assert all(abs(turn) > 10 for turn in turns(found))
+    assert len(found.sound.frames) == 1
+    assert found.frames[0].share > 0.64
+
+
 def test_the_main_frame_is_that_with_the_most_evidence():
     found = find(along(ROTATION, (25, 25, 40), 0, 0.2), along(turned(20), (120, 120, 40), 1, 0.2))
     assert [round(turn) for turn in turns(found)] in ([-20], [70])
