@@ -52,6 +52,7 @@ SMOOTH = 0.30  # gradient of the sky
 LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
 MOST_LINES = 0.02  # share of samples on lines inside the sky
 BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
+WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.7
 
@@ -88,10 +89,12 @@ def look_up(raster: Raster) -> Heaven:
     brightest = max(light for light, _, _ in colours)
     rest = up.reshape(raster.shape) & ~np.any(pieces, axis=0)
     usual = float(np.median(raster.colour[rest][:, 0])) if rest.any() else 0.0
-    sky = [
-        own for own, (light, _, blue) in zip(pieces, colours, strict=True)
+    light_enough = [
+        (own, light, blue) for own, (light, _, blue) in zip(pieces, colours, strict=True)
         if light >= DARKEST * brightest and (blue < BLUE or light >= BRIGHT or light > BRIGHTER * usual)
     ]  # fmt: skip
+    coldest = min((blue for _, _, blue in light_enough), default=WARM)
+    sky = [own for own, light, blue in light_enough if blue < WARM or light >= BRIGHT or coldest >= WARM]
     seed = np.any(sky or pieces, axis=0).ravel()
     return Heaven(seed if sky else nothing, bool(sky), is_ceiling=not sky and seed.mean() > LEAST_CEILING)
 

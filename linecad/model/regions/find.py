@@ -13,11 +13,11 @@ from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.kerbs import on_kerbs
 from linecad.model.regions.labelling import find_labels
-from linecad.model.regions.mapped import FIRM_FEET, MappedDepths, laid_on, with_mapped
+from linecad.model.regions.mapped import MappedDepths, laid_on, with_mapped
 from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets, find_segments
-from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, ground_of_feet
+from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet
 from linecad.scene import Camera, Lines, Plane
 
 
@@ -41,8 +41,9 @@ def find_regions(
     heaven = look_up(raster)
     surfaces = find_surfaces(planes, lines, camera, look.feet, heaven.is_ceiling)
     trodden = ground_of_feet(surfaces, lines, look.feet)
-    surfaces = with_mapped(surfaces, raster, trodden if look.feet and look.feet.log_odds >= FIRM_FEET else None)
-    found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view)
+    firm = trodden if look.feet and look.feet.log_odds >= FIRM_FEET else None
+    surfaces = with_mapped(surfaces, raster, firm)
+    found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view, firm)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
 from linecad.model.regions import partition
+from linecad.model.regions.below import with_feet
 from linecad.model.regions.corners import Known, Side, find_ends, find_sides, with_sides
 from linecad.model.regions.cuts import Borders, energy, expand
 from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
@@ -80,9 +81,18 @@ class Labels:
 
 
 def find_labels(
-    segments: Float, lines: Lines, surfaces: list[Surface], raster: Raster, heaven: Heaven, view: View
+    segments: Float,
+    lines: Lines,
+    surfaces: list[Surface],
+    raster: Raster,
+    heaven: Heaven,
+    view: View,
+    firm: Surface | None = None,
 ) -> Labels:
-    """What each cell shows, of cells that `segments` (N, 2, 2) px cut out of the photo, the strongest first."""
+    """What each cell shows, of cells that `segments` (N, 2, 2) px cut out of the photo, the strongest first.
+
+    `firm` is the one of the surfaces that walls go down to: a ground whose height is sure.
+    """
     camera = view.camera
     costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
     drawn = _drawn(segments, raster)
@@ -92,6 +102,7 @@ def find_labels(
     costs, surfaces = costs[:, [*shown.tolist(), SKY, CLUTTER]], [surfaces[number] for number in shown.tolist()]
     label = np.searchsorted(shown, found.label) + (found.label == found.clutter)
     known = Known(label[found.cell], surfaces, lines, raster)
+    costs = with_feet(costs, known, firm)
     sides = find_sides(find_ends(known), known)
     while True:
         all_costs = with_sides(costs, sides, known)

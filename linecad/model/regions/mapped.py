@@ -27,7 +27,6 @@ EVEN = 0.7  # widths, by which it may be uneven there
 LEAST_WALL = 0.01  # of the photo's samples, of a wall that only the map shows
 LEAST_LEVEL = 0.04  # the same of a ground or ceiling that neither feet nor lines show
 MOST_WALLS = 8
-FIRM_FEET = 10.0  # log-odds of the feet of walls, from which on they know the ground better than a map
 SAME_LEVEL = 0.12  # log height within which feet or lines know the ground better than the map
 
 

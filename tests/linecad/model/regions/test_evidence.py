@@ -70,6 +70,25 @@ def test_what_is_blue_and_smooth_on_top_is_sky(house):
     assert not seed[125:].any()
 
 
+def test_light_plaster_beside_the_sky_is_no_sky(house):
+    """The plain wall above the shops of a street was its sky, and had no face."""
+    raster = under(BLUE_SKY, house)
+    colour = raster.colour.copy()
+    colour[:120, 240:] = (220, 129, 138)
+    colour[:120, 238:242] = (128, 128, 128)  # an edge between the two
+    gradient = raster.gradient.reshape(raster.shape).copy()
+    gradient[:120, 238:242] = 1.0
+    both = replace(raster, colour=colour, gradient=gradient.ravel())
+    seed = look_up(both).seed.reshape(raster.shape)
+    assert seed[10:110, 10:230].mean() > 0.9
+    assert not seed[:, 242:].any()
+    colour[:120, 240:] = (250, 129, 138)
+    bright = look_up(replace(both, colour=colour)).seed.reshape(raster.shape)
+    assert bright[10:110, 250:].mean() > 0.9  # a cloud
+    colour[:120] = (220, 129, 138)
+    assert look_up(replace(both, colour=colour)).seed.any()  # an evening: no part is colder
+
+
 def test_what_is_as_light_as_walls_and_not_blue_is_a_ceiling(house):
     # Light walls, lines apart.
     photo = np.full((720, 960, 3), WHITE, np.uint8)
