@@ -4,15 +4,19 @@ What the photo shows below the lowest line of a wall is as plain as the ground, 
 is seen hides the ground behind it: what would be ground farther away than the wall that is seen above it is that wall.
 """
 
+import cv2
 import numpy as np
 
 from linecad.arrays import Float, Int
 from linecad.model.regions.corners import Known
-from linecad.model.regions.evidence import BEHIND, depths
+from linecad.model.regions.evidence import BEHIND, depths, is_green
 from linecad.model.regions.surfaces import Surface
 
 HIDDEN_COST = 1.0  # of ground that would be seen through the wall above it
 WALL_COST = 0.6  # of that wall there, at most
+LEAST = 0.003  # of the photo; less is how exactly borders follow feet
+PLANTS = 15  # samples above the ground that are looked at for green
+MOST_GREEN = 0.3  # of them
 
 
 def with_feet(costs: Float, known: Known, firm: Surface | None) -> Float:
@@ -28,6 +32,8 @@ def with_feet(costs: Float, known: Known, firm: Surface | None) -> Float:
     depth = depths(known.raster, known.surfaces)
     for number in np.unique(above[above >= 0]).tolist():
         under = (above == number) & (depth[:, number] < depth[:, ground] / BEHIND)
+        if under.mean() < LEAST:
+            continue
         costs[under, ground] += HIDDEN_COST
         costs[under, number] = np.minimum(costs[under, number], WALL_COST)
     return costs
@@ -36,14 +42,17 @@ def with_feet(costs: Float, known: Known, firm: Surface | None) -> Float:
 def walls_above(known: Known, ground: int) -> Int:
     """The wall (S,) that is shown above each sample of surface `ground` in its column; -1 where none is, and elsewhere.
 
-    Clutter between the two does not count: a car stands before its wall.
+    Clutter between the two does not count: a car stands before its wall. Nor does a wall whose lowest part is green:
+    plants before it hide where it ends, and feet are found at theirs.
     """
     clutter = len(known.surfaces) + 1
     is_wall = np.array([surface.kind == "wall" for surface in known.surfaces] + [False] * 2)
     shown = known.shown.reshape(known.raster.shape)
+    grown = cv2.blur(is_green(known.raster).reshape(shown.shape).astype(np.float32), (1, PLANTS)) > MOST_GREEN
     above = np.full(shown.shape, -1)
     for row in range(1, len(shown)):
-        last = shown[row - 1]
-        above[row] = np.where(is_wall[last], last, np.where((last == ground) | (last == clutter), above[row - 1], -1))
+        last, plants = shown[row - 1], grown[max(row - 1 - PLANTS // 2, 0)]
+        seen = np.where(plants, -1, last)
+        above[row] = np.where(is_wall[last], seen, np.where((last == ground) | (last == clutter), above[row - 1], -1))
     found: Int = np.where(shown == ground, above, -1).ravel()
     return found

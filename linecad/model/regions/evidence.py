@@ -52,7 +52,8 @@ SMOOTH = 0.30  # gradient of the sky
 LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
 MOST_LINES = 0.02  # share of samples on lines inside the sky
 BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
-WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less
+WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
+EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.7
 
@@ -94,7 +95,11 @@ def look_up(raster: Raster) -> Heaven:
         if light >= DARKEST * brightest and (blue < BLUE or light >= BRIGHT or light > BRIGHTER * usual)
     ]  # fmt: skip
     coldest = min((blue for _, _, blue in light_enough), default=WARM)
-    sky = [own for own, light, blue in light_enough if blue < WARM or light >= BRIGHT or coldest >= WARM]
+    is_evening = coldest >= WARM
+    sky = [
+        own for own, light, blue in light_enough
+        if blue < WARM or light >= BRIGHT or (is_evening and light > EVENING * usual)
+    ]  # fmt: skip
     seed = np.any(sky or pieces, axis=0).ravel()
     return Heaven(seed if sky else nothing, bool(sky), is_ceiling=not sky and seed.mean() > LEAST_CEILING)
 
@@ -116,8 +121,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     """
     costs = np.empty((raster.size, len(surfaces) + 2), order="F")  # each label by itself
     depth = depths(raster, surfaces)
-    colour = raster.colour.reshape(-1, 3)
-    green = GREEN_COST * ((colour[:, 1] < GREEN[0]) & (colour[:, 2] > GREEN[1]))
+    green = GREEN_COST * is_green(raster)
     ground = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
     for number, surface in enumerate(surfaces):
         cost = _surface_cost(raster, lines, surface, depth[:, number])
@@ -136,6 +140,12 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     if raster.map_depth is not None:
         costs += costs_by_map(raster, surfaces, depth, limit)
     return costs
+
+
+def is_green(raster: Raster) -> Bool:
+    """Which samples (S,) have the colour of plants."""
+    colour = raster.colour.reshape(-1, 3)
+    return np.asarray((colour[:, 1] < GREEN[0]) & (colour[:, 2] > GREEN[1]))
 
 
 def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:

@@ -23,7 +23,6 @@ NEARLY_ALL = 0.95  # of the length of the lines that reach below the horizon end
 LEAST_ENDS = 3  # of lines on one side of the horizon, for a level there
 FURTHEST_FOOT = 1.5  # times the lowest level; the ground is no lower
 FIRM_FEET = 10.0  # log-odds of the feet of walls, from which on they know the ground better than a map or few lines
-FURTHEST_FIRM = 2.5  # the same for such feet: the lowest lines may be the sills of windows
 BELOW = 1.04  # times the ground's height; a line that ends lower contradicts it
 CONTRADICTION = 20.0  # log-odds against the ground of the feet, times the share of lines that contradict it
 
@@ -87,8 +86,7 @@ def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:
         return lowest
     weight, low = _weights(lines), -lines.ends[:, :, 2].min(axis=1)
     contradicted = weight[low > feet.height * BELOW].sum() / weight[low > 0].sum()
-    furthest = FURTHEST_FIRM if feet.log_odds >= FIRM_FEET else FURTHEST_FOOT
-    if feet.height < furthest * lowest and feet.log_odds > CONTRADICTION * contradicted:
+    if feet.height < FURTHEST_FOOT * lowest and feet.log_odds > CONTRADICTION * contradicted:
         return feet.height
     return lowest
 

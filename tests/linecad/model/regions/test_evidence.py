@@ -8,8 +8,10 @@ import pytest
 
 from linecad.model.regions.evidence import (
     BESIDE_COST,
+    BRIGHTER,
     CLUTTER,
     CLUTTER_COST,
+    EVENING,
     GREEN_COST,
     NEAR_COST,
     NEVER,
@@ -85,8 +87,18 @@ def test_light_plaster_beside_the_sky_is_no_sky(house):
     colour[:120, 240:] = (250, 129, 138)
     bright = look_up(replace(both, colour=colour)).seed.reshape(raster.shape)
     assert bright[10:110, 250:].mean() > 0.9  # a cloud
-    colour[:120] = (220, 129, 138)
-    assert look_up(replace(both, colour=colour)).seed.any()  # an evening: no part is colder
+
+
+@pytest.mark.parametrize(("light", "is_sky"), [(230, True), (145, False)])
+def test_a_warm_sky_is_much_lighter_than_what_is_before_it(light, is_sky, house):
+    """Ceilings of rooms were the sky of an evening."""
+    raster = under(BLUE_SKY, house)
+    colour = raster.colour.copy()
+    usual = np.median(colour[150:, :, 0])
+    assert usual * BRIGHTER < 145 < usual * EVENING < 230
+    colour[:120] = (light, 129, 138)
+    heaven = look_up(replace(raster, colour=colour))
+    assert (heaven.is_sky, heaven.is_ceiling) == (is_sky, not is_sky)
 
 
 def test_what_is_as_light_as_walls_and_not_blue_is_a_ceiling(house):

@@ -6,8 +6,6 @@ import pytest
 from linecad.geometry import central_camera
 from linecad.model.regions.surfaces import (
     BELOW,
-    FIRM_FEET,
-    FURTHEST_FIRM,
     FURTHEST_FOOT,
     GROUND_STEP,
     MOST_SURFACES,
@@ -100,14 +98,7 @@ def test_feet_put_the_ground_where_no_line_contradicts_them():
     assert ground_height(BOTH, low) == 2
     assert ground_height(BOTH, GroundOfFeet(1.0, 21.0)) == 1.0
     # Feet far below all lines are no feet of theirs.
-    assert ground_height(BOTH, GroundOfFeet(FURTHEST_FIRM * 2 * 1.01, 99.0)) == 2
-
-
-def test_feet_below_the_sills_of_windows_need_to_be_firm():
-    """A street whose lowest lines were sills had its ground there, at half its height."""
-    low = FURTHEST_FOOT * 2 * 1.01
-    assert ground_height(BOTH, GroundOfFeet(low, FIRM_FEET)) == low
-    assert ground_height(BOTH, GroundOfFeet(low, FIRM_FEET - 0.1)) == 2
+    assert ground_height(BOTH, GroundOfFeet(FURTHEST_FOOT * 2 * 1.01, 99.0)) == 2
 
 
 def test_levels_near_the_ground_become_it_and_kerbs_join_it():
