@@ -29,13 +29,13 @@ def with_feet(costs: Float, known: Known, firm: Surface | None) -> Float:
         return costs
     above = walls_above(known, ground)
     costs = costs.copy(order="F")
-    depth = depths(known.raster, known.surfaces)
-    for number in np.unique(above[above >= 0]).tolist():
-        under = (above == number) & (depth[:, number] < depth[:, ground] / BEHIND)
-        if under.mean() < LEAST:
-            continue
-        costs[under, ground] += HIDDEN_COST
-        costs[under, number] = np.minimum(costs[under, number], WALL_COST)
+    walls = np.unique(above[above >= 0]).tolist()
+    to_ground, *to_walls = depths(known.raster, [known.surfaces[number] for number in (ground, *walls)]).T
+    for number, to_wall in zip(walls, to_walls, strict=True):
+        under = (above == number) & (to_wall < to_ground / BEHIND)
+        if under.mean() >= LEAST:
+            costs[under, ground] += HIDDEN_COST
+            costs[under, number] = np.minimum(costs[under, number], WALL_COST)
     return costs
 
 
