@@ -14,7 +14,7 @@ from linecad.confidence import keep_probable
 from linecad.corrections.file import check_belongs, read_corrections
 from linecad.depth.for_photo import check_depth_options, open_depth_map
 from linecad.depth.read import check_depth_file
-from linecad.model.clean.choice import Detail, keep_drawn
+from linecad.model.choice import Detail, keep_drawn
 from linecad.model.scale import Known, set_scale
 from linecad.options import Options
 from linecad.outputs import write_outputs

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     Commands: TypeAlias = argparse._SubParsersAction["Parser"]
 
-DETAILS = ("none", "openings", "all")  # as linecad.model.clean.choice has them, which loads NumPy
+DETAILS = ("none", "openings", "all")  # as linecad.model.choice has them, which loads NumPy
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
 

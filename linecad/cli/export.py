@@ -47,7 +47,7 @@ def run(parsed: argparse.Namespace) -> int:
     check_some(parsed.output)
     from linecad.confidence import keep_probable
     from linecad.io.scene_file import read_scene
-    from linecad.model.clean.choice import keep_drawn
+    from linecad.model.choice import keep_drawn
     from linecad.model.scale import set_scale
     from linecad.outputs import PhotoOfScene, format_values, pixels_for, write_outputs
 

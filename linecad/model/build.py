@@ -20,9 +20,10 @@ from linecad.model.coplanar import join_planes
 from linecad.model.depth_evidence import depths_of, normals_of
 from linecad.model.face_lines import add_lines, without_repeats
 from linecad.model.faces import find_faces, with_roofs
+from linecad.model.frame_crossings import clean_and_cross, inexact_crossings
+from linecad.model.frame_ends import closed_across, ends_that_meet_others
 from linecad.model.frames import (
     FramedLines,
-    clean_frames,
     frame_views,
     in_frame,
     in_frames,
@@ -31,6 +32,7 @@ from linecad.model.frames import (
     sight_in,
 )
 from linecad.model.lifting import Lifted
+from linecad.model.merging import with_merged_lines
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
@@ -129,7 +131,7 @@ def build_scene(
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
-    cleaned, framed = clean_frames(framed, _intersections(graph, decision, found, new_id), sight)
+    cleaned, framed = clean_and_cross(framed, _intersections(graph, decision, found, new_id), sight, view.camera.width)
     planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
     look = _look(view, placed, float(scales[0]))
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
@@ -138,7 +140,7 @@ def build_scene(
     whole = planes
     planes, openings = _opened(planes, holes.openings, view, graph.turns)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections)
-    drawn = _drawn(on_faces.lines, whole, holes.openings, sight)
+    drawn = closed_across(_drawn(on_faces.lines, whole, holes.openings, sight), sight)
     framed, planes = without_repeats(drawn, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     roofed = with_roofs(planes, regions.roofs, lines, view.camera, view.frame.rotation, graph.turns)
@@ -159,18 +161,19 @@ def build_scene(
         openings=openings,
         turns=graph.turns,
     )
-    scene = without_ticks(scene, framed, sight, MIN_COMPONENT)
-    return replace(scene, notes=(*scene.notes, *on_faces.notes(scene.lines)))
+    scene = with_merged_lines(*without_ticks(scene, framed, sight), sight)
+    last = (inexact_crossings(scene), *on_faces.notes(scene.lines))
+    return replace(scene, notes=(*scene.notes, *filter(None, last)))
 
 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:
     """The lines with their ends where they stop, and what each is drawn for, by the faces of planes."""
-    outlines = outlines_of(planes)
+    outlines, meets = outlines_of(planes), ends_that_meet_others(framed, sight)
 
     def draw(lines: Lines, frame: int) -> Lines:
         own_sight = sight_in(sight, frame, framed.turns)
         own = planes_in(planes, frame, framed.turns)
-        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight)
+        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, meets[framed.of(frame)])
         return with_roles(ends_there, own, own_sight.forward, _rectangles(openings, own))
 
     return framed.each(draw)

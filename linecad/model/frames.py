@@ -12,13 +12,16 @@ from typing import Any
 import numpy as np
 
 from linecad.arrays import Float, Int, rows_of
-from linecad.directions import UP, Turns, components, directions_of, frame_axes
+from linecad.directions import UP, Turns, components, directions_of, frame_axes, frame_of
 from linecad.model.clean.clean import Cleaned, clean_lines
-from linecad.model.clean.joining import by_size, joined_crossings
+from linecad.model.clean.joining import by_size, joined_crossings, with_pieces
 from linecad.model.clean.sight import Sight
+from linecad.model.frame_repeats import edges_repeated
 from linecad.model.openings.find import FrameView
 from linecad.model.planes import find_planes
 from linecad.scene import Face, Intersections, Lines, Plane
+
+ROUNDING = 1e-9  # of a coordinate, or of the scene's unit if that is more
 
 
 @dataclass(frozen=True, eq=False)
@@ -128,6 +131,39 @@ def in_frames(lines: Lines, offset: Float, home: Int, turns: Turns) -> FramedLin
     return FramedLines(replace(lines, axis=axis, ends=ends), home, turns)
 
 
+def framed_lines(lines: Lines, crossings: Intersections, turns: Turns) -> FramedLines:
+    """The lines of a scene in the axes of their frames; what is equal there but for rounding is equal.
+
+    An upright line is of the frame in which most of its real `crossings` are, the first of equals.
+    """
+    home = frame_of(lines.axis)
+    if not turns:
+        return FramedLines(lines, home, ())
+    real = np.searchsorted(lines.id, crossings.lines[crossings.real], sorter=np.argsort(lines.id))
+    row = np.argsort(lines.id)[real]
+    count = np.zeros((len(lines), len(turns) + 1), np.int64)
+    for line, other in (row.T, row.T[::-1]):
+        np.add.at(count, (line, home[other]), lines.axis[other] != UP)
+    home = np.where(lines.axis == UP, count.argmax(axis=1), home)
+    offset = components(lines.ends[:, 0], turns)
+    for frame in range(1, len(turns) + 1):
+        own = np.flatnonzero(home == frame)
+        for axis in frame_axes(frame):
+            offset[own, axis] = _without_rounding(offset[own, axis])
+    offset[np.arange(len(lines)), lines.axis] = np.nan
+    return in_frames(lines, offset, home, turns)
+
+
+def _without_rounding(values: Float) -> Float:
+    """The values (M,), those that rounding alone parts equal to the least of them."""
+    order = np.argsort(values, kind="stable")
+    ordered = values[order]
+    first = np.diff(ordered, prepend=-np.inf) > ROUNDING * np.maximum(np.abs(ordered), 1.0)
+    found = values.copy()
+    found[order] = ordered[np.flatnonzero(first)[np.cumsum(first) - 1]]
+    return found
+
+
 def _turned_back(ends: Float, frame: Int, turns: Turns) -> Float:
     """Points (N, M, 3) in the axes of frames (N,), in the world."""
     found = ends.copy()
@@ -144,10 +180,13 @@ def _turned(face: Face, frame: int, turns: Turns) -> Face:
     return replace(face, outline=outline, holes=holes, hidden=hidden)
 
 
-def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) -> tuple[Cleaned, FramedLines]:
+def clean_frames(
+    framed: FramedLines, crossings: Intersections, sight: Sight, width: float
+) -> tuple[Cleaned, FramedLines]:
     """The lines joined and closed within each frame (`linecad.model.clean.clean`), and the crossings of all.
 
-    Components are numbered by the size that they have then.
+    What repeats an edge of another frame goes into it. Components are numbered by the size that they have then; the
+    photo is `width` px wide.
     """
     if not framed.turns:
         cleaned = clean_lines(framed.lines, crossings, sight)
@@ -169,17 +208,24 @@ def clean_frames(framed: FramedLines, crossings: Intersections, sight: Sight) ->
         parts.append(replace(part, shared=shared, lines=replace(part.lines, id=ids)))
         frames.append(np.full(len(part.lines), frame))
         count += len(part.lines)
-    lines = together([part.lines for part in parts])
+    every = FramedLines(together([part.lines for part in parts]), np.concatenate(frames), framed.turns)
+    home = edges_repeated(every.in_world(), every.frame, sight.forward, width)
+    kept = np.flatnonzero(home == np.arange(count))
+    row = np.searchsorted(kept, home[row])
+    lines = replace(rows_of(with_pieces(every.lines, home), kept), id=np.arange(len(kept)))
+    shared, depth, reach = (
+        np.concatenate([getattr(part, name) for part in parts])[kept] for name in ("shared", "depth", "reach")
+    )
     cleaned = Cleaned(
         lines=lines,
-        intersections=joined_crossings(crossings, framed.lines.id, row, count),
+        intersections=joined_crossings(crossings, framed.lines.id, row, len(kept)),
         row=row,
-        shared=np.concatenate([part.shared for part in parts]),
+        shared=shared,
         moved=max(part.moved for part in parts),
-        depth=np.concatenate([part.depth for part in parts]),
-        reach=np.concatenate([part.reach for part in parts]),
+        depth=depth,
+        reach=reach,
     )
-    return cleaned, FramedLines(by_size(lines), np.concatenate(frames), framed.turns)
+    return cleaned, FramedLines(by_size(lines), every.frame[kept], framed.turns)
 
 
 def planes_of(framed: FramedLines, shared: Int) -> tuple[Plane, ...]:

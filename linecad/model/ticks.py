@@ -12,10 +12,11 @@ from linecad.arrays import Bool, Float, Int, rows_of
 from linecad.confidence import with_lines
 from linecad.graph.connectivity import spanning_forest
 from linecad.model.clean.ends import NEAR, ends_that_meet, ends_that_miss, nearest_crossings
-from linecad.model.clean.joining import by_size, with_closed_ends
+from linecad.model.clean.joining import by_size
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import Strokes, strokes_of
+from linecad.model.frame_ends import ends_that_meet_others, ends_that_miss_others, with_ends_closed
 from linecad.model.frames import FramedLines, in_frame, sight_in
 from linecad.scene import DETAIL, Lines, Scene
 
@@ -24,43 +25,41 @@ LEAST_FREE = 0.2  # of the depth; a shorter line that only a face placed is none
 MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by then
 
 
-def without_ticks(scene: Scene, framed: FramedLines, sight: Sight, least: int = 1) -> Scene:
+def without_ticks(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scene, FramedLines]:
     """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
 
-    Lines stay that a person said something about, that alone connect others, and all of components that would have
-    fewer than `least` lines. Planes go that only ticks showed; a note counts the ticks. `framed` are the lines of the
+    Lines stay that a person said something about, and that alone connect others. Planes go that only ticks showed, and
+    components that were nothing else, but for component 0; a note counts the ticks. `framed` are the lines of the
     scene, row by row: what they meet and miss is looked for among those of their frame.
     """
     outlines = outlines_of(scene.planes)
     found = scene
     for _ in range(MOST_ROUNDS):
-        ticks = _spare(found, _ticks(found, framed, outlines, sight), least)
+        ticks = _spare(found, _ticks(found, framed, outlines, sight))
         if not ticks.any():
             break
         found = with_lines(found, ~ticks)
-        framed = framed.of_rows(np.flatnonzero(~ticks)).each(
-            lambda lines, frame: with_closed_ends(lines, sight_in(sight, frame, scene.turns).forward)
-        )
+        framed = with_ends_closed(framed.of_rows(np.flatnonzero(~ticks)), sight)
         found = replace(found, lines=framed.in_world())
     gone = len(scene.lines) - len(found.lines)
     if gone == 0:
-        return scene
+        return scene, framed
     shown = {plane.id for plane in scene.planes if not plane.lines}
     planes = tuple(plane for plane in found.planes if plane.lines or plane.faces or plane.id in shown)
     crossings = replace(found.intersections, in_tree=_spanning(found, ~found.intersections.in_tree))
     note = f"{gone} stubs of detail that end nowhere are left out"
-    return replace(
-        found, lines=by_size(found.lines), intersections=crossings, planes=planes, notes=(*scene.notes, note)
-    )
+    lines = by_size(found.lines)
+    found = replace(found, lines=lines, intersections=crossings, planes=planes, notes=(*scene.notes, note))
+    return found, replace(framed, lines=replace(framed.lines, component=lines.component))
 
 
-def _spare(scene: Scene, ticks: Bool, least: int) -> Bool:
-    """Of `ticks` (N,) those without which all others are connected as before, in components of `least` lines."""
+def _spare(scene: Scene, ticks: Bool) -> Bool:
+    """Of `ticks` (N,) those without which all others are connected as before, and component 0 has lines."""
     row = np.searchsorted(scene.lines.id, scene.intersections.lines)
     hang = _spanning(scene, ticks[row].sum(axis=1))
     spare = ticks & (np.bincount(row[hang].ravel(), minlength=len(ticks)) <= 1)
-    left = np.bincount(scene.lines.component[~spare], minlength=scene.lines.component.max(initial=0) + 1)
-    return np.asarray(spare & (left[scene.lines.component] >= least))
+    main = scene.lines.component == 0
+    return np.asarray(spare & (~main | (main & ~spare).any()))
 
 
 def _spanning(scene: Scene, cost: Bool | Int) -> Bool:
@@ -78,17 +77,20 @@ def _ticks(scene: Scene, framed: FramedLines, outlines: Float, sight: Sight) -> 
     """Which lines (N,) are ticks, by the edges (E, 2, 3) of faces."""
     crossings = scene.intersections
     said = np.unique(crossings.lines[np.asarray(crossings.reason) == "annotated"])
-    ticks = np.zeros(len(framed.lines), bool)
+    ticks, others = np.zeros(len(framed.lines), bool), ends_that_meet_others(framed, sight)
+    missed = ends_that_miss_others(framed, sight).any(axis=1)
     for frame in framed.frames:
         rows, seen = framed.of(frame), sight_in(sight, frame, scene.turns)
-        ticks[rows] = _ticks_among(rows_of(framed.lines, rows), in_frame(outlines, frame, scene.turns), seen)
+        there = in_frame(outlines, frame, scene.turns)
+        ticks[rows] = _ticks_among(rows_of(framed.lines, rows), others[rows], there, seen)
+    ticks |= missed & np.asarray(framed.lines.by_face) & (framed.lines.role == DETAIL)
     return ticks & ~np.isin(scene.lines.id, said)
 
 
-def _ticks_among(lines: Lines, outlines: Float, sight: Sight) -> Bool:
-    """Which lines (N,) of one frame are ticks, all in its axes."""
+def _ticks_among(lines: Lines, others: Bool, outlines: Float, sight: Sight) -> Bool:
+    """Which lines (N,) of one frame are ticks, all in its axes; the ends `others` (N, 2) meet lines of others."""
     strokes = strokes_of(lines, sight.forward)
-    meets = ends_that_meet(strokes)
+    meets = ends_that_meet(strokes) | others
     ticks: Bool = (np.ptp(strokes.reach, axis=1) < LONGEST * np.abs(strokes.depth)) & ~meets.all(axis=1)
     ticks &= lines.role == DETAIL
     ends_well = meets[ticks] | (at_outlines(strokes.of(ticks), outlines, sight) & ~_misses(strokes, ticks))

@@ -140,3 +140,15 @@ def test_the_model_of_formats_has_the_angle_of_the_walls():
     for face in model.faces:
         assert np.ptp(face.vertices @ face.normal) < 1e-6 * np.abs(face.vertices).max()
         assert face.normal @ face.vertices[0] < 0  # it looks at the camera, which is the origin
+
+
+def test_real_crossings_of_both_frames_meet_in_space():
+    lines, crossings = scene().lines, scene().intersections
+    first, second = np.searchsorted(lines.id, crossings.lines[crossings.real]).T
+    vectors = directions_of(scene().turns)
+    normal = np.cross(vectors[lines.axis[first]], vectors[lines.axis[second]])
+    across = ~np.isclose(np.linalg.norm(normal, axis=1), 0)
+    apart = ((lines.ends[first, 0] - lines.ends[second, 0]) * normal).sum(axis=1)[across]
+    two_frames = (lines.axis[first] >= 3) != (lines.axis[second] >= 3)
+    assert two_frames[across].sum() > 5
+    assert np.abs(apart).max() < 1e-9 * np.abs(lines.ends).max()

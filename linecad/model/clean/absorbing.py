@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int, rows_of
-from linecad.model.clean.ends import NEAR
-from linecad.model.clean.joining import whole_segment, with_ends
+from linecad.model.clean.ends import NEAR, without_new_twins
+from linecad.model.clean.joining import with_ends, with_pieces
 from linecad.model.clean.strokes import SAME, parallel_pairs, strokes_of
 from linecad.scene import Lines
 
@@ -35,15 +35,16 @@ def _absorbed_once(lines: Lines, spare: Bool, forward: Float) -> tuple[Lines, Bo
     depth = np.abs(strokes.depth)
     touch = overlap >= -NEAR * np.minimum(depth[first], depth[second])
     home = _homes(first[touch], second[touch], spare, np.ptp(strokes.reach, axis=1))
-    reach, pieces, segment = strokes.reach.copy(), list(lines.pieces), lines.segment.copy()
+    reach = strokes.reach.copy()
     lone = _staying_beside(first[touch], second[touch], spare) < 2  # what bridges two that stay would make these touch
     for row in np.flatnonzero(home != np.arange(len(lines))).tolist():
         into = int(home[row])
         if lone[row]:
             reach[into] = min(reach[into, 0], reach[row, 0]), max(reach[into, 1], reach[row, 1])
-        pieces[into] = np.concatenate([_pieces(pieces, lines.segment, into), _pieces(pieces, lines.segment, row)])
-        segment[into] = whole_segment(segment[into], pieces[into])
-    found = with_ends(replace(lines, segment=segment, pieces=tuple(pieces)), replace(strokes, reach=reach))
+    stay = np.flatnonzero(~spare)
+    longer = without_new_twins(strokes.of(~spare), replace(strokes, reach=reach).of(~spare))
+    reach[stay] = longer.reach
+    found = with_ends(with_pieces(lines, home), replace(strokes, reach=reach))
     return found, home == np.arange(len(lines))
 
 
@@ -51,10 +52,6 @@ def _staying_beside(first: Int, second: Int, spare: Bool) -> Int:
     """How many lines that are not spare each line (N,) touches, of pairs of lines that touch."""
     line, other = np.r_[first, second], np.r_[second, first]
     return np.bincount(line[~spare[other]], minlength=len(spare))
-
-
-def _pieces(pieces: list[Float], segment: Float, row: int) -> Float:
-    return pieces[row] if len(pieces[row]) else segment[row : row + 1]
 
 
 def _homes(first: Int, second: Int, spare: Bool, length: Float) -> Int:

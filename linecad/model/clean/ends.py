@@ -4,7 +4,7 @@ Lines of different axes that have their third offset in common meet somewhere. W
 there; where the other line ends short of it too, that one is drawn on, and both form a corner.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import permutations
 
 import numpy as np
@@ -19,12 +19,14 @@ SEVERAL = 4.0  # times that is as far as all its moves together may take it
 LEAST_LEFT = 0.5  # of a line's length that its moved ends must leave
 
 
-def close_ends(strokes: Strokes) -> tuple[Strokes, Bool]:
+def close_ends(strokes: Strokes, further: "Pairs | None" = None) -> tuple[Strokes, Bool]:
     """The strokes with every end at the nearest line that it nearly meets, and which ends (N, 2) meet one.
 
     Lines only move along themselves. One that would lose more than half of its length on the way stays as it was.
+    `further` are pairs that meet beside those along two axes of one frame.
     """
     pairs, found = _meeting(strokes, SEVERAL * NEAR), strokes
+    pairs = pairs if further is None else pairs.joined(further)
     for _ in range(MOST_SWEEPS):
         reach, meets = _closed_once(found, pairs)
         if np.array_equal(reach, found.reach):
@@ -43,16 +45,22 @@ def without_lost(before: Strokes, after: Strokes) -> Strokes:
 
 
 @dataclass(frozen=True, eq=False)
-class _Pairs:
+class Pairs:
     """Lines that would meet if they were long enough, both ways round."""
 
     line: Int  # (P,)
     other: Int  # (P,)
     place: Float  # (P,) along the line
     across: Float  # (P,) along the other
+    sine: Float  # (P,) of the angle between them
+
+    def joined(self, others: "Pairs") -> "Pairs":
+        """These pairs, then others."""
+        names = [each.name for each in fields(Pairs)]
+        return Pairs(*(np.concatenate([getattr(self, name), getattr(others, name)]) for name in names))
 
 
-def _meeting(strokes: Strokes, share: float) -> _Pairs:
+def _meeting(strokes: Strokes, share: float) -> Pairs:
     """Pairs of lines of different axes that have their third offset in common and would meet near an end of the first.
 
     Near is within a `share` of the depth.
@@ -78,25 +86,25 @@ def _meeting(strokes: Strokes, share: float) -> _Pairs:
     first, second = np.concatenate(firsts), np.concatenate(seconds)
     across = strokes.offset[first, strokes.axis[second]]
     keep = strokes.component[first] == strokes.component[second]
-    keep[keep] = _short(strokes, second[keep], across[keep]) <= near[first[keep]]
+    keep[keep] = short_of(strokes, second[keep], across[keep]) <= near[first[keep]]
     first, second, across = first[keep], second[keep], across[keep]
-    return _Pairs(first, second, strokes.offset[second, strokes.axis[first]], across)
+    return Pairs(first, second, strokes.offset[second, strokes.axis[first]], across, np.ones(len(first)))
 
 
-def _short(strokes: Strokes, line: Int, place: Float) -> Float:
+def short_of(strokes: Strokes, line: Int, place: Float) -> Float:
     """(P,) how far lines end short of places (P,) along them."""
     low, high = strokes.reach.T
     short: Float = np.maximum(np.maximum(low[line] - place, place - high[line]), 0)
     return short
 
 
-def _closed_once(strokes: Strokes, pairs: _Pairs) -> tuple[Float, Bool]:
+def _closed_once(strokes: Strokes, pairs: Pairs) -> tuple[Float, Bool]:
     """New reaches (N, 2), and which ends met a line before."""
     if len(pairs.line) == 0:
         return strokes.reach, np.zeros(strokes.reach.shape, bool)
     length = np.ptp(strokes.reach, axis=1)
     depth = np.abs(strokes.end_depth)
-    short = _short(strokes, pairs.other, pairs.across)
+    short = short_of(strokes, pairs.other, pairs.across)
     nearest = [_nearest(strokes.reach[:, end], depth[:, end], pairs, short) for end in range(2)]
     pair, apart = (np.stack([each[k] for each in nearest], axis=1) for k in range(2))
     moves = (pair != FREE) & (apart > MEETS)
@@ -116,9 +124,10 @@ def _closed_once(strokes: Strokes, pairs: _Pairs) -> tuple[Float, Bool]:
     return reach, meets
 
 
-def _nearest(end: Float, depth: Float, pairs: _Pairs, short: Float) -> tuple[Int, Float]:
+def _nearest(end: Float, depth: Float, pairs: Pairs, short: Float) -> tuple[Int, Float]:
     """Which pair (N,) brings each end (N,) nearest to a line, FREE for none within NEAR, and the share of the depth."""
     along, limit = pairs.place - end[pairs.line], depth[pairs.line]
+    along = along * pairs.sine  # away from the other line
     near = np.flatnonzero(np.abs(along) <= 2 * NEAR * limit)  # few, for which alone the distance is worth its time
     apart = np.hypot(along[near], short[near]) / limit[near]
     order = np.argsort(apart, kind="stable")[::-1]
@@ -168,7 +177,7 @@ def _missed(strokes: Strokes, meets: Bool) -> tuple[Int, Int, Int]:
     off = strokes.offset[other] - point[row]
     along = strokes.axis[other]
     pick = np.arange(len(row))
-    off[pick, along] = _short(strokes, other, point[row, along])
+    off[pick, along] = short_of(strokes, other, point[row, along])
     apart = np.linalg.norm(off, axis=1) / depth[row]
     order = np.lexsort((other, apart, row))
     first = order[np.unique(row[order], return_index=True)[1]]  # the nearest line of each end
@@ -177,9 +186,10 @@ def _missed(strokes: Strokes, meets: Bool) -> tuple[Int, Int, Int]:
     return line[row[first]], end[row[first]], other[first]
 
 
-def ends_that_meet(strokes: Strokes) -> Bool:
-    """Which ends (N, 2) meet a line of another axis."""
-    return _closed_once(strokes, _meeting(strokes, 2 * MEETS))[1]
+def ends_that_meet(strokes: Strokes, further: Pairs | None = None) -> Bool:
+    """Which ends (N, 2) meet a line of another axis, or of the `further` pairs."""
+    pairs = _meeting(strokes, 2 * MEETS)
+    return _closed_once(strokes, pairs if further is None else pairs.joined(further))[1]
 
 
 def nearest_crossings(strokes: Strokes, line: Int, end: Int) -> tuple[Float, Float]:
@@ -201,7 +211,7 @@ def nearest_crossings(strokes: Strokes, line: Int, end: Int) -> tuple[Float, Flo
         row, crossed = own[row], order[place]
         way = (strokes.offset[crossed, axis] - at[row]) * outwards[row]
         crosses = strokes.component[crossed] == strokes.component[line[row]]
-        crosses &= _short(strokes, crossed, strokes.offset[line[row], other]) <= near[row]
+        crosses &= short_of(strokes, crossed, strokes.offset[line[row], other]) <= near[row]
         for found, side in ((ahead, way), (back, -way)):
             there = crosses & (side > 0)
             np.minimum.at(found, row[there], side[there])

@@ -60,6 +60,17 @@ def joined_lines(lines: Lines, strokes: Strokes, row: Int) -> Lines:
     )
 
 
+def with_pieces(lines: Lines, home: Int) -> Lines:
+    """The lines, those of N that went into another, `home` (N,), among the pieces of that one."""
+    pieces, segment = list(lines.pieces) or [np.zeros((0, 2, 2))] * len(lines), lines.segment.copy()
+    for row in np.flatnonzero(home != np.arange(len(lines))).tolist():
+        into = int(home[row])
+        own = [pieces[each] if len(pieces[each]) else lines.segment[each : each + 1] for each in (into, row)]
+        pieces[into] = np.concatenate(own)
+        segment[into] = whole_segment(segment[into], pieces[into])
+    return replace(lines, segment=segment, pieces=tuple(pieces))
+
+
 def with_ends(lines: Lines, strokes: Strokes) -> Lines:
     """The lines with the ends of their strokes."""
     return replace(lines, ends=_ends(lines, strokes.rows, strokes))

@@ -39,9 +39,12 @@ class Stops:
     is_sure: Bool  # (P,) so near that the end belongs there, whatever the photo shows
 
 
-def settled(lines: Lines, outlines: Float, sight: Sight) -> Lines:
-    """The lines with their ends drawn on to where they stop; `outlines` (E, 2, 3) are edges of faces."""
-    strokes = settle_ends(strokes_of(lines, sight.forward), outlines, sight)
+def settled(lines: Lines, outlines: Float, sight: Sight, meets: Bool | None = None) -> Lines:
+    """The lines with their ends drawn on to where they stop; `outlines` (E, 2, 3) are edges of faces.
+
+    Ends that meet others than these lines, `meets` (N, 2), stay.
+    """
+    strokes = settle_ends(strokes_of(lines, sight.forward), outlines, sight, meets)
     return with_ends(lines, strokes)
 
 
@@ -51,22 +54,29 @@ def outlines_of(planes: tuple[Plane, ...]) -> Float:
     return ring_sides(ring for face in faces for ring in (face.outline, *face.holes, *face.hidden))
 
 
-def settle_ends(strokes: Strokes, outlines: Float, sight: Sight) -> Strokes:
-    """The strokes with the ends that meet no line at their stops; `outlines` (E, 2, 3) are edges of faces."""
+def settle_ends(strokes: Strokes, outlines: Float, sight: Sight, meets: Bool | None = None) -> Strokes:
+    """The strokes with the ends that meet no line at their stops; `outlines` (E, 2, 3) are edges of faces.
+
+    Ends that meet lines that are not among the strokes, `meets` (N, 2), stay.
+    """
+    stays = np.zeros(strokes.reach.shape, bool) if meets is None else meets
     edges, depths = _seen(outlines, sight)
     found = strokes
     for _ in range(MOST_ROUNDS):
-        drawn = without_new_twins(found, _drawn_once(found, strokes, edges, depths, sight))
+        drawn = without_new_twins(found, _drawn_once(found, strokes, edges, depths, sight, stays))
         if np.array_equal(drawn.reach, found.reach):
             break
         found = close_ends(drawn)[0]
-    found = close_ends(_cut(found, strokes, at_outlines(found, outlines, sight)))[0]
+    found = close_ends(_cut(found, strokes, at_outlines(found, outlines, sight) | stays))[0]
     return without_new_twins(strokes, found)  # closing ends may bring pieces of one line near, too
 
 
-def _drawn_once(found: Strokes, seen: Strokes, edges: Float, depths: Float, sight: Sight) -> Strokes:
-    """The strokes `found` with each end in the air at its stop, where the photo leads `seen` strokes there."""
-    line, end = np.nonzero(~ends_that_meet(found))
+def _drawn_once(found: Strokes, seen: Strokes, edges: Float, depths: Float, sight: Sight, stays: Bool) -> Strokes:
+    """The strokes `found` with each end in the air at its stop, where the photo leads `seen` strokes there.
+
+    Not those that stay (N, 2).
+    """
+    line, end = np.nonzero(~ends_that_meet(found) & ~stays)
     stops = _nearest(found, line, end, edges, depths, sight)
     way = np.abs(stops.place - found.reach[line, end])
     goes = (way > MEETS * np.abs(found.end_depth[line, end])) & (way <= FURTHEST * np.ptp(seen.reach[line], axis=1))

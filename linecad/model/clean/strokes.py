@@ -24,7 +24,7 @@ class Strokes:
 
     axis: Int  # (N,)
     component: Int  # (N,)
-    forward: Float  # (3,) the camera's z in the world
+    forward: Float  # (3,) the camera's z, in the axes that all lines have; (N, 3) where each has its own
     weight: Float  # (N,) px, the length of segments that show the line
     offset: Float  # (N, 3) its coordinates, 0 along its own axis
     number: Int  # (N, 3) of each offset; FREE along its own axis
@@ -46,6 +46,7 @@ class Strokes:
         return replace(
             self,
             axis=self.axis[chosen],
+            forward=self.forward if self.forward.ndim == 1 else self.forward[chosen],
             component=self.component[chosen],
             weight=self.weight[chosen],
             offset=self.offset[chosen],
@@ -56,7 +57,8 @@ class Strokes:
     @property
     def end_depth(self) -> Float:
         """(N, 2) camera depth of both ends."""
-        depth: Float = self.points(self.reach) @ self.forward
+        points = self.points(self.reach)
+        depth: Float = points @ self.forward if self.forward.ndim == 1 else (points * self.forward[:, None]).sum(axis=2)
         return depth
 
     @property

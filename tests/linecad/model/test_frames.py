@@ -1,10 +1,12 @@
 """Lines in the axes of their frames, and back in the world."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from linecad.directions import components, directions_of, frame_axes
-from linecad.model.frames import FramedLines, in_frame, in_frames, planes_in
+from linecad.model.frames import FramedLines, framed_lines, in_frame, in_frames, planes_in
 from linecad.scene import Face, Lines, Plane
 
 TURNS = (0.4, -0.2)
@@ -100,3 +102,20 @@ def test_without_further_frames_all_lines_are_the_worlds():
 def test_points_of_the_main_frame_are_those_of_the_world():
     points = lines().ends
     assert in_frame(points, 0, TURNS) is points
+
+
+def test_lines_of_a_scene_are_in_their_frames_and_what_is_equal_there_is_so_to_the_last_bit(crossings):
+    offset = np.full((len(AXIS), len(VECTORS)), np.nan)
+    own = lines()
+    told = components(own.ends[:, 0], TURNS)
+    offset[:4] = told[0] + np.zeros((4, 1))  # the first four stand in one place, in each of their frames
+    offset[np.arange(len(AXIS)), AXIS] = np.nan
+    world = in_frames(own, offset, HOME, TURNS).in_world()
+    pairs = [(0, 1), (2, 3), (2, 4), (4, 5)]
+    found = framed_lines(world, crossings(pairs), TURNS)
+    assert found.frame.tolist() == HOME.tolist()
+    np.testing.assert_allclose(found.in_world().ends, world.ends, atol=1e-13)
+    assert found.lines.ends[2, 0, 1] == found.lines.ends[3, 0, 1]
+    assert found.lines.axis.tolist() == [0, 2, 0, 2, 1, 0]
+    only = framed_lines(replace(own, axis=np.minimum(AXIS, 2)), crossings(pairs), ())
+    assert not only.frame.any()

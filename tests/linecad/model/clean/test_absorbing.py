@@ -62,6 +62,13 @@ def test_what_bridges_two_lines_that_stay_goes_and_these_do_not_touch(lines):
     assert spans(found) == [(0, 1), (2, 3)]
 
 
+def test_two_spare_lines_that_bridge_two_that_stay_go_and_these_do_not_touch(lines):
+    rows = [level(0, 1), level(2, 3, 0.5 * SAME * DEPTH), level(1, 1.5), level(1.5, 2)]
+    found, left = after(lines, rows, [False, False, True, True])
+    assert left.tolist() == [0, 1]
+    assert spans(found) == [(0, 1), (2, 3)]
+
+
 def test_lines_of_other_axes_and_places_stay(lines):
     rows = [level(0, 1), level(0, 1, 3 * SAME * DEPTH), (Z, (0.5, DEPTH, -1), (0.5, DEPTH, 1))]
     assert after(lines, rows, [False, True, True])[1].tolist() == [0, 1, 2]

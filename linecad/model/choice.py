@@ -6,7 +6,9 @@ from typing import Literal, get_args
 import numpy as np
 
 from linecad.confidence import with_lines
-from linecad.model.clean.joining import with_closed_ends
+from linecad.model.clean.sight import Sight
+from linecad.model.frame_ends import with_ends_closed
+from linecad.model.frames import framed_lines
 from linecad.scene import DETAIL, OPENING, OUTLINE, Scene
 
 Detail = Literal["none", "openings", "all"]
@@ -28,7 +30,9 @@ def keep_drawn(scene: Scene, detail: Detail) -> Scene:
     if kept.all():
         return scene
     rest = with_lines(scene, kept)
-    rest = replace(rest, lines=with_closed_ends(rest.lines, scene.rotation[2]))
+    sight = Sight.of(scene.camera, scene.rotation, None)
+    closed = with_ends_closed(framed_lines(rest.lines, rest.intersections, scene.turns), sight)
+    rest = replace(rest, lines=closed.in_world())
     what = "detail" if detail == "openings" else "openings and detail"
     note = f"{len(scene.lines) - len(rest.lines)} of {len(scene.lines)} lines are left out: they are {what}"
     return replace(rest, notes=(*scene.notes, note))

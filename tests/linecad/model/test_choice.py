@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from linecad.cli import arguments
-from linecad.model.clean.choice import DETAILS, keep_drawn
+from linecad.model.choice import DETAILS, keep_drawn
+from linecad.model.frames import FramedLines
 from linecad.scene import Face, Plane, Scene, SolveReport
 
 
@@ -60,3 +61,21 @@ def test_a_plane_without_lines_keeps_its_faces(scene):
 
 def test_the_command_line_knows_the_same_words():
     assert arguments.DETAILS == DETAILS
+
+
+def test_ends_of_several_frames_close_on_what_stays(lines, crossings, camera, rotation):
+    """What is written of a street of two frames; the ends of its lines are equal in the world but for rounding."""
+    turns = (0.5,)
+    rows = [(0, (-1, 10, 0), (1, 10, 0)), (2, (0.95, 10, 0), (0.95, 10, 1)), (2, (1, 10, -1), (1, 10, 1))]
+    framed = FramedLines(lines(rows), np.array([1, 1, 1]), turns)
+    world = replace(framed.in_world(), role=["outline", "detail", "outline"])
+    ends = world.ends.copy()
+    ends[0, 1] = ends[1, 0]  # on the detail, near the outline behind it
+    scene = Scene(
+        photo="street.jpg", camera=camera, rotation=rotation, turns=turns, planes=(),
+        lines=replace(world, ends=ends), intersections=crossings([(0, 1), (0, 2)]),
+        solve=SolveReport("SCIP 10.0", "bodies", "optimal", 0, 0, 0),
+    )  # fmt: skip
+    found = keep_drawn(scene, "none")
+    assert found.lines.id.tolist() == [0, 2]
+    np.testing.assert_allclose(found.lines.ends[0], world.ends[0], atol=1e-12)
