@@ -14,6 +14,7 @@ from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.kerbs import on_kerbs
 from linecad.model.regions.labelling import find_labels
 from linecad.model.regions.mapped import MappedDepths, laid_on, with_mapped
+from linecad.model.regions.overgrown import is_in_the_open
 from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets, find_segments
@@ -39,9 +40,10 @@ def find_regions(
     view = View(camera, rotation, look.photo, turns)
     raster = laid_on(take_raster(lines, camera, rotation, look.photo, look.normals, turns), look.mapped, camera)
     heaven = look_up(raster)
-    surfaces = find_surfaces(planes, lines, camera, look.feet, heaven.is_ceiling)
-    trodden = ground_of_feet(surfaces, lines, look.feet)
-    firm = trodden if look.feet and look.feet.log_odds >= FIRM_FEET else None
+    feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
+    surfaces = find_surfaces(planes, lines, camera, feet, heaven.is_ceiling)
+    trodden = ground_of_feet(surfaces, lines, feet)
+    firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)
     found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view, firm)
     meets = find_meets(lines, found.surfaces, view).ends

@@ -21,7 +21,8 @@ LEAST_LENGTH = 0.02  # of a surface's lines together, as a share of the photo's 
 MOST_SURFACES = 20
 NEARLY_ALL = 0.95  # of the length of the lines that reach below the horizon ends above the lowest level
 LEAST_ENDS = 3  # of lines on one side of the horizon, for a level there
-FURTHEST_FOOT = 1.5  # times the lowest level; the ground is no lower
+FURTHEST_FOOT = 1.5  # times the lowest level; the ground is no lower, unless feet are firm and in the open:
+FURTHEST_FIRM = 3.5  # below shop windows and plain walls there is no line
 FIRM_FEET = 10.0  # log-odds of the feet of walls, from which on they know the ground better than a map or few lines
 BELOW = 1.04  # times the ground's height; a line that ends lower contradicts it
 CONTRADICTION = 20.0  # log-odds against the ground of the feet, times the share of lines that contradict it
@@ -45,6 +46,7 @@ class GroundOfFeet:
 
     height: float  # of the camera above it, in the scene's unit
     log_odds: float  # of all that says so
+    is_open: bool = False  # no plants hide the feet (`linecad.model.regions.overgrown`)
 
 
 def find_surfaces(
@@ -84,9 +86,10 @@ def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:
     lowest = level_of_ends(lines, above=False)
     if lowest is None or feet is None:
         return lowest
-    weight, low = _weights(lines), -lines.ends[:, :, 2].min(axis=1)
+    weight, low = weights_of(lines), -lines.ends[:, :, 2].min(axis=1)
     contradicted = weight[low > feet.height * BELOW].sum() / weight[low > 0].sum()
-    if feet.height < FURTHEST_FOOT * lowest and feet.log_odds > CONTRADICTION * contradicted:
+    furthest = FURTHEST_FIRM if feet.is_open and feet.log_odds >= FIRM_FEET else FURTHEST_FOOT
+    if feet.height < furthest * lowest and feet.log_odds > CONTRADICTION * contradicted:
         return feet.height
     return lowest
 
@@ -101,7 +104,7 @@ def ground_of_feet(surfaces: list[Surface], lines: Lines, feet: GroundOfFeet | N
 def level_of_ends(lines: Lines, above: bool) -> float | None:
     """How far above or below the camera nearly all lines that reach there end; None where hardly any does."""
     reach = lines.ends[:, :, 2].max(axis=1) if above else -lines.ends[:, :, 2].min(axis=1)
-    weight = np.where(reach > 0, _weights(lines), 0.0)
+    weight = np.where(reach > 0, weights_of(lines), 0.0)
     if (weight > 0).sum() < LEAST_ENDS:
         return None
     order = np.argsort(reach, kind="stable")
@@ -109,7 +112,7 @@ def level_of_ends(lines: Lines, above: bool) -> float | None:
     return float(reach[order][min(int(np.searchsorted(share, NEARLY_ALL)), len(order) - 1)])
 
 
-def _weights(lines: Lines) -> Float:
+def weights_of(lines: Lines) -> Float:
     """How much the end of each line (N,) says about levels: its length in the photo, less where its place is unsure."""
     length: Float = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
     if len(lines.probability) == 0:

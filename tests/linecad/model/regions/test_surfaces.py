@@ -6,6 +6,8 @@ import pytest
 from linecad.geometry import central_camera
 from linecad.model.regions.surfaces import (
     BELOW,
+    FIRM_FEET,
+    FURTHEST_FIRM,
     FURTHEST_FOOT,
     GROUND_STEP,
     MOST_SURFACES,
@@ -98,7 +100,12 @@ def test_feet_put_the_ground_where_no_line_contradicts_them():
     assert ground_height(BOTH, low) == 2
     assert ground_height(BOTH, GroundOfFeet(1.0, 21.0)) == 1.0
     # Feet far below all lines are no feet of theirs.
-    assert ground_height(BOTH, GroundOfFeet(FURTHEST_FOOT * 2 * 1.01, 99.0)) == 2
+    far = FURTHEST_FOOT * 2 * 1.01
+    assert ground_height(BOTH, GroundOfFeet(far, 99.0)) == 2
+    # Unless they are firm and in the open: below shop windows there is no line.
+    assert ground_height(BOTH, GroundOfFeet(far, FIRM_FEET, is_open=True)) == far
+    assert ground_height(BOTH, GroundOfFeet(far, 0.99 * FIRM_FEET, is_open=True)) == 2
+    assert ground_height(BOTH, GroundOfFeet(FURTHEST_FIRM * 2 * 1.01, 99.0, is_open=True)) == 2
 
 
 def test_levels_near_the_ground_become_it_and_kerbs_join_it():
