@@ -12,6 +12,7 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from linecad.geometry import lengths
 from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.colours import find_colours, likeness
 from linecad.ties.feet import MOST_LOG_ODDS, Foot, find_feet
@@ -19,6 +20,7 @@ from linecad.ties.levels import LEAST_MATCHES, MOST, LevelPair, Match, find_leve
 from linecad.ties.planes import SharedPlane, find_shared_planes, is_induced
 from linecad.ties.setting import Setting
 from linecad.ties.sizes import SizePair, find_sizes
+from linecad.ties.walls import reach_below
 
 Kind = Literal["bundle", "plane", "level", "ground"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
@@ -28,6 +30,8 @@ NEAR, FAR = 100.0, 800.0  # px at the reference width, over which nearness of bo
 NEAR_PLANES, FAR_PLANES = 150.0, 600.0
 GAP_UNIT = 37.5  # px
 MOST_EXCESS, FARTHEST, MOST_RANK = 8.0, 1.0, 4.0  # of features that would else run away
+BELOW = 1.04  # times the height of a foot; a line that reaches lower contradicts it
+MOST_BELOW = 0.05  # of a wall's lines by length, that may be a lamp before it
 
 Features = dict[str, float]
 
@@ -166,8 +170,16 @@ def _of_foot(setting: Setting, foot: Foot) -> Candidate:
         "rank": min(float(plane.rank), MOST_RANK),
         "wide": float(np.log(np.ptp(ends[..., 0]) / GAP_UNIT + 1)),
         "other foot": float(foot.probability < foot.against),
+        "lines below": float(_share_below(setting, foot) > MOST_BELOW),
     }
     return Candidate("ground", (foot.body, setting.bodies.count), -foot.log_height, -1, own)
+
+
+def _share_below(setting: Setting, foot: Foot) -> float:
+    """Share by length of the lines of a wall that reach below its foot, where there is no wall."""
+    length = lengths(np.diff(setting.graph.segments.ends[foot.wall.plane.lines], axis=1)[:, 0])
+    is_below = reach_below(setting, foot.wall) > BELOW * np.exp(foot.log_height)
+    return float(length[is_below].sum() / length.sum())
 
 
 def _log_odds(probability: float) -> float:

@@ -1,6 +1,7 @@
 """The table of `linecad.ties.weights`: log-odds that a candidate is right, for each unit of a feature.
 
-Logistic regression with a small ridge, by tests/benchmarks/ties.py (docs/results/ties.md). Do not edit by hand.
+Logistic regression with a small ridge, by tests/benchmarks/ties.py (docs/results/ties.md). Do not edit by hand. What
+lines below a foot are worth was fitted last, with all others as they are (docs/decisions/0098).
 """
 
 from linecad.ties.candidates import Kind
@@ -87,5 +88,6 @@ LOG_ODDS: dict[Kind, dict[str, float]] = {
         "rank": -0.0383,
         "wide": -0.1856,
         "other foot": -0.1975,
+        "lines below": -0.95,
     },
 }

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
-from linecad.directions import partner
+from linecad.directions import UP, partner
 from linecad.geometry import world_rays
 from linecad.ties.planes import BodyPlane, find_planes_of_bodies
 from linecad.ties.setting import Setting
@@ -72,6 +72,16 @@ def find_walls(setting: Setting) -> list[Wall]:
             if len(at) > LEAST_LINES:
                 found.append(Wall(body, plane, offset, (float(at.min()), float(at.max()))))
     return found
+
+
+def reach_below(setting: Setting, wall: Wall) -> Float:
+    """How far (M,) below the camera each line of a wall reaches, at the body's own scale; -inf behind the camera."""
+    sight, normal = setting.sight, wall.plane.normal
+    rays = world_rays(setting.graph.segments.ends[wall.plane.lines].reshape(-1, 2), sight.matrix, sight.rotation)
+    before = rays[:, normal] * wall.offset > 0
+    below = np.full(len(rays), -np.inf)
+    below[before] = -rays[before, UP] * wall.offset / rays[before, normal]
+    return np.asarray(below.reshape(-1, 2).max(axis=1))
 
 
 class StripDrawer:

@@ -21,7 +21,8 @@ from linecad.ties.feet import MOST_LOG_ODDS, Foot
 from linecad.ties.levels import MOST
 from linecad.ties.planes import INDUCED, SharedPlane
 from linecad.ties.table import AT_ONCE, LOG_ODDS
-from linecad.ties.walls import find_walls
+from linecad.ties.walls import find_walls, reach_below
+from linecad.ties.weights import log_odds_of
 
 GAP = 2.0 * 3000 / 10  # px between the walls of a row
 
@@ -281,6 +282,18 @@ def test_features_of_a_foot(features_of_foot):
     }
     assert {name: known[name] for name in expected} == pytest.approx(expected)
     assert known["wide"] == pytest.approx(np.log(3.2 * 3000 / 9.0 / GAP_UNIT + 1), abs=0.05), "the camera is turned"
+
+
+@pytest.mark.parametrize(("times", "below"), [(1.01, 0.0), (0.99, 0.0), (0.9, 1.0)])
+def test_a_foot_above_the_lower_ends_of_its_wall_is_told(grounded, monkeypatch, times, below):
+    wall = next(wall for wall in find_walls(grounded) if wall.body == 0)
+    foot = Foot(0, float(np.log(times * reach_below(grounded, wall).max())), 0.5, wall, 0.0, 0.1, 0.2)
+    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
+    (found,) = of_kind(find_candidates(grounded), "ground")
+    assert found.features["lines below"] == below
+    assert (
+        log_odds_of(found) == log_odds_of(replace(found, features=found.features | {"lines below": 0.0})) - 0.95 * below
+    )
 
 
 @pytest.mark.parametrize(("against", "is_other"), [(0.49, 0.0), (0.51, 1.0)])

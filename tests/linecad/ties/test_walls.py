@@ -27,6 +27,7 @@ from linecad.ties.walls import (
     StripDrawer,
     Wall,
     find_walls,
+    reach_below,
 )
 
 BELOW = 1.6  # m from the camera down to the ground
@@ -304,6 +305,23 @@ def noisy(build_links):
         return Setting(build_links(4, []), np.zeros(4), RigidBodies(np.zeros(4, int), 1), None, sight)
 
     return look
+
+
+@pytest.mark.parametrize("moved", [0.0, 0.4])
+def test_lines_reach_as_far_below_the_camera_as_their_lower_ends(front, moved):
+    setting = front(moved=moved)
+    (wall,) = find_walls(setting)
+    found = reach_below(setting, wall) / np.exp(moved)
+    heights = np.array([-1.0, -0.3, 0.5, 1.2, 2.0])
+    assert np.abs(found[:, None] + heights).min(axis=1).max() < 0.02
+    assert found.max() == pytest.approx(1.0, abs=0.02)
+    uprights = setting.graph.axis[wall.plane.lines] == 2
+    np.testing.assert_allclose(found[uprights], 1.0, atol=0.02)
+
+
+def test_a_line_behind_the_camera_reaches_nowhere(usual):
+    (wall,) = find_walls(usual)
+    assert np.isneginf(reach_below(usual, replace(wall, offset=-wall.offset))).all()
 
 
 turns = st.tuples(st.floats(-0.3, 0.3), st.floats(-0.6, 0.6), st.floats(-0.1, 0.1))
