@@ -174,7 +174,8 @@ def test_components_are_numbered_by_size_and_hold_what_real_crossings_connect(an
     assert len(named) > 1
     sizes = [len(component) for component in ids]
     assert sizes == sorted(sizes, reverse=True)
-    assert sizes[-1] >= 4
+    stubs = any("stubs of detail" in note for note in any_scene.notes)  # of a group of four, some may be left out
+    assert sizes[-1] >= (2 if stubs else 4)
 
 
 def test_the_spanning_tree_spans_each_component(any_scene):
