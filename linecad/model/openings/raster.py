@@ -19,7 +19,8 @@ WIDEST = 1280  # px; larger photos are made smaller first
 MARGIN = 0.05  # of a wall's extent, beyond its outermost lines
 MOST_ROWS, MOST_COLUMNS = 480, 1000
 LEAST_EXTENT = 24  # columns and rows of a raster worth looking at
-EDGE = 4.0  # grey levels a px, from which a gradient is an edge
+EDGE = (2.5, 4.0)  # grey levels a px, from which a gradient is an edge: on plain walls, on rough ones
+TEXTURE = 1.5  # times the median gradient of a wall, between the two
 ALONG = float(np.cos(np.radians(12.0)))  # of the angle between a gradient and the normal of the side
 TRIM = 1.0  # per cent of the lines' ends at either side that do not count for the extent
 NEAREST = 0.05  # of the wall's distance: what is nearer along the view is not looked at
@@ -82,13 +83,20 @@ def build_raster(wall: Wall, sight: Sight) -> Raster | None:
         across = np.abs(along_x * towards_y - along_y * towards_x) / cv2.magnitude(towards_x, towards_y)
         edges.append(np.where(inside & (across >= np.float32(ALONG) * strength), across, np.float32(0)))
     colours = np.asarray(cv2.remap(sight.colours, at_x, at_y, cv2.INTER_LINEAR), np.uint8)
-    return Raster(u, v, colours, inside, _thin(edges[1], 1), _thin(edges[0], 0))
+    least = least_edge(strength[inside])
+    return Raster(u, v, colours, inside, _thin(edges[1], 1, least), _thin(edges[0], 0, least))
 
 
-def _thin(strength: Single, across: int) -> Bool:
-    """Where an edge is the strongest of three across."""
+def least_edge(strength: Single) -> np.float32:
+    """From which gradient on an edge is one, of the gradients (P,) of a wall: plain walls have fainter ones."""
+    usual = float(np.median(strength)) if len(strength) else 0.0
+    return np.float32(np.clip(TEXTURE * usual, *EDGE))
+
+
+def _thin(strength: Single, across: int, least: np.float32) -> Bool:
+    """Where an edge is the strongest of three across, and at least so strong."""
     before, after = (np.roll(strength, shift, axis=across) for shift in (1, -1))
-    return np.asarray((strength >= EDGE) & (strength >= before) & (strength >= after))
+    return np.asarray((strength >= least) & (strength >= before) & (strength >= after))
 
 
 def _extent(wall: Wall, sight: Sight) -> tuple[Float, Float]:
