@@ -86,7 +86,7 @@ def inexact_crossings(scene: Scene) -> str:
         return ""
     return (
         f"{count} of {len(first)} real crossings join lines of two frames that stay apart in space, by at most "
-        f"{share.max():.1%} of the depth: no plane was moved by more than {FARTHEST:.1%} for them"
+        f"{share.max():.1%} of the depth: planes move by at most {FARTHEST:.1%} for them, before and after cleaning"
     )
 
 
