@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import ExifTags, Image, TiffImagePlugin, UnidentifiedImageError
 
+from linecad.camera.colour_profile import in_srgb
 from linecad.errors import PhotoError
 
 Pixels = NDArray[np.uint8]
@@ -94,7 +95,9 @@ def _decode(file: BinaryIO, path: Path) -> Decoded:
     exif = _read_exif(image) if is_tiff else {}
     try:
         image.load()
-        pixels, notes = _to_rgb(image)
+        in_known_colours, colour_notes = in_srgb(image)
+        pixels, notes = _to_rgb(in_known_colours)
+        notes += colour_notes
         if image.format in SERIES and getattr(image, "is_animated", False):
             notes.append("the file holds several pictures, the first is used")
     except Image.DecompressionBombError as error:
