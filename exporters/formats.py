@@ -65,7 +65,12 @@ _TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, inst
 
 _ON = Option("textures", True, "the photo on the faces, where it is at hand")
 _SIZE = Option("texture-size", 4096, "the most texels a side of a picture of textures", least=256, most=16384)
-TEXTURES = (_ON, _SIZE)
+_FILL = Option(
+    "texture-fill", "own", "what is painted where a tree, a car or the like hides a face: its own colours and grain, "
+    "or plain grey",
+    words=("own", "grey"),
+)  # fmt: skip
+TEXTURES = (_ON, _SIZE, _FILL)
 
 _PAGES = Beside(folder=".textures", part=PAGE_NAME)
 _PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl")
@@ -183,8 +188,8 @@ def export(
     by_band, by_role, origin = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
     model = build_model(scene, by_band, by_role, origin)
     if TEXTURES[0] in chosen.options:
-        on, size = (arguments.pop(option.name) for option in TEXTURES)
-        arguments["textures"] = _textures(scene, photo, size) if on else None
+        on, size, fill = (arguments.pop(option.name) for option in TEXTURES)
+        arguments["textures"] = _textures(scene, photo, size, fill) if on else None
     if chosen.beside != NOTHING:
         arguments["names"] = chosen.beside.names(path)
 
@@ -202,23 +207,24 @@ class _Made(NamedTuple):
     scene: Scene
     photo: NDArray[np.uint8]
     size: int
+    fill: str
     textures: Textures
 
 
 _last_made: list[_Made] = []  # at most one: a scene goes to several formats, one after the other
 
 
-def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int) -> Textures | None:
+def _textures(scene: Scene, photo: NDArray[np.uint8] | None, size: int, fill: str) -> Textures | None:
     """What of the photo lies on the faces; None where there is no photo or no face."""
     if photo is None or not scene.faces:
         return None
     for made in _last_made[:]:
-        if made.scene is scene and made.photo is photo and made.size == size:
+        if made.scene is scene and made.photo is photo and (made.size, made.fill) == (size, fill):
             return made.textures
     from exporters.textures.build import build_textures
 
-    textures = build_textures(scene, photo, size)
-    _last_made[:] = [] if photo.flags.writeable else [_Made(scene, photo, size, textures)]  # that one may change
+    textures = build_textures(scene, photo, size, fill)
+    _last_made[:] = [] if photo.flags.writeable else [_Made(scene, photo, size, fill, textures)]  # that one may change
     return textures
 
 

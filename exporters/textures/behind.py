@@ -1,7 +1,7 @@
-"""What a tree, a hedge or a car hides of a face: the face's own colours go on there, without detail.
+"""What a tree, a hedge or a car hides of a face: the face's own colours go on there, with its grain.
 
-They are medians of what is in plain view, the nearer the more it counts. A mean, or what continues the colours from
-the border on, would spread every dark window and every leaf beside the border over all that is hidden.
+The colours are medians of what is in plain view, the nearer the more it counts. A mean, or what continues the colours
+from the border on, would spread every dark window and every leaf beside the border over all that is hidden.
 """
 
 import cv2
@@ -10,10 +10,12 @@ from numpy.typing import NDArray
 
 from exporters.colours import FACE
 from exporters.faces import FlatFace
+from exporters.textures.grain import add_grain
 from exporters.textures.layout import View, seen_part
 from exporters.textures.nearest import SHIFT, Shape
 from linecad.arrays import Bool, Float, Int
 
+OWN, GREY = FILLS = ("own", "grey")  # what is painted where something hides a face
 PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the photo says nothing about
 _GROWN = 0.0075  # of the photo's width, by which hidden parts grow: their rings are about as far off
 _LEAST_GROWN = 2.0  # px; the width of an edge in a photo
@@ -54,21 +56,31 @@ def _cover_in_photo(face: FlatFace, shape: Shape, view: View) -> _Pixels:
     return np.asarray(cv2.blur(cover, (width, width), borderType=cv2.BORDER_REPLICATE), np.uint8)
 
 
-def fill_behind(colours: _Pixels, cover: _Pixels, known: Bool) -> None:
+def fill_behind(colours: _Pixels, cover: _Pixels, known: Bool, fill: str = OWN) -> None:
     """Change colours (H, W, 3), in place, to others where `cover` (H, W) is 255, and mix them where it is less.
 
-    The others follow from the known texels (H, W) without any cover; without such texels they are PLAIN.
+    With `fill` OWN the others follow from the known texels (H, W) without any cover; without such texels, and with
+    GREY, they are PLAIN.
     """
     rows = np.flatnonzero(cover.max(axis=1))
     if not len(rows):
         return
+    if fill == OWN:
+        filling = np.asarray(cv2.resize(_filling(colours, cover, known), cover.shape[::-1]), np.uint8)
+        add_grain(filling, colours, known & (cover == 0), cover > 0)
+    else:
+        filling = np.full_like(colours, PLAIN)
     here = np.s_[rows[0] : rows[-1] + 1]
-    filling = cv2.resize(_filling(colours, cover, known), cover.shape[::-1])[here]
-    border = np.flatnonzero(cv2.inRange(cover[here], 1, 254))
-    share = cover[here].reshape(-1, 1)[border] / np.float32(255)
-    photo, other = (picture.reshape(-1, 3)[border] for picture in (colours[here], filling))
-    cv2.copyTo(filling, cover[here], colours[here])
-    colours[here].reshape(-1, 3)[border] = np.rint(photo * (1 - share) + other * share).astype(np.uint8)
+    mix(colours[here], filling[here], cover[here])
+
+
+def mix(colours: _Pixels, others: _Pixels, cover: _Pixels) -> None:
+    """Change colours (H, W, 3), in place, to others where `cover` (H, W) is 255, and mix them where it is less."""
+    border = np.nonzero(cv2.inRange(cover, 1, 254))
+    share = cover[border][:, None] / np.float32(255)
+    mixed = np.rint(colours[border] * (1 - share) + others[border] * share)
+    cv2.copyTo(others, cover, colours)
+    colours[border] = mixed.astype(np.uint8)
 
 
 def _filling(colours: _Pixels, cover: _Pixels, known: Bool) -> _Pixels:

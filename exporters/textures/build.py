@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exporters.model import build_model
+from exporters.textures.behind import OWN
 from exporters.textures.layout import build_layout, view_of
 from exporters.textures.pages import Page, Textures, page_name
 from exporters.textures.rectify import paint_pages
@@ -18,16 +19,17 @@ from linecad.scene import Scene
 _QUALITY = 95  # of 100; the photo itself has seldom been stored better
 
 
-def build_textures(scene: Scene, photo: NDArray[np.uint8], largest: int) -> Textures:
+def build_textures(scene: Scene, photo: NDArray[np.uint8], largest: int, fill: str = OWN) -> Textures:
     """The textures of all faces from the scene's photo (H, W, 3), on pages of at most `largest` texels a side.
 
-    Raises OutputError where the rings of a face do not bound one piece of plane.
+    `fill`, one of FILLS, is what is painted where a thing without a face hides a face. Raises OutputError where the
+    rings of a face do not bound one piece of plane.
     """
     model, view = build_model(scene), view_of(scene)
     for face in model.faces:
         checked_polygon(face)
     layout = build_layout(model, view, largest)
-    painted, shown = paint_pages(model, layout, view, photo)
+    painted, shown = paint_pages(model, layout, view, photo, fill)
     ids = [face.id for face in model.faces]
     return Textures(
         pages=tuple(map(_page, painted)),

@@ -2,8 +2,8 @@
 
 A face is hidden where another one is nearer to the camera. What is hidden so or outside the photo keeps the plain
 colour of faces without a texture: nothing of what stands before a face is painted on it. Where a thing without a face
-hides it, a tree or a car, the face's own colours go on, without detail. Along the borders of what is seen its colours
-go on for a few texels, so that no filter mixes them with anything else.
+hides it, a tree or a car, the face's own colours go on with its grain, and a window looks like an equal one. Along the
+borders of what is seen its colours go on for a few texels, so that no filter mixes them with anything else.
 """
 
 import math
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 
 from exporters.faces import FlatFace, signed_area
 from exporters.model import Model
-from exporters.textures.behind import PLAIN, cover_of, fill_behind
+from exporters.textures.behind import OWN, PLAIN, cover_of, fill_behind
+from exporters.textures.equal import fill_from_equal
 from exporters.textures.layout import MARGIN, Layout, Patch, View, seen_part
 from exporters.textures.nearest import Nearest, Shape, filled, nearest_of, shape_of
 from linecad.arrays import Bool, Float
@@ -29,19 +30,33 @@ _WHOLLY_SEEN = 250  # of 255: less of a texel is mixed with what hides it
 Pixels = NDArray[np.uint8]
 
 
-def paint_pages(model: Model, layout: Layout, view: View, photo: Pixels) -> tuple[list[Pixels], list[float]]:
-    """The pages of a layout, RGB, from the photo (H, W, 3), and for each face how many pixels of the photo show it."""
+def paint_pages(
+    model: Model, layout: Layout, view: View, photo: Pixels, fill: str = OWN
+) -> tuple[list[Pixels], list[float]]:
+    """The pages of a layout, RGB, from the photo (H, W, 3), and for each face how many pixels of the photo show it.
+
+    `fill`, one of FILLS, is what parts that a thing without a face hides are painted with.
+    """
     pages = [np.full((height, width, 3), PLAIN, np.uint8) for width, height in layout.pages]
     shapes = [shape_of(face, view) for face in model.faces]
     nearest = nearest_of(shapes, view)
-    for face, shape, patch in zip(model.faces, shapes, layout.patches, strict=True):
-        if shape.rings:
-            colours = _paint(face, shape, patch, view, nearest, photo)
-            left, top = patch.left - MARGIN, patch.top - MARGIN
-            pages[patch.page][top : top + colours.shape[0], left : left + colours.shape[1]] = colours
     counts = np.bincount(nearest.owner[nearest.inverse_depth > 0], minlength=len(shapes)).tolist()
     hidden = (sum(_pixels(ring, view) for ring in face.hidden) for face in model.faces)
-    return pages, [count - behind for count, behind in zip(counts, hidden, strict=True)]
+    shown = [count - behind for count, behind in zip(counts, hidden, strict=True)]
+    painted: dict[int, Pixels] = {}
+    covers: dict[int, Pixels] = {}
+    for face, shape, patch in zip(model.faces, shapes, layout.patches, strict=True):
+        if shape.rings:
+            painted[face.id], cover = _paint(face, shape, patch, view, nearest, photo, fill)
+            if cover is not None:
+                covers[face.id] = cover
+    if fill == OWN:
+        fill_from_equal(model, painted, covers, dict(zip((face.id for face in model.faces), shown, strict=True)))
+    for face, patch in zip(model.faces, layout.patches, strict=True):
+        if face.id in painted:
+            left, top, colours = patch.left - MARGIN, patch.top - MARGIN, painted[face.id]
+            pages[patch.page][top : top + colours.shape[0], left : left + colours.shape[1]] = colours
+    return pages, shown
 
 
 def _pixels(ring: Float, view: View) -> float:
@@ -64,8 +79,10 @@ def _hidden(shape: Shape, nearest: Nearest) -> Bool:
     return hidden
 
 
-def _paint(face: FlatFace, shape: Shape, patch: Patch, view: View, nearest: Nearest, photo: Pixels) -> Pixels:
-    """RGB of a patch with its margin."""
+def _paint(
+    face: FlatFace, shape: Shape, patch: Patch, view: View, nearest: Nearest, photo: Pixels, fill: str
+) -> tuple[Pixels, Pixels | None]:
+    """RGB of a patch with its margin, and where something without a face hides it, 255; None where nothing does."""
     left, top, right, bottom = shape.box
     here = np.s_[top:bottom, left:right]
     shown = np.where(_hidden(shape, nearest), np.uint8(0), np.uint8(255))
@@ -87,9 +104,10 @@ def _paint(face: FlatFace, shape: Shape, patch: Patch, view: View, nearest: Near
     )
     blurred = min(max(_BLURRED / step, 1.0), _MOST_BLURRED)
     pure, painted = _pure(known, blurred), np.asarray(warped, np.uint8)
-    if face.hidden:
-        fill_behind(painted, cover_of(face, shape, view, to_photo, size), pure)
-    return _continued(painted, pure, MARGIN + blurred + 1)
+    cover = cover_of(face, shape, view, to_photo, size) if face.hidden else None
+    if cover is not None:
+        fill_behind(painted, cover, pure, fill)
+    return _continued(painted, pure, MARGIN + blurred + 1), cover
 
 
 def _to_space(face: FlatFace, patch: Patch) -> Float:
