@@ -18,6 +18,7 @@ from exporters.textures.behind import OWN, PLAIN, cover_of, fill_behind
 from exporters.textures.equal import fill_from_equal
 from exporters.textures.layout import MARGIN, Layout, Patch, View, seen_part
 from exporters.textures.nearest import Nearest, Shape, filled, nearest_of, shape_of
+from exporters.textures.smear import streaks, without_streaks
 from linecad.arrays import Bool, Float
 from linecad.directions import MAIN
 
@@ -105,6 +106,8 @@ def _paint(
     blurred = min(max(_BLURRED / step, 1.0), _MOST_BLURRED)
     pure, painted = _pure(known, blurred), np.asarray(warped, np.uint8)
     cover = cover_of(face, shape, view, to_photo, size) if face.hidden else None
+    clear = pure if cover is None else pure & (cover == 0)
+    without_streaks(painted, clear, streaks(to_photo, size))
     if cover is not None:
         fill_behind(painted, cover, pure, fill)
     return _continued(painted, pure, MARGIN + blurred + 1), cover
