@@ -11,10 +11,12 @@ import cv2
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.depth.depth_map import DepthMap, camera_depths
 from linecad.directions import UP, across
+from linecad.geometry import homogeneous
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.surfaces import Kind, Surface
-from linecad.scene import Camera
+from linecad.scene import Camera, DepthKind
 
 LEAST_WIDTH = 0.012  # log depth; a map's wall is as uneven in itself
 MAP_COST, MOST_BY_MAP = 0.6, 3.0  # of a surface off the map, for each unit of the log of a Cauchy density; at most
@@ -32,10 +34,26 @@ SAME_LEVEL = 0.12  # log height within which feet or lines know the ground bette
 
 @dataclass(frozen=True, eq=False)
 class MappedDepths:
-    """A depth map on a photo's pixels, in the scene's unit."""
+    """A depth map on a photo's pixels, and how its numbers tell depths in the scene's unit."""
 
-    depth: Float  # (H, W) camera depth; NaN where the map has none
+    depth: DepthMap
+    kind: DepthKind  # of its numbers
+    shift: float  # added to them
+    factor: float  # depth in the scene over depth in units of the map
+    matrix: Float  # (3, 3) K of the photo, px
     width: float  # of the Cauchy error of its walls, log depth
+
+    def at(self, rows: Int, columns: Int) -> Float:
+        """(R, C) camera depth in the pixels of those rows (R,) and columns (C,); NaN where the map has none.
+
+        Of a map of 6 megapixels the faces ask for one pixel in some hundred.
+        """
+        place = np.ix_(rows, columns)
+        v, u = np.meshgrid(rows, columns, indexing="ij")
+        rays = homogeneous(np.stack([u, v], axis=2).astype(np.float64)) @ np.linalg.inv(self.matrix).T
+        values = np.where(self.depth.valid[place], self.depth.values[place], np.nan).astype(np.float64)
+        found = camera_depths(values, np.linalg.norm(rays, axis=2), self.kind, self.shift)
+        return np.asarray(found * self.factor, np.float64)
 
 
 def laid_on(raster: Raster, mapped: MappedDepths | None, camera: Camera) -> Raster:
@@ -45,8 +63,7 @@ def laid_on(raster: Raster, mapped: MappedDepths | None, camera: Camera) -> Rast
     height, width = raster.shape
     row = np.minimum(((np.arange(height) + 0.5) * raster.step).astype(np.int64), camera.height - 1)
     column = np.minimum(((np.arange(width) + 0.5) * raster.step).astype(np.int64), camera.width - 1)
-    depth = mapped.depth[np.ix_(row, column)].ravel()
-    return replace(raster, map_depth=depth, map_width=max(mapped.width, LEAST_WIDTH))
+    return replace(raster, map_depth=mapped.at(row, column).ravel(), map_width=max(mapped.width, LEAST_WIDTH))
 
 
 def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float, limit: float) -> Float:

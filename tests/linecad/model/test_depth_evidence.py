@@ -33,10 +33,12 @@ def test_the_depths_are_those_of_the_scene(kind):
     shift = SHIFT if kind == "affine-inverse" else 0.0
     found = depths_of(placed(values, kind, shift), FACTOR, MATRIX)
     assert found.width == 0.02
-    assert np.isnan(found.depth[3, 4])
-    known = np.isfinite(found.depth)
+    depth = found.at(np.arange(48), np.arange(64))
+    assert np.isnan(depth[3, 4])
+    known = np.isfinite(depth)
     assert known.sum() == known.size - 1
-    np.testing.assert_allclose(found.depth[known], (true * FACTOR)[known], rtol=1e-4)
+    np.testing.assert_allclose(depth[known], (true * FACTOR)[known], rtol=1e-4)
+    np.testing.assert_array_equal(found.at(np.array([3, 7]), np.array([4, 9, 2])), depth[[3, 7]][:, [4, 9, 2]])
 
 
 def test_a_map_that_was_left_out_and_none_at_all_say_nothing():

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from linecad.depth.depth_map import DepthMap
 from linecad.geometry import central_camera
 from linecad.model.regions.mapped import (
     LEAST_WIDTH,
@@ -104,7 +105,9 @@ def test_without_a_map_nothing_changes():
 
 def test_a_map_is_read_at_the_pixels_of_the_samples():
     v, u = np.mgrid[:320, :480]
-    raster = laid_on(RASTER, MappedDepths(1.0 + u + 1000.0 * v, 0.001), CAMERA)
+    values = (1.0 + u + 1000.0 * v).astype(np.float32)
+    depth = DepthMap("map.npz", values, values > 0, "z")
+    raster = laid_on(RASTER, MappedDepths(depth, "z", 0.0, 1.0, np.eye(3), 0.001), CAMERA)
     assert raster.map_width == LEAST_WIDTH
     middle = raster.samples_of(np.array([[100.0, 50.0]])).round().astype(int)[0]
     assert raster.map_depth[middle[1] * raster.shape[1] + middle[0]] == pytest.approx(50101.0, abs=1001)
