@@ -94,7 +94,7 @@ def find_command(chosen: str) -> str:
     AddonError where there is none.
     """
     if chosen:
-        found = shutil.which(Path(chosen).expanduser())
+        found = shutil.which(str(Path(chosen).expanduser()))
         if found is None:
             raise AddonError(f"{chosen} is no command that can be started; choose the file linecad of its environment")
         return found
@@ -102,7 +102,9 @@ def find_command(chosen: str) -> str:
         found = shutil.which(name) if name else None
         if found is not None:
             return found
-    raise AddonError("linecad is not installed: `pip install` it in an environment of its own, and choose its path")
+    raise AddonError(
+        "linecad was not found; install it in an environment of its own, and choose the file linecad in that one's bin"
+    )
 
 
 def environment_for(given: Mapping[str, str]) -> dict[str, str]:
@@ -173,10 +175,9 @@ class Running:
         if self._process.poll() is None:
             self.was_ended = True
             _signal(self._process, is_patient=True)
-            try:
+            with contextlib.suppress(subprocess.TimeoutExpired):
                 self._process.wait(PATIENCE)
-            except subprocess.TimeoutExpired:
-                _signal(self._process, is_patient=False)
+            _signal(self._process, is_patient=False)  # what it started may be there still, and hold the pipes
         self.wait()
         if self.was_ended and self.folder is not None:
             for left in self.folder.glob(_LEFT):
@@ -195,12 +196,14 @@ def _started(words: Sequence[str]) -> subprocess.Popen[str]:
 
 def _read_all(pipe: IO[str], lines: list[str]) -> None:
     with pipe:
-        lines.extend(line.rstrip() for line in pipe if line.strip())
+        for line in pipe:
+            if line.strip():
+                lines.append(line.rstrip())  # at once: somebody else looks at the last one
 
 
 def _signal(process: subprocess.Popen[str], is_patient: bool) -> None:
     if sys.platform != "win32":
-        with contextlib.suppress(ProcessLookupError):
+        with contextlib.suppress(ProcessLookupError, PermissionError):  # gone; so says macOS
             os.killpg(process.pid, signal.SIGTERM if is_patient else signal.SIGKILL)
     else:
         process.terminate()

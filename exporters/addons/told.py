@@ -107,7 +107,7 @@ def read_scene_file(path: Path) -> SceneFile:
         metres = top.get("metres_per_unit") or 1.0
         lines = {line["id"]: _line(line, metres) for line in top["lines"]}
         return SceneFile(lines, _faces(top, lines), top["camera"])
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise AddonError(f"{path} could not be read as a scene file: {error}") from error
 
 

@@ -28,12 +28,25 @@ def expected_of(scene):
 
 
 def kept_of(command, scene_file):
-    """The same of what `linecad export --confidence` keeps."""
+    """The same of the lines and faces that `linecad export --confidence` keeps, where they are in the whole scene."""
     with tempfile.TemporaryDirectory() as folder:
-        kept = Path(folder) / "kept.json"
-        words = [command, "export", str(scene_file), "--confidence", str(CONFIDENCE), "--quiet", "-o", str(kept)]
+        kept_file = Path(folder) / "kept.json"
+        words = [command, "export", str(scene_file), "--confidence", str(CONFIDENCE), "--quiet", "-o", str(kept_file)]
         subprocess.run(words, check=True, timeout=SECONDS, stdin=subprocess.DEVNULL)
-        return expected_of(read(kept))
+        kept = read(kept_file)
+    ids = {line["id"] for line in kept["lines"]}
+    faces = {face["id"] for plane in kept["planes"] for face in plane["faces"]}
+    expected = expected_of(read(scene_file))
+    groups = {
+        name: group | {"ids": [each for each in group["ids"] if each in ids]}
+        for name, group in expected["groups"].items()
+        if ids & set(group["ids"])
+    }
+    return expected | {
+        "lines": [line for line in expected["lines"] if line["id"] in ids],
+        "groups": groups,
+        "faces": [face for face in expected["faces"] if face["id"] in faces],
+    }
 
 
 def groups_of(scene, by):
