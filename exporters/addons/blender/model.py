@@ -47,6 +47,7 @@ def import_model(context: Any, request: Request) -> Any:
             for place in part.users_collection:
                 place.objects.unlink(part)
             root.objects.link(part)
+            part.select_set(False)  # what is selected is drawn in one colour
             if part.type == "CAMERA":
                 set_camera(context.scene, part, request)
     root.linecad.photo = str(request.photo)

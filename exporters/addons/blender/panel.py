@@ -209,7 +209,7 @@ class LINECAD_PT_panel(bpy.types.Panel):  # type: ignore[misc]  # noqa: N801
     def draw(self, context: Any) -> None:
         """What is asked for, how far it is, and the model."""
         chosen, layout = context.scene.linecad, self.layout
-        layout.use_property_split = True
+        layout.use_property_split, layout.use_property_decorate = True, False
         for name in ("photo", "camera", "depth", "scale", "camera_height", "is_fast", "has_tubes"):
             layout.prop(chosen, name)
         running, page = _at_work.get("convert"), _at_work.get("edit")

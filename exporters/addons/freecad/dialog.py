@@ -12,7 +12,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore, QtGui
 
-from exporters.addons.freecad.model import arrange, hide, import_model, model_of
+from exporters.addons.freecad.model import arrange, hide, import_model, look_from_camera, model_of
 from exporters.addons.running import AddonError, Request, Running, find_command
 from exporters.addons.told import GROUPINGS
 
@@ -66,8 +66,9 @@ class Panel(QtGui.QDockWidget):  # type: ignore[misc]
         self.show_state()
 
     def _add_file(self, name: str, label: str, tip: str) -> None:
-        field, choose, row = QtGui.QLineEdit(), QtGui.QPushButton("..."), QtGui.QHBoxLayout()
+        field, choose, row = QtGui.QLineEdit(), QtGui.QToolButton(), QtGui.QHBoxLayout()
         field.setToolTip(tip)
+        choose.setText("...")
         choose.clicked.connect(lambda: field.setText(QtGui.QFileDialog.getOpenFileName(self, tip)[0] or field.text()))
         row.addWidget(field)
         row.addWidget(choose)
@@ -157,13 +158,12 @@ class Panel(QtGui.QDockWidget):  # type: ignore[misc]
             running, self.running = self.running, None
             try:
                 said = running.result()
-                import_model(self.asked_before())
+                look_from_camera(import_model(self.asked_before()))
             except (AddonError, OSError, RuntimeError) as error:  # RuntimeError: FreeCAD's importer
                 self.complain(error)
             else:
                 FreeCAD.Console.PrintMessage("".join(f"linecad: {line}\n" for line in said))
                 self.state.setText(said[0] if said else "imported")
-                FreeCADGui.SendMsgToActiveView("ViewFit")
         if self.running is None and self.page is None:
             self.timer.stop()
         self.show_state()
@@ -183,6 +183,7 @@ class Panel(QtGui.QDockWidget):  # type: ignore[misc]
         if root is not None and root.Grouping != grouping:
             root.Grouping = grouping
             arrange(root)
+            root.Document.recompute()
 
     # --- what the fields say
 

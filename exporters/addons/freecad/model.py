@@ -1,11 +1,13 @@
 """The model of a photo in FreeCAD: the parts of a STEP file in groups, with the photo on a plane behind them."""
 
 import contextlib
+import math
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import FreeCAD
+import FreeCADGui
 import ImportGui
 import Part
 
@@ -142,8 +144,7 @@ def _add_photo(root: Any, request: Request, told: SceneFile) -> None:
     right, down, ahead = (FreeCAD.Vector(*row) for row in told.camera["R_cam_from_world"])
     (focal, _, centre_u), (_, _, centre_v), _ = told.camera["K"]
     width, height = told.camera["width"], told.camera["height"]
-    eyes = [part.Shape.Vertexes[0].Point for part in root.Group if part.Label.startswith("camera")]
-    eye = eyes[0] if eyes else FreeCAD.Vector()
+    eye = _eye(root)
     far = max(ahead.dot(FreeCAD.Vector(*end)) for line in told.lines.values() for end in line.ends)
     distance = BEHIND * MILLIMETRES * far
     aside = right * (width / 2 - centre_u - 0.5) + down * (height / 2 - centre_v - 0.5)  # pixels count from centres
@@ -153,6 +154,27 @@ def _add_photo(root: Any, request: Request, told: SceneFile) -> None:
     plane.XSize, plane.YSize = width * distance / focal, height * distance / focal
     plane.Placement = FreeCAD.Placement(at, FreeCAD.Rotation(right, -down, -ahead, "ZXY"))
     _add_to(root, plane, {})
+
+
+def _eye(root: Any) -> Any:
+    """Where the camera stood, in mm."""
+    return next(part.Shape.Vertexes[0].Point for part in _parts(root) if part.Label.startswith("camera"))
+
+
+def look_from_camera(root: Any) -> None:
+    """Show the model from where the camera stood, over the photo."""
+    plane = next(part for part in _parts(root) if part.TypeId == "Image::ImagePlane")
+    view = FreeCADGui.getDocument(root.Document.Name).ActiveView
+    view.setCameraType("Perspective")
+    # From the eye to the middle of the photo, right, up and back: the axis that the view looks along passes beside it.
+    right, up, back = plane.Placement.Rotation.inverted().multVec(plane.Placement.Base - _eye(root))
+    wide, high = view.getSize()
+    half = max(plane.YSize.Value / 2 + abs(up), (plane.XSize.Value / 2 + abs(right)) * high / wide)
+    camera = view.getCameraNode()
+    camera.position.setValue(*_eye(root))
+    camera.orientation.setValue(*plane.Placement.Rotation.Q)
+    camera.heightAngle.setValue(2 * math.atan(half / -back))
+    camera.focalDistance.setValue(-back)
 
 
 def model_of(photo: Path) -> Any:
