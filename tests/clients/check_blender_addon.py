@@ -51,6 +51,8 @@ def check(findings, addon, command, photo, calibration):
     findings.need(0 < len(kept["lines"]) < len(expected["lines"]), "the sample shows nothing about confidence")
     check_model(findings, root, kept)
     root.linecad.grouping = "role"
+    own = bpy.data.objects.new("somebody's own", None)
+    root.children[0].objects.link(own)
     correct(photo, scene)
     settings.is_fast = settings.has_tubes = True
     findings.need(bpy.ops.linecad.convert(corrected=True) == {"FINISHED"}, "the photo was not solved again")
@@ -161,6 +163,8 @@ def check_again(findings, root, scene):
     eye = tuple(bpy.context.scene.camera.matrix_world.translation)
     off = max(abs(a - b) for a, b in zip(eye, expected["camera"]["eye"], strict=True))
     findings.need(off < TOLERANCE, f"the camera stands at {eye}, expected {expected['camera']['eye']}")
+    kept = "somebody's own" in bpy.context.scene.objects
+    findings.need(kept, "what somebody put into the collection is gone with the former model")
     cameras = [item for item in bpy.data.objects if item.type == "CAMERA"]
     findings.need(len(cameras) == 1 and len(bpy.data.images) > 0, f"{len(cameras)} cameras, expected 1")
 

@@ -18,7 +18,7 @@ bl_info = {
     "name": "linecad",
     "author": "The linecad authors",
     "version": (0, 0, 0),
-    "blender": (3, 3, 0),
+    "blender": (3, 4, 0),
     "location": "3D View > Sidebar > linecad",
     "description": "One photo to lines, faces and its camera",
     "category": "Import-Export",

@@ -73,7 +73,7 @@ def test_what_is_shown_is_what_confidence_keeps(row, tmp_path_factory, least, se
     """Walls with lines of any probability, openings with theirs, and planes without lines."""
     rng = np.random.default_rng(seed)
     ids = row.lines.id.tolist()
-    planes = [replace(plane, lines=tuple(rng.choice(ids, rng.integers(0, 3)).tolist())) for plane in row.planes]
+    planes = [replace(plane, lines=tuple(rng.choice(ids, rng.integers(0, 3), False).tolist())) for plane in row.planes]
     lines = replace(row.lines, probability=rng.random(len(ids)))
     scene = replace(row, lines=lines, planes=tuple(planes))
     path = tmp_path_factory.mktemp("scene") / "scene.json"
