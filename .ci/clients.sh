@@ -262,7 +262,7 @@ check_addons() {
     sed 's/probability >= confidence/True/' "$folder/linecad.FCMacro" >"$folder/fault/linecad.FCMacro"
 
     addon() {
-        "$1" "$2" env XDG_CONFIG_HOME="$folder/$3/home" "${@:5}" "$4" "$command" \
+        "$1" "$2" env XDG_CONFIG_HOME="$folder/$3/home" BROWSER=true "${@:5}" "$4" "$command" \
             "$folder/$3/courtyard.jpg" "$folder/$3/courtyard.json"
     }
     local by_blender=(blender -b --factory-startup --python-exit-code 3 --python "$checkers/check_blender_addon.py" --)

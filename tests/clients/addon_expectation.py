@@ -6,6 +6,8 @@ Runs in the Pythons of FreeCAD and Blender too, so it needs nothing but the stan
 import json
 import subprocess
 import tempfile
+import time
+import urllib.request
 from collections import Counter
 from pathlib import Path
 
@@ -71,3 +73,13 @@ def correct(photo, scene):
     size = {key: scene["camera"][key] for key in ("width", "height")}
     text = json.dumps({"format": "linecad-corrections", "version": 1, "photo": photo.name, **size, "edits": [edit]})
     photo.with_name(f"{photo.name}.corrections.json").write_text(text, encoding="utf-8")
+
+
+def open_page(running):
+    """The title of the page that `linecad edit` serves, once it does; `running` is the add-on's own record of it."""
+    end = time.monotonic() + SECONDS
+    while not running.result() and time.monotonic() < end:  # an error of the command is raised here
+        time.sleep(0.05)
+    address = running.result()[0]
+    with urllib.request.urlopen(address, timeout=SECONDS) as page:
+        return page.read().decode().partition("<title>")[2].partition("</title>")[0]

@@ -17,7 +17,7 @@ import bpy
 from bpy_extras.object_utils import world_to_camera_view
 from mathutils import Vector
 
-from addon_expectation import CONFIDENCE, correct, expected_of, groups_of, kept_of, read
+from addon_expectation import CONFIDENCE, correct, expected_of, groups_of, kept_of, open_page, read
 from shapes import check_lines, check_names, check_pixels
 from verdict import run
 
@@ -38,6 +38,7 @@ def check(findings, addon, command, photo, calibration):
     settings.scale, settings.camera_height = "a=b", 0.0
     check_refusal(findings, "'b' is not a number")  # in the words of the command
     settings.scale = ""
+    check_page(findings)
     findings.need(bpy.ops.linecad.convert() == {"FINISHED"}, "the photo was not converted")
     scene_file = photo.with_name(f"{photo.name}.linecad") / f"{photo.stem}.json"
     scene = read(scene_file)
@@ -88,6 +89,16 @@ def check_refusal(findings, words):
         lines = str(error).strip().splitlines()
         findings.need(len(lines) == 1 and words in lines[0], f"the error is {lines}, expected {words!r} in it")
     findings.need(not bpy.data.collections, "something was imported all the same")
+
+
+def check_page(findings):
+    """The button opens the page, and pressed again it ends the command."""
+    module = sys.modules[type(bpy.context.scene.linecad).__module__]
+    bpy.ops.linecad.edit()
+    running = module._at_work["edit"]
+    findings.need(open_page(running), "the page has no title")
+    bpy.ops.linecad.edit()
+    findings.need(running.is_done and not module._at_work, "the page is there still once it was closed")
 
 
 def only_model(findings, photo):

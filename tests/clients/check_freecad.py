@@ -39,6 +39,7 @@ def report_from(script, told, program="freecadcmd"):
                 "HOME": folder,
                 "XDG_RUNTIME_DIR": folder,
                 "CHECK_REPORT": str(report),
+                "BROWSER": "true",  # a program that shows nothing
                 "PYTHONPATH": str(script.parent),
                 "QT_QPA_PLATFORM": "offscreen",
                 "QTWEBENGINE_DISABLE_SANDBOX": "1",

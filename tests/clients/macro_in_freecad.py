@@ -12,7 +12,7 @@ import FreeCAD
 import FreeCADGui
 from PySide import QtCore
 
-from addon_expectation import CONFIDENCE, correct, expected_of, groups_of, kept_of, read
+from addon_expectation import CONFIDENCE, correct, expected_of, groups_of, kept_of, open_page, read
 from shapes import apart, check_colour, check_lines, check_names
 from verdict import judge
 
@@ -42,6 +42,7 @@ def check(findings):
     check_refusal(findings, panel, "'b' is not a number")  # in the words of the command
     panel.scale.setText("")
     check_cancel(findings, panel)
+    check_page(findings, panel)
     stages = convert(panel, is_corrected=False)
     findings.need(len(stages) > 5, f"the stages shown are {stages}")
     scene_file = photo.with_name(f"{photo.name}.linecad") / f"{photo.stem}.json"
@@ -110,6 +111,15 @@ def check_cancel(findings, panel):
     findings.need(running.is_done and panel.running is None, "the command goes on after it was cancelled")
     findings.need("cancelled" in panel.state.text() and not FreeCAD.listDocuments(), f"{panel.state.text()} is shown")
     findings.need(seconds < SECONDS / 10, f"to cancel took {seconds:.0f} s")
+
+
+def check_page(findings, panel):
+    """The button opens the page, and pressed again it ends the command."""
+    panel.buttons["Correct in Browser"].click()
+    running = panel.page
+    findings.need(open_page(running), "the page has no title")
+    panel.buttons["Correct in Browser"].click()
+    findings.need(running.is_done and panel.page is None, "the page is there still once it was closed")
 
 
 def items(root):

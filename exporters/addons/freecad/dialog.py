@@ -62,7 +62,8 @@ class Panel(QtGui.QDockWidget):  # type: ignore[misc]
         self.timer.timeout.connect(self.look)
         escape = QtGui.QShortcut(QtGui.QKeySequence("Esc"), self, self.cancel)
         escape.setContext(QtCore.Qt.WidgetWithChildrenShortcut)
-        atexit.register(self.end_all)
+        QtCore.QCoreApplication.instance().aboutToQuit.connect(self.end_all)
+        atexit.register(self.end_all)  # where FreeCAD runs without its own loop
         self.show_state()
 
     def _add_file(self, name: str, label: str, tip: str) -> None:
