@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from exporters.addons.running import AddonError
+from exporters.addons.running import AddonError, Request
 
 BANDS = (("sure", 0.9), ("likely", 0.5), ("guess", 0.0))  # words and the smallest probability of each
 BAND_NOT_TOLD = "not told"
@@ -21,6 +21,16 @@ GROUPINGS = (
     ("confidence", "Confidence", "sure, likely, guess"),
     ("component", "Component", "what crossings hold together; 0 is the largest"),
 )
+
+
+def write_photo(request: Request) -> Path:
+    """Write the photo as linecad measured it beside the other files of a request; AddonError where that fails."""
+    path = request.output(".photo.jpg")
+    try:
+        path.write_bytes(photo_of_fspy(request.output(".fspy").read_bytes()))
+    except OSError as error:
+        raise AddonError(f"{error.filename}: {error.strerror}; the photo cannot be shown") from error
+    return path
 
 
 def photo_of_fspy(project: bytes) -> bytes:

@@ -16,8 +16,8 @@ from exporters.addons.told import (
     SceneFile,
     groups_of,
     is_shown,
-    photo_of_fspy,
     read_scene_file,
+    write_photo,
 )
 
 SENSOR = 36.0  # mm, as the guide has it
@@ -30,7 +30,7 @@ FACES = "faces"
 
 def import_model(context: Any, request: Request) -> Any:
     """Import what the command wrote, in place of the earlier model of this photo; its collection."""
-    told = read_scene_file(request.output(".json"))
+    told, photo = read_scene_file(request.output(".json")), write_photo(request)  # before anything is removed
     confidence, grouping = 0.0, GROUPINGS[0][0]
     for former in models_of(request.photo):
         confidence, grouping = former.linecad.confidence, former.linecad.grouping
@@ -49,7 +49,7 @@ def import_model(context: Any, request: Request) -> Any:
             root.objects.link(part)
             part.select_set(False)  # what is selected is drawn in one colour
             if part.type == "CAMERA":
-                set_camera(context.scene, part, request)
+                set_camera(context.scene, part, photo)
     root.linecad.photo = str(request.photo)
     root.linecad.has_probabilities = any(line.probability is not None for line in told.lines.values())
     root.linecad.grouping, root.linecad.confidence = grouping, confidence  # which arrange and hide
@@ -127,7 +127,7 @@ def _weigh(part: Any, probabilities: list[float], of_a_line: int) -> None:
     mask.vertex_group = WEIGHTS
 
 
-def set_camera(scene: Any, camera: Any, request: Request) -> None:
+def set_camera(scene: Any, camera: Any, photo: Path) -> None:
     """Make a camera of a GLB the photo's, with the photo behind the model, and the scene's."""
     width, height = camera["linecad_width"], camera["linecad_height"]
     scene.render.resolution_x, scene.render.resolution_y = int(width), int(height)
@@ -139,8 +139,6 @@ def set_camera(scene: Any, camera: Any, request: Request) -> None:
     lens.shift_x = (width / 2 - camera["linecad_cx"]) / width
     lens.shift_y = (camera["linecad_cy"] - height / 2) / width
     scene.camera = camera
-    photo = request.output(".photo.jpg")
-    photo.write_bytes(photo_of_fspy(request.output(".fspy").read_bytes()))
     lens.show_background_images = True
     behind = lens.background_images.new()
     behind.image = bpy.data.images.load(str(photo))

@@ -18,8 +18,8 @@ from exporters.addons.told import (
     SceneFile,
     groups_of,
     is_shown,
-    photo_of_fspy,
     read_scene_file,
+    write_photo,
 )
 
 MILLIMETRES = 1000.0  # per metre
@@ -36,7 +36,7 @@ IMPORT = (
 
 def import_model(request: Request) -> Any:
     """Import what the command wrote, in place of the earlier model of this photo; the group that holds it."""
-    told = read_scene_file(request.output(".json"))
+    told, photo = read_scene_file(request.output(".json")), write_photo(request)  # before anything is removed
     confidence, grouping = 0.0, GROUPINGS[0][0]
     former = model_of(request.photo)
     if former is None:
@@ -63,7 +63,7 @@ def import_model(request: Request) -> Any:
     for name in assemblies:
         document.removeObject(name)
     _take_over(root, parts, told)
-    _add_photo(root, request, told)
+    _add_photo(root, photo, told)
     arrange(root)
     hide(root)
     document.recompute()
@@ -137,10 +137,8 @@ def _add_to(root: Any, part: Any, groups: dict[str, str]) -> None:
     root.addObject(part)
 
 
-def _add_photo(root: Any, request: Request, told: SceneFile) -> None:
+def _add_photo(root: Any, photo: Path, told: SceneFile) -> None:
     """The photo on a plane behind the model, where its pixels lie on the rays that they were seen along."""
-    path = request.output(".photo.jpg")
-    path.write_bytes(photo_of_fspy(request.output(".fspy").read_bytes()))
     right, down, ahead = (FreeCAD.Vector(*row) for row in told.camera["R_cam_from_world"])
     (focal, _, centre_u), (_, _, centre_v), _ = told.camera["K"]
     width, height = told.camera["width"], told.camera["height"]
@@ -150,7 +148,7 @@ def _add_photo(root: Any, request: Request, told: SceneFile) -> None:
     aside = right * (width / 2 - centre_u - 0.5) + down * (height / 2 - centre_v - 0.5)  # pixels count from centres
     at = eye + ahead * distance + aside * (distance / focal)
     plane = root.Document.addObject("Image::ImagePlane", "photo")
-    plane.ImageFile = str(path)
+    plane.ImageFile = str(photo)
     plane.XSize, plane.YSize = width * distance / focal, height * distance / focal
     plane.Placement = FreeCAD.Placement(at, FreeCAD.Rotation(right, -down, -ahead, "ZXY"))
     _add_to(root, plane, {})

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PIL import Image
 
 from exporters import bands
 from exporters.addons import told as told_of
-from exporters.addons.running import AddonError
-from exporters.addons.told import GROUPINGS, groups_of, is_shown, photo_of_fspy, read_scene_file
+from exporters.addons.running import AddonError, Request
+from exporters.addons.told import GROUPINGS, groups_of, is_shown, read_scene_file, write_photo
 from exporters.formats import export
 from exporters.model import build_model
 from linecad.confidence import keep_probable
@@ -109,12 +110,20 @@ def test_every_grouping_has_every_part_once_and_in_order(told, read):
 
 
 def test_the_photo_of_a_project_is_its_jpeg(scene, photo, tmp_path):
-    path = tmp_path / "a.fspy"
-    export(scene, path, photo)
-    picture = photo_of_fspy(path.read_bytes())
-    assert (picture[:2], picture[-2:]) == (b"\xff\xd8", b"\xff\xd9")
+    request = Request(tmp_path / "a.jpg")
+    request.folder.mkdir()
+    project = request.output(".fspy")
+    export(scene, project, photo)
+    with Image.open(write_photo(request)) as picture:
+        assert (picture.format, picture.size) == ("JPEG", (scene.camera.width, scene.camera.height))
+        difference = np.abs(np.asarray(picture, float) - photo)
+    assert np.median(difference) <= 2  # of 255
+    project.write_bytes(project.read_bytes()[:-1])
     with pytest.raises(AddonError, match="newer than this add-on"):
-        photo_of_fspy(path.read_bytes()[:-1])
+        write_photo(request)
+    project.unlink()
+    with pytest.raises(AddonError, match=r"a\.fspy: No such file or directory; the photo cannot be shown"):
+        write_photo(request)
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{}", '{"lines": [{"id": 1}]}'])
