@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Export every sample and open the files in FreeCAD, Blender, its newer module bpy, ezdxf, usd-core and Khronos's glTF
-# validator, by the checkers in tests/clients. Then show that the checkers notice faults. Arguments: other photos to
+# validator, by the checkers in tests/clients. Then show that the checkers notice faults, and let the add-on for Blender
+# and the macro for FreeCAD convert a sample. Arguments: other photos to
 # check in place of the samples, each with its camera beside it as .json. The last line counts what passed and failed.
 # Needs .venv, as `make test` leaves it, or another Python with linecad's libraries in PYTHON; LINECAD names another
 # linecad than that Python's, BPY_PYTHON a Python that has bpy.
@@ -234,6 +235,48 @@ check_turned() {
     check_fault "wrong-turn, FreeCAD" "${in_freecad[@]}" "$made.step" "$folder/wrong.json"
 }
 
+# The add-ons are installed from their files and run the command themselves; Blender keeps them in a home of their own.
+# The faults: a camera that looks aside, in a single file as older Blenders take it too, and a confidence that hides
+# nothing.
+check_addons() {
+    local folder=$PWD/$out/addons command=${LINECAD:-$PWD/$out/addons/linecad} program
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    if [ -z "${LINECAD:-}" ]; then
+        printf '#!/usr/bin/env bash\nPYTHONPATH=%q exec %q -m linecad "$@"\n' \
+            "$PWD" "$(realpath -s "$(command -v "$python")")" >"$command"
+        chmod +x "$command"
+    fi
+    for program in blender freecad; do
+        if ! "${linecad[@]}" addon $program -o "$folder" >"$log" 2>&1; then
+            report_failure "linecad addon $program"
+            return
+        fi
+    done
+    for program in blender bpy freecad fault; do
+        mkdir "$folder/$program"
+        cp samples/courtyard.jpg samples/courtyard.json "$folder/$program"
+    done
+    "$python" -m zipfile -e "$folder/linecad-blender.zip" "$folder/fault"
+    sed 's/lens.shift_x = (/lens.shift_x = -(/' "$folder/fault/linecad/__init__.py" >"$folder/fault/linecad.py"
+    sed 's/probability >= confidence/True/' "$folder/linecad.FCMacro" >"$folder/fault/linecad.FCMacro"
+
+    addon() {
+        "$1" "$2" env XDG_CONFIG_HOME="$folder/$3/home" BROWSER=true "${@:5}" "$4" "$command" \
+            "$folder/$3/courtyard.jpg" "$folder/$3/courtyard.json"
+    }
+    local by_blender=(blender -b --factory-startup --python-exit-code 3 --python "$checkers/check_blender_addon.py" --)
+    local by_freecad=("$python" "$checkers/check_freecad_macro.py")
+    addon check "the add-on, Blender" blender "$folder/linecad-blender.zip" "${by_blender[@]}"
+    if [ -n "$bpy" ]; then
+        addon check "the extension, bpy" bpy "$folder/linecad-blender.zip" "$bpy" "$checkers/check_blender_addon.py"
+    fi
+    addon check "the macro, FreeCAD" freecad "$folder/linecad.FCMacro" "${by_freecad[@]}"
+    addon check_fault "wrong-lens, add-on" fault "$folder/fault/linecad.py" "${by_blender[@]}"
+    rm -f "$folder/fault/courtyard.jpg.corrections.json"
+    addon check_fault "wrong-confidence, macro" fault "$folder/fault/linecad.FCMacro" "${by_freecad[@]}"
+}
+
 shopt -s nullglob
 photos=("$@")
 if [ $# = 0 ]; then
@@ -245,6 +288,7 @@ done
 check_metric "${photos[0]}"
 check_faults "${photos[0]}"
 check_turned
+check_addons
 
 echo "clients: $passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

@@ -19,22 +19,34 @@ LAST_WORDS = 400  # characters of FreeCAD's own output to show where it said not
 
 def report_of(path, expectation, gui, program="freecadcmd"):
     """What the checker says that runs inside FreeCAD, line by line."""
+    told = {
+        "CHECK_FILE": str(path.resolve()),
+        "CHECK_EXPECTATION": str(expectation.resolve()),
+        "CHECK_GUI": "1" if gui else "",
+    }
+    return report_from(INSIDE, told, program)
+
+
+def report_from(script, told, program="freecadcmd"):
+    """What a checker says that FreeCAD runs, which gets what it must know by the environment."""
     with tempfile.TemporaryDirectory(prefix="freecad-") as folder:
         report = Path(folder) / "report.txt"
         # freecadcmd takes every word for a file to open, so arguments come by the environment. Its own settings, and
         # those of whoever runs this, must not matter.
-        environment = os.environ | {
-            "HOME": folder,
-            "XDG_RUNTIME_DIR": folder,
-            "CHECK_FILE": str(path.resolve()),
-            "CHECK_EXPECTATION": str(expectation.resolve()),
-            "CHECK_REPORT": str(report),
-            "CHECK_GUI": "1" if gui else "",
-            "PYTHONPATH": str(INSIDE.parent),
-            "QT_QPA_PLATFORM": "offscreen",
-            "QTWEBENGINE_DISABLE_SANDBOX": "1",
-        }
-        command = [program, "-u", f"{folder}/user.cfg", "-s", f"{folder}/system.cfg", str(INSIDE)]
+        environment = (
+            os.environ
+            | {
+                "HOME": folder,
+                "XDG_RUNTIME_DIR": folder,
+                "CHECK_REPORT": str(report),
+                "BROWSER": "true",  # a program that shows nothing
+                "PYTHONPATH": str(script.parent),
+                "QT_QPA_PLATFORM": "offscreen",
+                "QTWEBENGINE_DISABLE_SANDBOX": "1",
+            }
+            | told
+        )
+        command = [program, "-u", f"{folder}/user.cfg", "-s", f"{folder}/system.cfg", str(script)]
         try:
             ended = subprocess.run(
                 command,

@@ -1,9 +1,9 @@
 """The pictures of docs/guide/freecad.md, blender.md and usd.md, made without a screen.
 
-    python docs/guide/screenshots/make.py [freecad] [blender] [usd] [--bpy PYTHON]
+    python docs/guide/screenshots/make.py [freecad] [blender] [usd] [freecad-macro] [blender-addon] [--bpy PYTHON]
 
 Needs linecad, FreeCAD with xvfb-run, and Blender on the path; for the USD stage a Python with the module bpy, because
-Debian's Blender was built without USD. Without a word all three pictures are made, in docs/guide/.
+Debian's Blender was built without USD. Without a word all pictures are made, in docs/guide/.
 """
 
 import argparse
@@ -24,15 +24,16 @@ SCREEN = "1500x900x24"
 WIDEST = 1500  # px
 QUALITY = 82  # of the JPEG
 LIMIT = 600  # s
+PICTURES = ["freecad", "blender", "usd", "freecad-macro", "blender-addon"]
 
 
 def main() -> None:
     """Export the sample once and make the pictures that are asked for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("pictures", nargs="*", choices=["freecad", "blender", "usd", []], default=[])
+    parser.add_argument("pictures", nargs="*", choices=[*PICTURES, []], default=[])
     parser.add_argument("--bpy", default=sys.executable, help="a Python that has the module bpy")
     parsed = parser.parse_args()
-    wanted = parsed.pictures or ["freecad", "blender", "usd"]
+    wanted = parsed.pictures or PICTURES
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         shutil.copy(SAMPLE, folder)
@@ -44,7 +45,9 @@ def main() -> None:
         viewer, photo = str(HERE / "blender_view.py"), str(SAMPLE)
         for name in wanted:
             picture = folder / f"{name}.png"
-            if name == "freecad":
+            if name in ("freecad-macro", "blender-addon"):
+                with_addon(folder, name, picture)
+            elif name == "freecad":
                 freecad(folder, files["step"], picture)
             elif name == "blender":
                 blender = ["blender", "--background", "--factory-startup", "--python-exit-code", "3"]
@@ -59,6 +62,30 @@ def freecad(folder: Path, step: Path, picture: Path) -> None:
     settings = ["-u", str(folder / "user.cfg"), "-s", str(folder / "system.cfg")]
     command = ["xvfb-run", "-a", "-s", f"-screen 0 {SCREEN}", "freecad", *settings, str(HERE / "freecad_view.py")]
     run(command, SCENE_STEP=str(step), PICTURE=str(picture), QTWEBENGINE_DISABLE_SANDBOX="1", HOME=str(folder))
+
+
+def with_addon(folder: Path, name: str, picture: Path) -> None:
+    """The window of a program in which its add-on converts the sample, in a home of its own."""
+    program = name.partition("-")[0]
+    home, command = folder / f"home-{program}", folder / "linecad"
+    home.mkdir()
+    command.write_text(f'#!/bin/sh\nPYTHONPATH="{ROOT}" exec "{sys.executable}" -m linecad "$@"\n')
+    command.chmod(0o755)
+    run([str(command), "addon", program, "-o", str(home)])
+    photo, camera = str(folder / SAMPLE.name), str(folder / "camera.json")
+    shutil.copy(SAMPLE.with_suffix(".json"), camera)
+    screen = ["xvfb-run", "-a", "-s", f"-screen 0 {SCREEN}", program]
+    if program == "blender":
+        width, height, _ = SCREEN.split("x")
+        options = ["--factory-startup", "--enable-event-simulate", "--window-geometry", "0", "0", width, height]
+        words = [str(home / "linecad-blender.zip"), str(command), photo, camera, str(picture)]
+        script = ["--python", str(HERE / "addon_view.py"), "--", *words]
+        run([*screen, *options, *script], HOME=str(home), XDG_CONFIG_HOME=str(home / "config"))
+    else:
+        settings = ["-u", str(home / "user.cfg"), "-s", str(home / "system.cfg"), str(HERE / "macro_view.py")]
+        told = {"PHOTO": photo, "CAMERA": camera, "PICTURE": str(picture), "LINECAD": str(command)}
+        macro = str(home / "linecad.FCMacro")
+        run([*screen, *settings], **told, MACRO=macro, QTWEBENGINE_DISABLE_SANDBOX="1", HOME=str(home))
 
 
 def run(command: list[str], **environment: str) -> None:

@@ -1,0 +1,1 @@
+"""The macro for FreeCAD; only FreeCAD can load what is in here."""
