@@ -23,7 +23,20 @@ ORIGIN = np.zeros(3)
 X, Y, Z = np.eye(3)
 
 Entity = ifcopenshell.entity_instance
-Value = str | bool | float | tuple[str, ...]
+Value = str | bool | int | float | tuple[str, ...]
+
+
+class Metres(float):
+    """A length in m, which readers show with its unit."""
+
+
+_KINDS = {  # of a property by its value, the first that fits
+    str: "IfcText",
+    bool: "IfcBoolean",
+    int: "IfcInteger",
+    Metres: "IfcLengthMeasure",
+    float: "IfcReal",
+}
 
 
 class Document:
@@ -175,7 +188,7 @@ class Document:
         self._materials[material][1].append(element)
 
     def describe(self, thing: Entity, name: str, values: Mapping[str, Value]) -> None:
-        """Give a thing a set of properties; numbers are real numbers, tuples are lists of words."""
+        """Give a thing a set of properties; tuples are lists of words."""
         key = f"{name} of {self._key[thing.id()]}"
         properties = [self._property(each, value) for each, value in values.items()]
         properties_set = self.add_rooted("IfcPropertySet", key, name, HasProperties=properties)
@@ -187,7 +200,7 @@ class Document:
     def _property(self, name: str, value: Value) -> Entity:
         if isinstance(value, tuple):
             return self.add("IfcPropertyListValue", Name=name, ListValues=[self.add("IfcText", word) for word in value])
-        kind = "IfcBoolean" if isinstance(value, bool) else "IfcText" if isinstance(value, str) else "IfcReal"
+        kind = next(kind for told, kind in _KINDS.items() if isinstance(value, told))
         return self.add("IfcPropertySingleValue", Name=name, NominalValue=self.add(kind, value))
 
     def finish(self) -> str:

@@ -12,7 +12,7 @@ import shapely
 
 from exporters.colours import face_colour
 from exporters.faces import FlatFace
-from exporters.ifc.document import Document, Entity, Value, X
+from exporters.ifc.document import Document, Entity, Metres, Value, X
 from exporters.ifc.voids import Side, Void
 from exporters.triangulation import checked_polygon
 from linecad.errors import OutputError
@@ -110,6 +110,6 @@ def describe_filling(void: Void) -> dict[str, Value]:
         "OpeningId": str(void.fitting.id),
         "Shape": str(void.fitting.shape),
         "Seen": not void.opening.is_completed,
-        "PaneThicknessAssumed": PANE,
+        "PaneThicknessAssumed": Metres(PANE),
     }
-    return told if void.opening.recess is None else {**told, "Recess": void.recess}
+    return told if void.opening.recess is None else {**told, "Recess": Metres(void.recess)}

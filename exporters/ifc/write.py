@@ -16,7 +16,7 @@ import numpy as np
 
 from exporters.camera import principal_point
 from exporters.faces import FlatFace
-from exporters.ifc.document import Document, Entity, Value
+from exporters.ifc.document import Document, Entity, Metres, Value
 from exporters.ifc.rest import add_lines, add_loose_fitting, add_surface
 from exporters.ifc.storeys import Storey, build_storeys, storey_of
 from exporters.ifc.voids import Side, Void, build_voids, host_of
@@ -100,7 +100,7 @@ class _Building:
             Description="its level is that of the sills of its windows; the photo shows no floor",
             ObjectPlacement=add.place(self.inside, np.array([0.0, 0.0, storey.sill])), Elevation=storey.sill,
         )  # fmt: skip
-        add.describe(made, "linecad_Storey", {"WindowsInRows": float(storey.windows), "HeadOfLowestRow": storey.head})
+        add.describe(made, "linecad_Storey", {"WindowsInRows": storey.windows, "HeadOfLowestRow": Metres(storey.head)})
         add.compose(self.building, made)
         return made
 
@@ -109,7 +109,7 @@ class _Building:
         return {
             "Unit": self.model.unit_note,
             "ScaleIsKnown": scene.metres_per_unit is not None,
-            "WallThicknessAssumed": self.assumed,
+            "WallThicknessAssumed": Metres(self.assumed),
             "Photo": self.model.photo,
             "PhotoSize": f"{scene.camera.width} x {scene.camera.height} px",
             "FocalLength": f"{scene.camera.focal!r} px",
@@ -124,7 +124,7 @@ class _Building:
         wall = add_wall(self.document, self.inside, face, side, voids, thickness)
         self.document.contain(self.building, wall)
         why = "assumed" if thickness == self.assumed else "assumed, so that its deepest window is in it"
-        self._describe_face(wall, face, {"Thickness": thickness, "ThicknessIs": why})
+        self._describe_face(wall, face, {"Thickness": Metres(thickness), "ThicknessIs": why})
         reached = set()
         for void in voids:
             self._put(add_opening(self.document, wall, side, void, thickness), void)
@@ -178,7 +178,7 @@ def _evidence(model: Model) -> dict[int, dict[str, Value]]:
         rows = [row[number] for number in plane.lines]
         if rows:
             components = sorted(set(np.asarray(lines.component)[rows].tolist()))
-            told[plane.id] = {"Lines": float(len(rows)), "Components": tuple(map(str, components))}
+            told[plane.id] = {"Lines": len(rows), "Components": ", ".join(map(str, components))}
             if len(lines.probability):
                 told[plane.id]["Probability"] = float(np.median(np.asarray(lines.probability)[rows]))
     return told

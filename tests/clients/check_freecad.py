@@ -1,6 +1,7 @@
-"""Open a STEP or DXF in FreeCAD: check_freecad.py FILE.step|FILE.dxf EXPECTATION.json [--gui]
+"""Open a STEP, DXF or IFC in FreeCAD: check_freecad.py FILE.step|.dxf|.ifc EXPECTATION.json [--gui] [--libraries DIR]
 
-With --gui the window is loaded too, on no screen, and colours are looked at; they are no part of the model itself.
+FreeCAD opens IFC with ifcopenshell, which --libraries has for its Python. With --gui the window is loaded too, on no
+screen, and colours are looked at; they are no part of the model itself.
 """
 
 import argparse
@@ -17,8 +18,8 @@ MOST_SECONDS = 280
 LAST_WORDS = 400  # characters of FreeCAD's own output to show where it said nothing else
 
 
-def report_of(path, expectation, gui, program="freecadcmd"):
-    """What the checker says that runs inside FreeCAD, line by line."""
+def report_of(path, expectation, gui, program="freecadcmd", libraries=None):
+    """What the checker says that runs inside FreeCAD, line by line; `libraries` is a folder of more modules for it."""
     with tempfile.TemporaryDirectory(prefix="freecad-") as folder:
         report = Path(folder) / "report.txt"
         # freecadcmd takes every word for a file to open, so arguments come by the environment. Its own settings, and
@@ -30,7 +31,7 @@ def report_of(path, expectation, gui, program="freecadcmd"):
             "CHECK_EXPECTATION": str(expectation.resolve()),
             "CHECK_REPORT": str(report),
             "CHECK_GUI": "1" if gui else "",
-            "PYTHONPATH": str(INSIDE.parent),
+            "PYTHONPATH": os.pathsep.join(map(str, [INSIDE.parent, *([libraries.resolve()] if libraries else [])])),
             "QT_QPA_PLATFORM": "offscreen",
             "QTWEBENGINE_DISABLE_SANDBOX": "1",
         }
@@ -69,8 +70,9 @@ def main():
     parser.add_argument("file", type=Path)
     parser.add_argument("expectation", type=Path)
     parser.add_argument("--gui", action="store_true")
+    parser.add_argument("--libraries", type=Path)
     chosen = parser.parse_args()
-    report = report_of(chosen.file, chosen.expectation, chosen.gui)
+    report = report_of(chosen.file, chosen.expectation, chosen.gui, libraries=chosen.libraries)
     print("\n".join(report))
     return 0 if passed(report) else 1
 

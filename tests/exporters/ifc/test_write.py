@@ -262,7 +262,7 @@ def test_the_surest_word_of_a_face_is_what_its_lines_say(told_row, tmp_path):
     properties = told(wall, "linecad_Face")
     assert properties["Probability"] == pytest.approx(0.7)
     assert properties["Lines"] == 3
-    assert properties["Components"] == ["0", "2"]
+    assert properties["Components"] == "0, 2"
 
 
 @pytest.fixture
