@@ -64,7 +64,7 @@ def build_mesh(face: FlatFace) -> rhino3dm.Mesh:
     mesh = rhino3dm.Mesh()
     mesh.Vertices.UseDoublePrecisionVertices = True
     for point in face.vertices.tolist():
-        mesh.Vertices.Add(*point)
+        mesh.Vertices.AddPoint3d(*point)  # `Add` rounds to 32 bits
     for corners in triangulate(face).tolist():
         mesh.Faces.AddFace(*corners)
     mesh.Normals.ComputeNormals()

@@ -13,7 +13,7 @@ from exporters.model import build_model
 from linecad.errors import OutputError
 
 pytest.importorskip("rhino3dm", reason="the extra `rhino` is not installed")
-build_brep = importlib.import_module("exporters.rhino.faces").build_brep
+faces = importlib.import_module("exporters.rhino.faces")
 
 SQUARE = np.array([[0.0, 0], [10, 0], [10, 8], [0, 8]])
 
@@ -43,7 +43,7 @@ def corners(brep):
 
 
 def check(face: FlatFace) -> None:
-    brep = build_brep(face)
+    brep = faces.build_brep(face)
     assert brep.IsValid
     assert brep.Faces[0].IsPlanar(1e-6)
     assert [len(brep.Faces), len(brep.Faces[0].Loops)] == [1, len(face.rings)]
@@ -77,4 +77,11 @@ def test_a_face_that_is_not_convex(face):
 
 def test_a_face_that_is_taken_for_less_is_told(face):
     with pytest.raises(OutputError, match=r"face_0000 is too small or too thin.*correct it in the scene file"):
-        build_brep(laid(face, [SQUARE * 1e-12], [0.0, -1.0, 0.0]))
+        faces.build_brep(laid(face, [SQUARE * 1e-12], [0.0, -1.0, 0.0]))
+
+
+def test_meshes_hold_more_than_32_bits(face):
+    far_away = laid(face, [SQUARE / 3], [0.3, -0.9, 0.1], np.array([500.0, 300.0, 10.0]))
+    mesh = faces.build_mesh(far_away)
+    points = [mesh.Vertices.Point3dAt(number) for number in range(len(mesh.Vertices))]
+    assert [[point.X, point.Y, point.Z] for point in points] == far_away.vertices.tolist()
