@@ -123,7 +123,7 @@ check_photo() {
     if [ -f "${photo%.*}.json" ]; then
         camera=(--camera "${photo%.*}.json")
     fi
-    for suffix in json dxf step ifc 3dm glb usda usdc usdz obj ply stl fspy png; do
+    for suffix in json dxf step ifc 3dm skp glb usda usdc usdz obj ply stl fspy png; do
         outputs+=(-o "$made.$suffix")
         again+=(-o "{OUT}/$name.$suffix")
     done

@@ -107,6 +107,13 @@ FORMATS: dict[str, Format] = {
         options=MODEL_OPTIONS,
         extra=Extra("rhino", "rhino3dm"),
     ),
+    ".skp": Format(
+        "exporters.skp",
+        "SketchUp: lines and faces with holes in groups on layers",
+        "inches",
+        options=MODEL_OPTIONS,
+        extra=Extra("sketchup", "openskp"),
+    ),
     ".glb": Format(
         "exporters.gltf.write",
         "lines, faces, camera for viewers and Blender",

@@ -67,6 +67,7 @@ HEAVY = {
     "networkx",
     "OCP",
     "OpenEXR",
+    "openskp",
     "PIL",
     "pillow_heif",
     "pxr",

@@ -24,7 +24,7 @@ from linecad.io.scene_file import write_scene
 FACES_ONLY = {".ply", ".stl"}
 NO_FACES = {".fspy", ".png"}  # the picture draws faces as they are, the project has none
 REPOSITORY = Path(__file__).parents[2]
-HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "ifcopenshell", "pxr", "rhino3dm", "shapely", "trimesh"}
+HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "ifcopenshell", "openskp", "pxr", "rhino3dm", "shapely", "trimesh"}
 
 
 def save(scene, path):
@@ -303,7 +303,7 @@ def test_a_new_format_with_side_files_needs_its_module_and_its_row_alone(scene, 
 def test_the_table_is_fit_for_people():
     for suffix, row in FORMATS.items():
         assert suffix == suffix.lower()
-        assert row.unit in {"metres", "millimetres", "pixels"}
+        assert row.unit in {"metres", "millimetres", "inches", "pixels"}
         assert row.phrase
         assert "\n" not in row.phrase
 
