@@ -18,7 +18,8 @@ from exporters.triangulation import checked_polygon
 from linecad.errors import OutputError
 
 PANE = 0.05  # m, how thick windows and doors are taken to be
-_GRID = 1e-7  # m, that corners of a wall are rounded to where its openings are closed: else hairs would stay
+_TOUCHING = 1e-6  # m; borders that are nearer are one
+_GRID = 1e-7  # m, that corners of a wall are rounded to where a door is a notch in its outline
 
 WINDOW = {"PredefinedType": "WINDOW", "PartitioningType": "NOTDEFINED"}
 DOOR = {"PredefinedType": "DOOR", "OperationType": "NOTDEFINED"}
@@ -49,15 +50,20 @@ def add_wall(
 
 
 def _closed(face: FlatFace, side: Side, voids: Sequence[Void]) -> shapely.Polygon:
-    """The face in the axes of its side, its openings closed again."""
+    """The face in the axes of its side, its openings closed again: holes of it, or notches in its outline."""
     checked_polygon(face)
-    polygon = side.polygon(face)
-    if not voids:
-        return polygon
-    closed = shapely.union_all([polygon, *(void.box(side) for void in voids)], grid_size=_GRID)
-    if not isinstance(closed, shapely.Polygon):
-        raise OutputError(f"{face.name} is not one piece with its openings; correct it in the scene file")
-    return closed
+    polygon, boxes = side.polygon(face), [void.box(side) for void in voids]
+    cut = shapely.union_all([box.buffer(_TOUCHING, join_style="mitre") for box in boxes])
+    holes = [ring for ring in polygon.interiors if not cut.covers(shapely.Polygon(ring))]
+    outline = shapely.Polygon(polygon.exterior)
+    reached = outline.buffer(_TOUCHING, join_style="mitre")
+    notches = [box for box in boxes if not reached.covers(box)]
+    if notches:
+        # Rounded, because a hair would stay between a notch and the door in it.
+        outline = shapely.union_all([outline, *notches], grid_size=_GRID)
+        if not isinstance(outline, shapely.Polygon):
+            raise OutputError(f"{face.name} is not one piece with its openings; correct it in the scene file")
+    return shapely.Polygon(outline.exterior, [*outline.interiors, *holes])
 
 
 def add_opening(document: Document, wall: Entity, side: Side, void: Void, thickness: float) -> Entity:

@@ -167,6 +167,18 @@ def test_a_door_in_the_foot_of_a_wall_is_cut_out_of_the_whole_wall(town, tmp_pat
     assert (door.OverallWidth, door.OverallHeight) == pytest.approx((1.0, 2.1))
 
 
+def test_a_hole_that_no_opening_fills_stays_a_hole(row, tmp_path):
+    (wall,) = [plane for plane in row.planes if any(face.id == WALL for face in plane.faces)]
+    (face,) = wall.faces
+    gap = face.holes[0] + np.array([0.1, 0, -3.0])
+    holed = replace(wall, faces=(replace(face, holes=(*face.holes, gap)),))
+    file = saved(replace(row, planes=tuple(holed if plane is wall else plane for plane in row.planes)), tmp_path)
+    (made,) = file.by_type("IfcWall")
+    profile = made.Representation.Representations[0].Items[0].SweptArea
+    assert [len(curve.Points) for curve in (profile.OuterCurve, *profile.InnerCurves)] == [5, 5]
+    assert volume(made) == pytest.approx(THICKNESS * (12 * 8 - 4 * 1.2 * 1.6), rel=1e-6)
+
+
 def test_windows_stand_as_far_behind_the_wall_as_the_scene_tells(row, tmp_path):
     file = saved(row, tmp_path)
     (wall,) = file.by_type("IfcWall")
