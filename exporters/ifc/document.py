@@ -49,6 +49,7 @@ class Document:
         self._members: dict[tuple[str, int], list[Entity]] = {}  # of relations by kind and number of what relates them
         self._layers: dict[str, list[Entity]] = {}
         self._materials: dict[str, tuple[Entity, list[Entity]]] = {}
+        self._types: dict[str, tuple[Entity, list[Entity]]] = {}
         self._styles: dict[tuple[str, str], Entity] = {}
         self.world = self.add("IfcGeometricRepresentationContext", None, "Model", 3, _PRECISION, self.axes())
         self.body = self._sub_context("Body")
@@ -187,6 +188,13 @@ class Document:
             self._materials[material] = self.add("IfcMaterial", material), []
         self._materials[material][1].append(element)
 
+    def classify(self, element: Entity, kind: str, name: str, words: Mapping[str, str]) -> None:
+        """Make an element one of a type, which is of a kind and made with the first element of its name."""
+        if name not in self._types:
+            key = f"type {len(self._types)}"  # the name may tell sizes, which follow the scale
+            self._types[name] = self.add_rooted(kind, key, name, **words), []
+        self._types[name][1].append(element)
+
     def describe(self, thing: Entity, name: str, values: Mapping[str, Value]) -> None:
         """Give a thing a set of properties; tuples are lists of words."""
         key = f"{name} of {self._key[thing.id()]}"
@@ -220,5 +228,10 @@ class Document:
             self.add_rooted(
                 "IfcRelAssociatesMaterial", f"made of {name}", None, RelatedObjects=elements, RelatingMaterial=material
             )
+        for made, elements in self._types.values():
+            self.add_rooted(
+                "IfcRelDefinesByType", f"of {self._key[made.id()]}", None,
+                RelatedObjects=elements, RelatingType=made,
+            )  # fmt: skip
         text: str = self.file.to_string()
         return text

@@ -100,13 +100,11 @@ def add_opening(document: Document, wall: Entity, side: Side, void: Void, thickn
 def add_filling(
     document: Document, kind: str, key: str, name: str, size: tuple[float, float], **named: object
 ) -> Entity:
-    """A window or a door of a width and height, m."""
-    words = WINDOW if kind == "window" else DOOR
-    made = document.add_rooted(
-        "IfcWindow" if kind == "window" else "IfcDoor", key, name, OverallWidth=size[0], OverallHeight=size[1],
-        **words, **named,
-    )  # fmt: skip
+    """A window or a door of a width and height, m, of the type of all that are as large."""
+    made_as, words = ("IfcWindow", WINDOW) if kind == "window" else ("IfcDoor", DOOR)
+    made = document.add_rooted(made_as, key, name, OverallWidth=size[0], OverallHeight=size[1], **words, **named)
     document.make_of(made, f"{kind}, not known of what")
+    document.classify(made, f"{made_as}Type", f"{kind} {size[0]:.3f} x {size[1]:.3f} m", words)
     return made
 
 

@@ -193,6 +193,15 @@ def test_windows_stand_as_far_behind_the_wall_as_the_scene_tells(row, tmp_path):
     assert told(wall, "linecad_Face")["Thickness"] == THICKNESS
 
 
+def test_windows_of_one_size_are_of_one_type(town, tmp_path):
+    file = saved(town, tmp_path)
+    names = {each.Name: {one.Name for one in each.Types[0].RelatedObjects} for each in file.by_type("IfcElementType")}
+    assert names == {
+        "window 1.200 x 1.600 m": {"window 1", "window 2", "window 3"},
+        "door 1.000 x 2.100 m": {"door"},
+    }
+
+
 def test_the_thickness_is_chosen_and_told(row, tmp_path):
     file = saved(row, tmp_path, **{"wall-thickness": 0.45})
     (wall,), (project,) = file.by_type("IfcWall"), file.by_type("IfcProject")
