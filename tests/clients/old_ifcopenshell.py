@@ -1,4 +1,4 @@
-"""Names by which FreeCAD 0.20 calls ifcopenshell, which has others since 0.8: it imports nothing without them.
+"""Names by which FreeCAD 0.20 calls ifcopenshell and which 0.9 has no more: it imports nothing without them.
 
 Runs in the Python of FreeCAD.
 """
