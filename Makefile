@@ -28,7 +28,7 @@ help:
 	@echo 'make results measure datasets (DATASETS="folders", WORKERS=2): docs/results/tables/, and more in results/'
 	@echo 'make clean   remove what was made, except .venv'
 	@echo
-	@echo 'Each prepares .venv on its first run: about 1.6 GB, a minute or two.'
+	@echo 'Each prepares .venv on its first run: about 2 GB, a minute or two.'
 
 demo: $(READY)
 	@mkdir -p $(dir $(DEMO))

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Export every sample and open the files in FreeCAD, Blender, its newer module bpy, ezdxf, usd-core and Khronos's glTF
-# validator, by the checkers in tests/clients. Then show that the checkers notice faults, and let the add-on for Blender
-# and the macro for FreeCAD convert a sample. Arguments: other photos to
+# Export every sample and open the files in FreeCAD, Blender, its newer module bpy, ezdxf, usd-core, ifcopenshell with
+# its validator, rhino3dm and Khronos's glTF validator, by the checkers in tests/clients. Then show that the checkers
+# notice faults, and let the add-on for Blender and the macro for FreeCAD convert a sample. Arguments: other photos to
 # check in place of the samples, each with its camera beside it as .json. The last line counts what passed and failed.
 # Needs .venv, as `make test` leaves it, or another Python with linecad's libraries in PYTHON; LINECAD names another
 # linecad than that Python's, BPY_PYTHON a Python that has bpy.
@@ -57,6 +57,15 @@ if [ ! -x "$bpy" ] || ! "$bpy" -c 'import bpy' >/dev/null 2>&1; then
     fi
 fi
 
+# FreeCAD opens IFC with ifcopenshell, which Debian does not have. FreeCAD runs in Debian's own Python; the one of linecad
+# must be of the same version for this.
+freecad_libraries=$out/freecad-libraries
+if [ ! -d "$freecad_libraries/ifcopenshell" ]; then
+    echo "installing ifcopenshell for FreeCAD"
+    "$python" -m pip install -qq --disable-pip-version-check --no-deps -c constraints.txt \
+        --target "$freecad_libraries" ifcopenshell typing_extensions
+fi
+
 # --- the checks ------------------------------------------------------------------------------------------------------
 
 passed=0
@@ -100,7 +109,7 @@ check_fault() {
 
 in_blender=(blender -b --factory-startup --python-exit-code 3 --python "$checkers/check_blender.py" --)
 in_bpy=("$bpy" "$checkers/check_blender.py")
-in_freecad=("$python" "$checkers/check_freecad.py")
+in_freecad=("$python" "$checkers/check_freecad.py" --libraries "$freecad_libraries")
 by_khronos=(node "$checkers/check_gltf.mjs")
 
 check_photo() {
@@ -114,7 +123,7 @@ check_photo() {
     if [ -f "${photo%.*}.json" ]; then
         camera=(--camera "${photo%.*}.json")
     fi
-    for suffix in json dxf step glb usda usdc usdz obj ply stl fspy png; do
+    for suffix in json dxf step ifc 3dm skp glb usda usdc usdz obj ply stl fspy png; do
         outputs+=(-o "$made.$suffix")
         again+=(-o "{OUT}/$name.$suffix")
     done
@@ -143,6 +152,9 @@ check_photo() {
     check "$name.step, FreeCAD" "${in_freecad[@]}" "$made.step" "$expected"
     check "$name.step, FreeCAD" "${in_freecad[@]}" "$made.step" "$expected" --gui
     check "$name.dxf, FreeCAD" "${in_freecad[@]}" "$made.dxf" "$expected"
+    check "$name.ifc, FreeCAD" "${in_freecad[@]}" "$made.ifc" "$expected"
+    check "$name.ifc, ifcopenshell" "$python" "$checkers/check_ifc.py" "$made.ifc" "$expected"
+    check "$name.3dm, rhino3dm" "$python" "$checkers/check_rhino.py" "$made.3dm" "$expected"
     check "$name.glb, Blender" "${in_blender[@]}" "$made.glb" "$expected" "${textures[@]}" "${render_glb[@]}"
     if [ -n "$bpy" ]; then
         check "$name.glb, bpy" "${in_bpy[@]}" "$made.glb" "$expected" "${textures[@]}"
@@ -165,7 +177,7 @@ check_metric() {
         return
     fi
     sed 's/"metres_per_unit": null/"metres_per_unit": 1.7/' "$folder/$name.json" >"$metric.json"
-    for suffix in dxf step glb usdc; do
+    for suffix in dxf step ifc 3dm glb usdc; do
         outputs+=(-o "$metric.$suffix")
     done
     if ! "${linecad[@]}" export "$metric.json" "${outputs[@]}" >"$log" 2>&1 ||
@@ -178,9 +190,12 @@ check_metric() {
     check "$name.glb in metres, Khronos" "${by_khronos[@]}" "$metric.glb" "$expected"
     check "$name.glb in metres, Blender" "${in_blender[@]}" "$metric.glb" "$expected"
     check "$name.step in metres, FreeCAD" "${in_freecad[@]}" "$metric.step" "$expected"
+    check "$name.ifc in metres, FreeCAD" "${in_freecad[@]}" "$metric.ifc" "$expected"
+    check "$name.3dm in metres, rhino3dm" "$python" "$checkers/check_rhino.py" "$metric.3dm" "$expected"
 }
 
-# A checker that never fails shows nothing. Those of ezdxf and usd-core have tests of their own in tests/clients.
+# A checker that never fails shows nothing. Those of ezdxf, usd-core, ifcopenshell and rhino3dm have tests of their own
+# in tests/clients.
 check_faults() {
     local name folder made fault wrong broken
     name=$(basename "${1%.*}")
@@ -202,6 +217,10 @@ check_faults() {
             check_fault "$fault, bpy" "${in_bpy[@]}" "$made.usdc" "$wrong"
         fi
     done
+    for fault in moved-line missing-wall missing-hole; do
+        "$python" "$checkers/faults.py" $fault "$folder/expectation.json" "$wrong"
+        check_fault "$fault in IFC, FreeCAD" "${in_freecad[@]}" "$made.ifc" "$wrong"
+    done
     "$python" "$checkers/faults.py" wrong-bounds "$made.glb" "$broken"
     check_fault "wrong-bounds, Khronos" "${by_khronos[@]}" "$broken" "$folder/expectation.json"
 }
@@ -212,7 +231,7 @@ check_turned() {
     rm -rf "$folder"
     mkdir -p "$folder"
     "$python" "$checkers/turned_houses.py" "$made.json"
-    for suffix in dxf step glb usda usdc usdz; do
+    for suffix in dxf step ifc 3dm glb usda usdc usdz; do
         outputs+=(-o "$made.$suffix")
     done
     if ! "${linecad[@]}" export "$made.json" "${outputs[@]}" >"$log" 2>&1 ||
@@ -228,6 +247,8 @@ check_turned() {
     check "turned.glb, Blender" "${in_blender[@]}" "$made.glb" "$expected"
     check "turned.step, FreeCAD" "${in_freecad[@]}" "$made.step" "$expected" --gui
     check "turned.dxf, FreeCAD" "${in_freecad[@]}" "$made.dxf" "$expected"
+    check "turned.ifc, FreeCAD" "${in_freecad[@]}" "$made.ifc" "$expected"
+    check "turned.3dm, rhino3dm" "$python" "$checkers/check_rhino.py" "$made.3dm" "$expected"
     if [ -n "$bpy" ]; then
         check "turned.usdc, bpy" "${in_bpy[@]}" "$made.usdc" "$expected"
     fi

@@ -8,6 +8,7 @@ row says which; `write` takes their names as `names` and returns the files as `S
 """
 
 import importlib
+import importlib.util
 import threading
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -31,6 +32,13 @@ SCENE_FILE = ".json"  # written by linecad.io.scene_file; named here only to tel
 _ONE_AT_A_TIME = threading.Lock()
 
 
+class Extra(NamedTuple):
+    """An extra of linecad that not everybody has."""
+
+    name: str  # in pyproject.toml
+    library: str  # the module that it brings
+
+
 class Format(NamedTuple):
     """A row of the table of formats."""
 
@@ -41,8 +49,13 @@ class Format(NamedTuple):
     needs_photo: bool = False  # and raises OutputError where it is None
     options: tuple[Option, ...] = ()  # its `write` takes each by keyword, but for MODEL_OPTIONS and TEXTURES
     beside: Beside = NOTHING  # the files that may lie beside an export; where there are any, `write` also takes `names`
+    extra: Extra | None = None  # what must be installed for it beside linecad
 
 
+_THICKNESS = Option(
+    "wall-thickness", 0.3, "how thick walls are taken to be, in metres: the photo shows their faces alone",
+    least=0.01, most=5.0,
+)  # fmt: skip
 _BANDS = Option(
     "probability", False, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
 )
@@ -84,6 +97,27 @@ FORMATS: dict[str, Format] = {
         "lines and faces as named and coloured parts",
         "millimetres",
         options=(_SEWN, _INSTANCES, *MODEL_OPTIONS),
+    ),
+    ".ifc": Format(
+        "exporters.ifc.write",
+        "IFC 4: walls with windows and doors, storeys, ground, lines",
+        "metres",
+        options=(_THICKNESS, *MODEL_OPTIONS),
+        extra=Extra("ifc", "ifcopenshell"),
+    ),
+    ".3dm": Format(
+        "exporters.rhino.write",
+        "Rhino: lines as curves, faces as planar surfaces with holes",
+        "metres",
+        options=MODEL_OPTIONS,
+        extra=Extra("rhino", "rhino3dm"),
+    ),
+    ".skp": Format(
+        "exporters.skp",
+        "SketchUp: lines and faces with holes in groups on layers",
+        "inches",
+        options=MODEL_OPTIONS,
+        extra=Extra("sketchup", "openskp"),
     ),
     ".glb": Format(
         "exporters.gltf.write",
@@ -155,10 +189,13 @@ def find_format(path: Path) -> Format:
 def options_for(paths: Iterable[Path], texts: Iterable[str]) -> dict[str, Value]:
     """The values of the options KEY=VALUE, by key, for `export` to all of `paths`.
 
-    Raises OutputError for an unknown suffix, a value that is not accepted, and a key that none of the formats has.
+    Raises OutputError for an unknown suffix, a value that is not accepted, a key that none of the formats has, and a
+    format whose extra is not installed: told before any work is done.
     """
-    formats = {path.suffix.lower(): find_format(path).options for path in paths}
-    return read_options(texts, formats)
+    formats = {path.suffix.lower(): find_format(path) for path in paths}
+    for suffix, row in formats.items():
+        _check_installed(suffix, row)
+    return read_options(texts, {suffix: row.options for suffix, row in formats.items()})
 
 
 def export(
@@ -172,8 +209,8 @@ def export(
     `photo` is RGB, (H, W, 3), of exactly the size of the scene's camera; formats that show the photo, or lay it on the
     faces, do without it where it is None. `options` has values by key, as `options_for` returns them; the format takes
     those of its own. What the format's row says lies beside `path` is written with it. Raises ValueError for a photo of
-    another kind, and OutputError for an unknown suffix, a place that cannot be written, a full disk, or
-    a scene that holds nothing for this format.
+    another kind, and OutputError for an unknown suffix, an extra that is not installed, a place that cannot be written,
+    a full disk, or a scene that holds nothing for this format.
     """
     chosen = find_format(path)
     given = {} if options is None else options
@@ -184,6 +221,7 @@ def export(
     if not len(scene.lines) and not scene.faces:
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
     check_output(path)
+    _check_installed(path.suffix.lower(), chosen)
     module = importlib.import_module(chosen.module)
     by_band, by_role, origin = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
     model = build_model(scene, by_band, by_role, origin)
@@ -201,6 +239,12 @@ def export(
         write_with_side_files(path, chosen.beside, write)
     else:
         write_atomically(path, write)
+
+
+def _check_installed(suffix: str, row: Format) -> None:
+    if row.extra is not None and importlib.util.find_spec(row.extra.library) is None:
+        name, library = row.extra
+        raise OutputError(f"{suffix} files need {library}, which is not installed: pip install 'linecad[{name}]'")
 
 
 class _Made(NamedTuple):

@@ -4,19 +4,22 @@ A format lists its options in FORMATS. Its `write` takes each as a keyword of th
 text. Two formats may share an option; they then name the same record, so that a key means one thing.
 """
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from linecad.errors import OutputError
 
-Value = bool | int | str
+Value = bool | int | float | str
 
 _SWITCH = {"on": True, "off": False}
+_DECIMAL = re.compile(r"[0-9]{1,9}(\.[0-9]{1,9})?")
 
 
 @dataclass(frozen=True)
 class Option:
-    """One choice. The kind of `default` says what is accepted: a bool on or off, a str one of `words`, an int a number.
+    """One choice. The kind of `default` says what is accepted: a bool on or off, a str one of `words`, an int or a
+    float a number.
 
     Beside every choice stands what happens without it, so files are the same for everybody who chooses nothing.
     """
@@ -25,8 +28,8 @@ class Option:
     default: Value
     phrase: str  # what it does, for people
     words: tuple[str, ...] = ()  # what may be chosen where `default` is a str
-    least: int = 0  # the smallest number where `default` is an int
-    most: int = 0  # the largest
+    least: float = 0  # the smallest number where `default` is one
+    most: float = 0  # the largest
 
     @property
     def name(self) -> str:
@@ -40,6 +43,8 @@ class Option:
             return "on or off"
         if isinstance(self.default, int):
             return f"a whole number from {self.least} to {self.most}"
+        if isinstance(self.default, float):
+            return f"a number from {self.least:g} to {self.most:g}"
         return " or ".join(self.words)
 
     @property
@@ -58,6 +63,9 @@ class Option:
             digits = len(text) <= len(str(self.most)) and text.isascii() and text.isdecimal()
             if digits and self.least <= int(text) <= self.most:
                 return int(text)
+        elif isinstance(self.default, float):
+            if _DECIMAL.fullmatch(text) and self.least <= float(text) <= self.most:
+                return float(text)
         else:
             for word in self.words:
                 if text.lower() == word.lower():

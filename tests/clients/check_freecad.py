@@ -1,6 +1,7 @@
-"""Open a STEP or DXF in FreeCAD: check_freecad.py FILE.step|FILE.dxf EXPECTATION.json [--gui]
+"""Open a STEP, DXF or IFC in FreeCAD: check_freecad.py FILE.step|.dxf|.ifc EXPECTATION.json [--gui] [--libraries DIR]
 
-With --gui the window is loaded too, on no screen, and colours are looked at; they are no part of the model itself.
+FreeCAD opens IFC with ifcopenshell, which --libraries has for its Python. With --gui the window is loaded too, on no
+screen, and colours are looked at; they are no part of the model itself.
 """
 
 import argparse
@@ -17,18 +18,21 @@ MOST_SECONDS = 280
 LAST_WORDS = 400  # characters of FreeCAD's own output to show where it said nothing else
 
 
-def report_of(path, expectation, gui, program="freecadcmd"):
-    """What the checker says that runs inside FreeCAD, line by line."""
+def report_of(path, expectation, gui, program="freecadcmd", libraries=None):
+    """What the checker says that runs inside FreeCAD, line by line; `libraries` is a folder of more modules for it."""
     told = {
         "CHECK_FILE": str(path.resolve()),
         "CHECK_EXPECTATION": str(expectation.resolve()),
         "CHECK_GUI": "1" if gui else "",
     }
-    return report_from(INSIDE, told, program)
+    return report_from(INSIDE, told, program, libraries)
 
 
-def report_from(script, told, program="freecadcmd"):
-    """What a checker says that FreeCAD runs, which gets what it must know by the environment."""
+def report_from(script, told, program="freecadcmd", libraries=None):
+    """What a checker says that FreeCAD runs, which gets what it must know by the environment.
+
+    `libraries` is a folder of more modules for it.
+    """
     with tempfile.TemporaryDirectory(prefix="freecad-") as folder:
         report = Path(folder) / "report.txt"
         # freecadcmd takes every word for a file to open, so arguments come by the environment. Its own settings, and
@@ -40,7 +44,9 @@ def report_from(script, told, program="freecadcmd"):
                 "XDG_RUNTIME_DIR": folder,
                 "CHECK_REPORT": str(report),
                 "BROWSER": "true",  # a program that shows nothing
-                "PYTHONPATH": str(script.parent),
+                "PYTHONPATH": os.pathsep.join(
+                    map(str, [script.parent, *([libraries.resolve()] if libraries else [])])
+                ),
                 "QT_QPA_PLATFORM": "offscreen",
                 "QTWEBENGINE_DISABLE_SANDBOX": "1",
             }
@@ -81,8 +87,9 @@ def main():
     parser.add_argument("file", type=Path)
     parser.add_argument("expectation", type=Path)
     parser.add_argument("--gui", action="store_true")
+    parser.add_argument("--libraries", type=Path)
     chosen = parser.parse_args()
-    report = report_of(chosen.file, chosen.expectation, chosen.gui)
+    report = report_of(chosen.file, chosen.expectation, chosen.gui, libraries=chosen.libraries)
     print("\n".join(report))
     return 0 if passed(report) else 1
 

@@ -29,6 +29,13 @@ def missing_face(expected):
     expected["faces"].append(dict(face, id=face["id"] + 1, name=f"face_{face['id'] + 1:04d}"))
 
 
+def missing_wall(expected):
+    """The file lacks a wall, which people call by its number."""
+    number = max(face["id"] for face in expected["faces"]) + 1
+    face = next(face for face in expected["faces"] if face["kind"] == "wall")
+    expected["faces"].append(dict(face, id=number, name=f"face_{number:04d}", thing="wall 99", label="wall 99"))
+
+
 def missing_hole(expected):
     """The file lacks a hole of a face."""
     face = max(expected["faces"], key=lambda face: len(face["rings"]))
@@ -61,7 +68,7 @@ def wrong_bounds(document):
     accessor["max"] = [value + 1.0 for value in accessor["max"]]
 
 
-IN_EXPECTATION = (moved_line, missing_line, missing_face, missing_hole, wrong_camera, wrong_colour)
+IN_EXPECTATION = (moved_line, missing_line, missing_face, missing_wall, missing_hole, wrong_camera, wrong_colour)
 IN_TURNED = (wrong_turn,)
 IN_GLB = (wrong_bounds,)
 

@@ -1,4 +1,4 @@
-"""Run by FreeCAD itself, as check_freecad.py starts it: open a STEP or DXF and compare what came in.
+"""Run by FreeCAD itself, as check_freecad.py starts it: open a STEP, DXF or IFC and compare what came in.
 
 FreeCAD imports this file instead of running it, so everything happens at the end of the module.
 """
@@ -11,6 +11,7 @@ from pathlib import Path
 import FreeCAD
 import Part
 
+from inside_freecad_ifc import check_ifc, open_ifc
 from shapes import apart, check_colour, check_lines, check_names, dot
 from verdict import judge
 
@@ -33,6 +34,9 @@ def check(findings):
     if path.suffix == ".step":
         open_step(path, document, gui)
         count = check_step(findings, path, document, expected, gui)
+    elif path.suffix == ".ifc":
+        open_ifc(path, document)
+        count = check_ifc(findings, document, expected, edges_of)
     else:
         open_dxf(path, document)
         count = check_dxf(findings, document, expected)

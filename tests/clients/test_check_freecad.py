@@ -32,6 +32,12 @@ def test_without_a_verdict_it_has_failed_whatever_its_exit_status(program, statu
     assert "Segmentation fault" in last
 
 
+def test_libraries_for_its_python_come_behind_the_checkers(program, tmp_path):
+    speaking = program('echo "CHECK OK $PYTHONPATH" > "$CHECK_REPORT"')
+    (said,) = report_of(Path("a.ifc"), Path("b.json"), False, speaking, tmp_path)
+    assert said == f"CHECK OK {Path(__file__).parent}:{tmp_path}"
+
+
 def test_without_freecad_it_has_failed():
     last = report_of(Path("a.step"), Path("b.json"), False, "no-such-program")[-1]
     assert last.startswith("CHECK FAILED")

@@ -4,6 +4,7 @@ import os
 import re
 import subprocess
 import sys
+import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -23,7 +24,7 @@ from linecad.io.scene_file import write_scene
 FACES_ONLY = {".ply", ".stl"}
 NO_FACES = {".fspy", ".png"}  # the picture draws faces as they are, the project has none
 REPOSITORY = Path(__file__).parents[2]
-HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "pxr", "shapely", "trimesh"}
+HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "ifcopenshell", "openskp", "pxr", "rhino3dm", "shapely", "trimesh"}
 
 
 def save(scene, path):
@@ -126,6 +127,11 @@ def written(scene, path):
     return path.read_bytes().lower()
 
 
+def holds(data, word):
+    """Whether a file holds a word, with one byte a character or two as in 3DM."""
+    return word.encode() in data or word.encode("utf-16-le") in data
+
+
 @pytest.mark.parametrize("suffix", BY_BAND)
 def test_groups_by_probability_are_there_only_where_the_scene_tells_it(scene, told, reference, tmp_path, suffix):
     export(scene, tmp_path / f"a{suffix}", options={"probability": True})
@@ -134,14 +140,14 @@ def test_groups_by_probability_are_there_only_where_the_scene_tells_it(scene, to
     by_band = (tmp_path / f"a{suffix}").read_bytes().lower()
     assert by_band != written(told, tmp_path / f"b{suffix}")
     if suffix not in (".usdc", ".usdz"):  # these are compressed
-        assert all(f"lines_x_boundary_{band}".encode() in by_band for band in ("sure", "likely", "guess"))
+        assert all(holds(by_band, f"lines_x_boundary_{band}") for band in ("sure", "likely", "guess"))
 
 
 @pytest.mark.parametrize("suffix", BY_BAND)
 def test_without_the_option_groups_have_their_plain_names(told, tmp_path, suffix):
     export(told, tmp_path / f"a{suffix}", options={"probability": False})
     assert written(told, tmp_path / f"b{suffix}") == (tmp_path / f"a{suffix}").read_bytes().lower()
-    assert b"boundary_sure" not in (tmp_path / f"a{suffix}").read_bytes().lower()
+    assert not holds((tmp_path / f"a{suffix}").read_bytes().lower(), "boundary_sure")
 
 
 def test_every_format_with_names_for_lines_has_them_by_probability():
@@ -297,7 +303,7 @@ def test_a_new_format_with_side_files_needs_its_module_and_its_row_alone(scene, 
 def test_the_table_is_fit_for_people():
     for suffix, row in FORMATS.items():
         assert suffix == suffix.lower()
-        assert row.unit in {"metres", "millimetres", "pixels"}
+        assert row.unit in {"metres", "millimetres", "inches", "pixels"}
         assert row.phrase
         assert "\n" not in row.phrase
 
@@ -323,6 +329,21 @@ def test_a_photo_of_another_size_is_our_own_mistake(scene, tmp_path, wrong):
 def test_a_photo_of_another_type_is_our_own_mistake(scene, photo, tmp_path):
     with pytest.raises(ValueError, match="float64"):
         export(scene, tmp_path / "a.png", photo / 255)
+
+
+@pytest.mark.parametrize("suffix", [suffix for suffix, row in FORMATS.items() if row.extra is not None])
+def test_an_extra_that_is_not_installed_is_named_before_any_work_is_done(scene, tmp_path, monkeypatch, suffix):
+    name, library = FORMATS[suffix].extra
+    project = tomllib.loads((REPOSITORY / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert [each.split(">")[0] for each in project["optional-dependencies"][name]] == [library]
+    monkeypatch.setitem(sys.modules, library, None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda module: None if module == library else module)
+    told = rf"{suffix} files need {library}, which is not installed: pip install 'linecad\[{name}\]'"
+    with pytest.raises(OutputError, match=told):
+        export(scene, tmp_path / f"a{suffix}")
+    with pytest.raises(OutputError, match=told):
+        options_for([tmp_path / "b.dxf", tmp_path / f"a{suffix.upper()}"], [])
+    assert names(tmp_path) == []
 
 
 def test_the_table_loads_no_heavy_library():
@@ -363,19 +384,20 @@ UNITS = {
     ".usda": b"metersPerUnit = 1\n",
     ".usdc": b"metersPerUnit = 1\n",
     ".usdz": b"metersPerUnit = 1\n",
+    ".ifc": b"IFCSIUNIT(*,.LENGTHUNIT.,$,.METRE.)",
 }
 
 
 @pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in {".png", ".fspy"}])
 def test_the_unit_is_told_and_the_scale_is_told_or_said_to_be_unknown(scene, free_unit, tmp_path, suffix):
     """Package and compact stage hold what the stage as text says; the binary forms are read in their own tests."""
-    for each, note in ((scene, b"lengths are in metres"), (free_unit, b"scale of the photo is not known")):
+    for each, note in ((scene, "lengths are in metres"), (free_unit, "scale of the photo is not known")):
         path = tmp_path / f"a{suffix}"
         save(each, path)
         data = path.read_bytes().replace(b"\r\n", b"\n")
         if suffix in {".usdc", ".usdz"}:
             data = Usd.Stage.Open(str(path)).ExportToString().encode()
-        assert note in data
+        assert holds(data, note)
         assert UNITS.get(suffix, b"") in data
 
 
@@ -392,10 +414,10 @@ def test_groups_by_role_are_there_only_where_they_are_asked_for(scene, tmp_path,
     by_role = (tmp_path / f"b{suffix}").read_bytes().lower()
     assert by_role != plain
     if suffix not in (".usdc", ".usdz"):  # these are compressed
-        assert b"lines_x_boundary_detail" in by_role
-        assert b"lines_x_boundary_opening" in by_role
-        assert b"boundary_detail" not in plain
-        assert b"boundary_opening" not in plain
+        assert holds(by_role, "lines_x_boundary_detail")
+        assert holds(by_role, "lines_x_boundary_opening")
+        assert not holds(plain, "boundary_detail")
+        assert not holds(plain, "boundary_opening")
 
 
 def test_every_format_with_groups_has_those_of_roles():

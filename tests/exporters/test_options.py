@@ -13,6 +13,7 @@ from linecad.errors import OutputError
 SWITCH = Option("thick", False, "x")
 WORD = Option("release", "R1", "x", words=("R1", "r2"))
 NUMBER = Option("some-size", 512, "x", least=16, most=4096)
+LENGTH = Option("some-length", 0.3, "x", least=0.01, most=5)
 OPTIONS = {".a": (SWITCH, WORD), ".b": (NUMBER, WORD)}
 
 every_option = pytest.mark.parametrize(
@@ -31,6 +32,9 @@ every_option = pytest.mark.parametrize(
         (WORD, "R2", "r2"),
         (NUMBER, "16", 16),
         (NUMBER, "4096", 4096),
+        (LENGTH, "0.01", 0.01),
+        (LENGTH, "5", 5.0),
+        (LENGTH, "0.125", 0.125),
     ],
 )
 def test_a_value_is_read(option, text, value):
@@ -43,6 +47,10 @@ def test_a_value_is_read(option, text, value):
         *[(SWITCH, text) for text in ("", "yes", "1", " on")],
         *[(WORD, text) for text in ("", "R3", "R1 ")],
         *[(NUMBER, text) for text in ("", "15", "4097", "16.0", "-16", "1e2", "٣٢", "9" * 5000, "+32")],
+        *[
+            (LENGTH, text)
+            for text in ("", "0.009", "5.1", "0,3", ".3", "3.", "1e-1", "nan", "inf", "-1", "٣", "9" * 5000)
+        ],
     ],
 )
 def test_a_value_that_is_none_is_refused_with_what_is_accepted(option, text):

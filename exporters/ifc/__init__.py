@@ -1,0 +1,1 @@
+"""IFC: the document, walls with their openings, and everything else of a building."""
