@@ -78,7 +78,7 @@ _PAPER = Option(
     words=(FIT, *SIZES),
 )  # fmt: skip
 _DPI = Option("dpi", 200, "the resolution of the photo on the paper", least=10, most=2400)
-_UNDERLAY = Option("underlay", True, "the rectified photo beneath the lines, where it is at hand")
+UNDERLAY = Option("underlay", True, "the rectified photo beneath the lines, where it is at hand")
 DRAWING_SCALE, PAPER, FACADE = _SCALE.key, _PAPER.key, _FACADE.key
 _SHEET = (_FACADE, _SCALE, _PAPER)
 
@@ -151,36 +151,38 @@ FORMATS: dict[str, Format] = {
         "a facade from the front, to scale, with dimensions",
         "millimetres",
         shows_photo=True,
-        options=(*_SHEET, _DPI, _UNDERLAY),
+        options=(*_SHEET, _DPI, UNDERLAY),
     ),
     ".elevation.pdf": Format(
         "exporters.drawings.elevation",
-        "the same as a page",
+        "the elevation as a page to print",
         "millimetres",
         shows_photo=True,
-        options=(*_SHEET, _DPI, _UNDERLAY),
+        options=(*_SHEET, _DPI, UNDERLAY),
     ),
     ".elevation.dxf": Format(
         "exporters.drawings.elevation",
-        "the same, in metres and as a sheet",
+        "the elevation in metres, with its sheet in paper space",
         "metres",
         shows_photo=True,
-        options=(*_SHEET, _DPI, _UNDERLAY),
+        options=(*_SHEET, _DPI, UNDERLAY),
         beside=_PICTURE,
     ),
     ".elevation.tif": Format(
         "exporters.drawings.elevation",
-        "its rectified photo alone, to scale, with a world file",
+        "the rectified photo of a facade, to scale",
         "pixels",
         shows_photo=True,
         needs_photo=True,
         options=(*_SHEET, _DPI),
         beside=_WORLD_FILE,
     ),
-    ".plan.svg": Format("exporters.drawings.plan", "walls from above, to scale", "millimetres", options=_SHEET),
-    ".plan.pdf": Format("exporters.drawings.plan", "the same as a page", "millimetres", options=_SHEET),
+    ".plan.svg": Format(
+        "exporters.drawings.plan", "walls from above and the camera, to scale", "millimetres", options=_SHEET
+    ),
+    ".plan.pdf": Format("exporters.drawings.plan", "the plan as a page to print", "millimetres", options=_SHEET),
     ".plan.dxf": Format(
-        "exporters.drawings.plan", "the same, in metres and as a sheet", "metres", options=_SHEET
+        "exporters.drawings.plan", "the plan in metres, with its sheet in paper space", "metres", options=_SHEET
     ),
 }
 
@@ -192,7 +194,7 @@ def suffixes() -> tuple[str, ...]:
 
 def suffix_of(path: Path) -> str:
     """The suffix that chooses the format, in lower case: the longest of FORMATS that the name ends with, or any."""
-    name = path.name.lower()
+    name = path.name.lower()[1:]  # the name of a hidden file is no suffix
     return max((suffix for suffix in FORMATS if name.endswith(suffix)), key=len, default=path.suffix.lower())
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import exporters.formats
-from exporters.formats import SCENE_FILE, TEXTURES, Format, find_format, options_for
+from exporters.formats import SCENE_FILE, TEXTURES, UNDERLAY, Format, find_format, options_for
 from exporters.options import Value
 from linecad.errors import LinecadError, OutputError
 from linecad.io.files import check_output
@@ -101,7 +101,8 @@ def pixels_for(
     formats = [format_of(path) for path in outputs if not _is_scene_file(path)]
     switch = TEXTURES[0]
     able = bool(scene.faces) and any(switch in row.options for row in formats)
-    drawn = any(row.shows_photo for row in formats)
+    beneath = values.get(UNDERLAY.key, UNDERLAY.default) is True and any(UNDERLAY in row.options for row in formats)
+    drawn = beneath or any(row.shows_photo and UNDERLAY not in row.options for row in formats)
     textured = able and values.get(switch.key, switch.default) is True
     if not drawn and not textured:
         return None
@@ -118,6 +119,8 @@ def pixels_for(
         if asked:
             raise OutputError(f"textures were asked for, but {missing}")
         on_note(f"{missing}; the faces have no textures")
+    if found is None and beneath:
+        on_note(f"{_missing(scene, photo)}; no photo lies beneath the drawing")
     return None if found is None else found.pixels
 
 

@@ -95,6 +95,7 @@ HOSTS = {
     "paulbourke.net",
     "registry.khronos.org",
     "semver.org",
+    "www.inkscape.org",  # the namespace of its layers
     "www.iso.org",
     "www.khronos.org",
     "www.loc.gov",

@@ -168,5 +168,5 @@ def build_levels(measured: Measured, view: View, unit: Unit) -> tuple[list[Strok
         strokes.append(Stroke(LEVELS, np.array([(x - half, y), (left, y)])))
         text = unit.text(height)
         sign = "±" if not float(text) else "+" if height > 0 else ""
-        labels.append(Label(LEVELS, x - 2 * half, y + 0.3, f"{sign}{text}", TEXT, "end"))
+        labels.append(Label(LEVELS, x - 2.5 * half, y + 0.3, f"{sign}{text}", TEXT, "end"))
     return strokes, labels

@@ -60,10 +60,9 @@ def write(drawing: Drawing, path: Path, names: Names | None) -> SideFiles:
 def _build_document(drawing: Drawing, pictures: list[str]) -> Document:
     document = new("R2010", units=units.M)
     document.header["$MEASUREMENT"] = 1  # metric
-    document.header["$PSLTSCALE"] = 0  # dashes are as long as the line type says, in model space
+    document.header["$PSLTSCALE"] = 1  # dashes are as long as the line type says on the sheet, whatever its scale
     document.styles.add(_STYLE, font="arial.ttf")
-    dash, gap = _DASH / drawing.view.scale, _GAP / drawing.view.scale
-    document.linetypes.add(_DASHED, [dash + gap, dash, -gap], description="a guess")
+    document.linetypes.add(_DASHED, [_DASH + _GAP, _DASH, -_GAP], description="a guess")
     for layer in LAYERS:
         colour = document.layers.add(layer.name, lineweight=round(100 * layer.pen))
         red, green, blue = (round(255 * value) for value in layer.colour)

@@ -267,8 +267,9 @@ def test_an_unknown_suffix_is_told_the_known_ones(scene, tmp_path):
 
 
 def test_a_name_without_suffix_is_told_so():
-    with pytest.raises(OutputError, match="no suffix"):
-        find_format(Path("result"))
+    for name in ("result", ".dxf"):
+        with pytest.raises(OutputError, match="no suffix"):
+            find_format(Path(name))
 
 
 def test_the_suffix_chooses_the_format_in_any_case():

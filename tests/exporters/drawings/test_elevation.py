@@ -2,12 +2,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from exporters.drawings.choice import Choice
 from exporters.drawings.elevation import build_elevation
 from exporters.drawings.records import DETAILS, FACES, GROUND, OPENINGS, OUTLINES
 from exporters.model import build_model
+from linecad.directions import directions_of, partner
 from linecad.errors import OutputError
+from linecad.scene import Face, Opening, Plane
 
 SIDES = [(1.5, 4.8), (4.8, 4.8), (8.4, 4.8)]  # lower left corners of the three windows of 1.2 x 1.6 m
 
@@ -140,6 +144,33 @@ def test_a_line_that_repeats_the_side_of_an_opening_is_drawn_once(facade):
 
 def test_borders_of_faces_are_drawn(drawing):
     assert frozenset({(0.0, 8.0), (12.0, 8.0)}) in segments(on(drawing, FACES))
+
+
+def of_frame(scene, turn, axis):
+    """A wall of 7 by 3 m with a window of 1 by 2, 9 m before the camera, in a frame turned by `turn`."""
+    level = directions_of((turn,))
+    normal, along = level[axis], level[int(partner(axis))]
+
+    def ring(u0, u1, v0, v1):
+        return np.array(
+            [9.0 * normal + u * along + v * np.eye(3)[2] for u, v in ((u0, v0), (u1, v0), (u1, v1), (u0, v1))]
+        )
+
+    wall = Face(0, ring(-3.0, 4.0, -1.0, 2.0), (ring(0.5, 1.5, -0.5, 1.5),), "wall")
+    pane = Face(1, ring(0.5, 1.5, -0.5, 1.5), (), "window", opening=5)
+    plane = Plane(3, axis, 9.0, (), (wall, pane))
+    opening = Opening(5, 3, 0.5, 1.5, -0.5, 1.5, "window")
+    return replace(scene, planes=(plane,), openings=(opening,), turns=(turn,))
+
+
+@given(st.floats(0.05, 0.75), st.sampled_from([3, 4]))
+def test_a_facade_of_a_turned_frame_has_its_lengths(no_lines, turn, axis):
+    drawing = elevation(of_frame(no_lines, turn, axis))
+    across = [each.length for each in drawing.dimensions if not each.is_upright]
+    gaps = (3.5, 1.0, 2.5) if axis == 4 else (2.5, 1.0, 3.5)  # from left to right: x2 runs so, and y2 the other way
+    assert np.allclose(across, [*gaps, 7.0], atol=1e-12)
+    sides = [np.linalg.norm(each.points[1] - each.points[0]) for each in on(drawing, OPENINGS)]
+    assert np.allclose(sorted(sides), [1, 1, 2, 2], atol=1e-12)
 
 
 def test_another_facade_is_drawn_from_its_own_front(scene):
