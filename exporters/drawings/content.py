@@ -10,7 +10,7 @@ from exporters.drawings.records import DETAILS, OPENINGS, OUTLINES, Layer, Unit
 from exporters.model import Model, metres_per_unit
 from linecad.arrays import Bool, Float, Text
 from linecad.directions import UP, directions_of, partner
-from linecad.scene import DETAIL, OPENING, OUTLINE, Opening
+from linecad.scene import DETAIL, OPENING, OUTLINE, QUALITIES, Opening
 
 LAYER_OF: dict[str, Layer] = {OUTLINE: OUTLINES, OPENING: OPENINGS, DETAIL: DETAILS}
 
@@ -68,9 +68,14 @@ def unit_of(model: Model, whole: float) -> Unit:
 
 
 def notes_of(model: Model, guessed: Sequence[str], whole: str) -> tuple[str, ...]:
-    """What is guessed in a drawing, then the remarks of the scene; `whole` is the length that is 1 without a scale."""
-    first = [] if model.scene.metres_per_unit is not None else [f"lengths are shares of {whole}, as none is known"]
-    return (*first, *guessed, *model.scene.remarks)
+    """Where lengths come from, what is guessed, then the scene's notes; `whole` is the length that is 1 without one."""
+    scene = model.scene
+    first = [] if scene.metres_per_unit is not None else [f"lengths are shares of {whole}, as none is known"]
+    if scene.scale_source:
+        first.append(f"scale: {scene.scale_source}")
+    if scene.certainty is not None and scene.certainty.quality != QUALITIES[0]:
+        first.append(f"camera {scene.certainty.quality}: {scene.certainty.reason}")
+    return (*first, *guessed, *scene.notes)
 
 
 def camera_line(model: Model) -> str:

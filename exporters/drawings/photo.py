@@ -16,9 +16,9 @@ from exporters.drawings.projection import Projection, Shown
 from exporters.drawings.records import Picture, View
 from exporters.model import Model
 from exporters.textures.layout import view_of
-from exporters.textures.nearest import SHIFT, Nearest, Shape, nearest_of, shape_of
+from exporters.textures.nearest import SHIFT, Nearest, Shape, filled, nearest_of, shape_of
 from exporters.textures.rectify import Pixels, hidden_in_photo, in_front, reduced
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float
 from linecad.errors import OutputError
 
 INCH = 25.4  # mm
@@ -63,31 +63,34 @@ def _to_space(projection: Projection, shown: Shown) -> Float:
     return np.stack([across, up, projection.origin + c * projection.toward], axis=1)
 
 
-def _owners(shown: Sequence[Shown], to_drawing: Float, size: tuple[int, int]) -> Int:
+def _owners(shown: Sequence[Shown], to_drawing: Float, size: tuple[int, int]) -> NDArray[np.int32]:
     """(rows, columns) the number of the face that is highest at each pixel; -1 where there is none."""
-    owner = np.full(size, -1, np.int64)
+    owner = np.full(size, -1, np.int32)
     highest = np.full(size, -np.inf, np.float32)
     to_pixels = np.linalg.inv(to_drawing)
     for number, each in enumerate(shown):
-        inside = np.zeros(size, np.uint8)
         rings = [ring[:, :2] @ to_pixels[:2, :2].T + to_pixels[:2, 2] for ring in each.rings]
-        cv2.fillPoly(inside, [_fixed(ring) for ring in rings], (1,), cv2.LINE_8, SHIFT)
+        left, top = np.clip(np.floor(rings[0].min(axis=0)).astype(int) - 1, 0, size[::-1]).tolist()
+        right, bottom = np.clip(np.ceil(rings[0].max(axis=0)).astype(int) + 2, 0, size[::-1]).tolist()
+        here = np.s_[top:bottom, left:right]
+        if not owner[here].size:
+            continue
+        inside = filled([_clipped(ring) for ring in rings], (left, top), owner[here].shape)
         a, b, c = each.height @ to_drawing
-        height = (a * np.arange(size[1]) + c)[None, :] + (b * np.arange(size[0]))[:, None]
-        higher = (inside > 0) & (height > highest)
-        highest[higher] = height[higher]
-        owner[higher] = number
+        height = (a * np.arange(left, right) + c)[None, :] + (b * np.arange(top, bottom))[:, None]
+        higher = inside & (height > highest[here])
+        highest[here][higher] = height[higher]
+        owner[here][higher] = number
     return owner
 
 
-def _fixed(ring: Float) -> NDArray[np.int32]:
-    """Pixels as OpenCV takes them; what lies far outside the picture is drawn just as far as 32 bits allow."""
+def _clipped(ring: Float) -> Float:
+    """Pixels as far as the 32 bits of OpenCV reach; what lies beyond them is far outside the picture."""
     most = 2.0 ** (30 - SHIFT)
-    fixed: NDArray[np.int32] = np.round(np.clip(ring, -most, most) * 2**SHIFT).astype(np.int32)
-    return fixed
+    return np.clip(ring, -most, most)
 
 
-def _paint(pixels: Pixels, own: NDArray[np.bool_], to_photo: Float, seen: tuple[Shape, Nearest], photo: Pixels) -> None:
+def _paint(pixels: Pixels, own: Bool, to_photo: Float, seen: tuple[Shape, Nearest], photo: Pixels) -> None:
     """Paint the pixels of a face, in place; `to_photo` (3, 3) takes column, row and 1 of them to px of the photo."""
     rows, columns = np.flatnonzero(own.any(axis=1)), np.flatnonzero(own.any(axis=0))
     if not len(rows):
@@ -109,7 +112,7 @@ def _paint(pixels: Pixels, own: NDArray[np.bool_], to_photo: Float, seen: tuple[
     pixels[here][known] = np.asarray(warped, np.uint8)[known]
 
 
-def _step(to_box: Float, known: NDArray[np.bool_]) -> float:
+def _step(to_box: Float, known: Bool) -> float:
     """Px of the photo for a pixel, in the middle of those that are painted; 1 where none is."""
     places = np.argwhere(known)
     if not len(places):

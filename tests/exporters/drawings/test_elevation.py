@@ -11,7 +11,7 @@ from exporters.drawings.records import DETAILS, FACES, GROUND, OPENINGS, OUTLINE
 from exporters.model import build_model
 from linecad.directions import directions_of, partner
 from linecad.errors import OutputError
-from linecad.scene import Face, Opening, Plane
+from linecad.scene import Certainty, Face, Opening, Plane
 
 SIDES = [(1.5, 4.8), (4.8, 4.8), (8.4, 4.8)]  # lower left corners of the three windows of 1.2 x 1.6 m
 
@@ -105,6 +105,21 @@ def test_without_a_known_length_lengths_are_shares_of_the_width_and_the_sheet_sa
     assert {"1.000", "0.100", "0.667"} <= told
     with pytest.raises(OutputError, match="needs a known length"):
         elevation(replace(facade, metres_per_unit=None), drawing_scale="1:50")
+
+
+def test_what_told_the_scale_and_doubts_about_the_camera_are_noted(facade):
+    certainty = Certainty([0.1, 0.1, 0.1], 50.0, None, None, "doubtful", "few lines agree")
+    drawing = elevation(replace(facade, scale_source="line 3 is 2 m long", certainty=certainty, notes=("a note",)))
+    notes = [label.text for label in drawing.labels if label.text.startswith("- ")]
+    assert notes[:2] == ["- scale: line 3 is 2 m long", "- camera doubtful: few lines agree"]
+    assert "- a note" in notes
+
+
+def test_notes_that_have_no_room_are_counted(facade):
+    drawing = elevation(replace(facade, notes=tuple(f"note {number}" for number in range(30))))
+    notes = [label.text for label in drawing.labels if label.text.startswith("- ")]
+    shown = sum(note.startswith("- note ") for note in notes)
+    assert notes[-1] == f"- {30 - shown} more notes are in the scene file"
 
 
 def test_metres_multiply_all_lengths(drawing, facade):
