@@ -104,32 +104,35 @@ def visible_parts(
 
 
 def _within(start: Float, along: Float, box: Box, section: float) -> tuple[float, float]:
-    """From where to where on a line, 0 to 1, it lies in the box and below the section."""
-    begin, end = 0.0, 1.0
+    """From where to where on a line, 0 to 1, it lies in the box and below the section; 1 to 0 where it does not."""
+    part, end = (0.0, 1.0), start + along
     limits = ((0, box[0], 1), (0, box[2], -1), (1, box[1], 1), (1, box[3], -1), (2, section, -1))
     for axis, limit, sign in limits:
-        inside, change = sign * (start[axis] - limit), sign * along[axis]
-        if change > 0:
-            begin = max(begin, -inside / change)
-        elif change < 0:
-            end = min(end, -inside / change)
-        elif inside < 0:
-            return 1.0, 0.0
-    return float(begin), float(end)
+        part = _not_negative(sign * float(start[axis] - limit), sign * float(end[axis] - limit), part)
+    return part
+
+
+def _not_negative(first: float, last: float, part: tuple[float, float]) -> tuple[float, float]:
+    """Where in a part of a line, 0 to 1, a function that is linear along it is not negative; 1 to 0 where nowhere.
+
+    It is given at both ends of the line, so that nothing is divided by a small change.
+    """
+    begin, end = part
+    if first < 0 and last < 0:
+        return 1.0, 0.0
+    if first < 0 or last < 0:
+        crossing = first / (first - last)
+        begin, end = (max(begin, crossing), end) if first < 0 else (begin, min(end, crossing))
+    return (begin, end) if begin < end else (1.0, 0.0)
 
 
 def _hidden(line: Float, part: tuple[float, float], shown: Shown, touching: float) -> list[tuple[float, float]]:
     """The intervals of a line, 0 to 1, that lie behind a face."""
-    flat, length = line[:, :2], float(np.hypot(*(line[1] - line[0])[:2]))
-    below = shown.heights(flat) - line[:, 2] - touching  # linear along the line
-    begin, end = part
-    change = float(below[1] - below[0])
-    if change > 0:
-        begin = max(begin, float(-below[0] / change))
-    elif change < 0:
-        end = min(end, float(-below[0] / change))
-    elif below[0] <= 0:
+    flat = line[:, :2]
+    first, last = (shown.heights(flat) - line[:, 2] - touching).tolist()  # linear along the line
+    if first <= 0 and last <= 0:
         return []
+    begin, end = _not_negative(first, last, part)
     if begin >= end:
         return []
     along = flat[1] - flat[0]
@@ -137,7 +140,7 @@ def _hidden(line: Float, part: tuple[float, float], shown: Shown, touching: floa
     intervals = []
     for piece in shapely.get_parts(covered):
         if piece.geom_type == "LineString" and not piece.is_empty:
-            at = (shapely.get_coordinates(piece) - flat[0]) @ along / length**2
+            at = (shapely.get_coordinates(piece) - flat[0]) @ along / (along @ along)
             intervals.append((float(at.min()), float(at.max())))
     return intervals
 

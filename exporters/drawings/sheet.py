@@ -75,7 +75,8 @@ def _title_block(facts: Facts, fit: Fit) -> tuple[list[Stroke], list[Label]]:
     ]
     width, x = _NARROWER * (_BLOCK - 2 * _PAD), left + _PAD
     labels = [Label(SHEET, x, top - 6.6, shortened(drawable(facts.title), _TITLE, width), _TITLE)]
-    rows = [f"Scale: {scale_word(fit)}", f"Photo: {facts.photo}", facts.unit_note, *facts.lines]
+    unit = [] if fit.denominator is None else [facts.unit_note]  # the first row says that none is known
+    rows = [f"Scale: {scale_word(fit)}", f"Photo: {facts.photo}", *unit, *facts.lines]
     y = top - 9.5 - _PAD - _TEXT * CAPITALS
     for row in rows:
         for line in wrapped(drawable(row), _TEXT, width):

@@ -69,6 +69,13 @@ def test_what_of_a_line_is_drawn_is_what_no_face_stands_before(given_faces, numb
             assert any(a <= at <= b for a, b in drawn) == (clear > 0)
 
 
+def test_a_line_that_hardly_rises_is_drawn_whole():
+    """The change of its height is so small that a number divided by it is none."""
+    for rise in (2e-313, -2e-313):
+        ((_, part),) = visible_parts(np.array([[[0.0, 0.0, 0.0], [0.0, 1.0, rise]]]), [], BOX, 3.5, 0.01)
+        assert np.array_equal(part[:, :2], [[0, 0], [0, 1]])
+
+
 def test_a_face_that_is_seen_from_its_edge_hides_nothing():
     face = rectangle(0, 0, 1, 1, 1)
     assert shown_faces([face], facing(np.pi / 2), 10.0) == []
