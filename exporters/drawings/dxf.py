@@ -64,7 +64,8 @@ def _build_document(drawing: Drawing, pictures: list[str]) -> Document:
     document.styles.add(_STYLE, font="arial.ttf")
     document.linetypes.add(_DASHED, [_DASH + _GAP, _DASH, -_GAP], description="a guess")
     for layer in LAYERS:
-        colour = document.layers.add(layer.name, lineweight=round(100 * layer.pen))
+        kind = _DASHED if layer.is_dashed else "Continuous"
+        colour = document.layers.add(layer.name, linetype=kind, lineweight=round(100 * layer.pen))
         red, green, blue = (round(255 * value) for value in layer.colour)
         if red or green or blue:
             colour.rgb = (red, green, blue)  # else colour 7: black on paper, white on a dark screen
@@ -92,8 +93,6 @@ def _add_picture(document: Document, picture: Picture, file: str) -> None:
 
 def _add_stroke(space: BaseLayout, stroke: Stroke) -> None:
     attributes = {"layer": stroke.layer.name}
-    if stroke.is_dashed:
-        attributes["linetype"] = _DASHED
     usual = next(layer.pen for layer in LAYERS if layer.name == stroke.layer.name)
     weight = {} if stroke.layer.pen == usual else {"lineweight": round(100 * stroke.layer.pen)}
     points = stroke.points.tolist()

@@ -155,12 +155,13 @@ def _strokes(model: Model, projection: Projection, shown: list[Shown], box: Box)
     seen = [(int(drawn[row]), part) for row, part in parts(flat[drawn])]
     for role, layer in reversed(LAYER_OF.items()):  # details below outlines
         strokes += [
-            Stroke(layer, part[:, :2], is_dashed=bool(lines.is_guess[row]))
+            Stroke(layer.of_guesses if lines.is_guess[row] else layer, part[:, :2])
             for row, part in seen
             if lines.roles[row] == role
         ]
     framed = parts(sides)
-    strokes += [Stroke(OPENINGS, p[:, :2], is_dashed=openings[row // 4].is_completed) for row, p in framed]
+    for row, part in framed:
+        strokes.append(Stroke(OPENINGS.of_guesses if openings[row // 4].is_completed else OPENINGS, part[:, :2]))
     if ground_of(model.scene.planes) is not None:
         strokes.append(Stroke(GROUND, np.array([(box[0], 0.0), (box[2], 0.0)])))
     rows = {row for row, _ in seen}

@@ -117,7 +117,7 @@ def _stroke(stroke: Stroke) -> list[str]:
     paint = "B" if stroke.is_filled else "S"
     return [
         f"q {_n(stroke.layer.pen)} w {red} {green} {blue} RG {red} {green} {blue} rg 1 j",
-        _DASHES if stroke.is_dashed else "1 J",
+        _DASHES if stroke.layer.is_dashed else "1 J",
         f"{_n(x)} {_n(y)} m",
         *(f"{_n(a)} {_n(b)} l" for a, b in others),
         f"h {paint} Q" if stroke.is_closed else f"{paint} Q",

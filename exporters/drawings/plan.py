@@ -112,9 +112,9 @@ def _strokes(
     size = max(box[2] - box[0], box[3] - box[1])
     strokes: list[Stroke] = []
 
-    def draw(layer: Layer, lines: Float, is_dashed: bool = False) -> None:
+    def draw(layer: Layer, lines: Float, is_guess: bool = False) -> None:
         for _, part in visible_parts(lines, (), box, np.inf, 0.0):
-            strokes.append(Stroke(layer, part[:, :2], is_dashed=is_dashed))
+            strokes.append(Stroke(layer.of_guesses if is_guess else layer, part[:, :2]))
 
     for face in model.faces:
         if (face.axis == UP or face.tilt) and face.kind not in ("ceiling", "reveal"):

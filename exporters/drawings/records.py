@@ -6,7 +6,7 @@ the right, y up. A `View` takes one to the other. Where no length is known, a un
 lengths are told as shares of one length of the drawing (`Unit`).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +22,12 @@ class Layer:
     name: str  # ASCII, upper case
     pen: float  # mm, of ISO 128
     colour: RGB  # sRGB, 0 to 1
+    is_dashed: bool = False
+
+    @property
+    def of_guesses(self) -> "Layer":
+        """The layer of what would be on this one if it were sure."""
+        return replace(self, name=f"{self.name}_GUESS", is_dashed=True)
 
 
 _INK, _GREY, _BLUE = (0.0, 0.0, 0.0), (0.45, 0.45, 0.45), (0.10, 0.30, 0.60)
@@ -36,7 +42,11 @@ CAMERA = Layer("CAMERA", 0.18, _BLUE)
 LEVELS = Layer("LEVELS", 0.18, _INK)
 DIMENSIONS = Layer("DIMENSIONS", 0.18, _INK)
 SHEET = Layer("SHEET", 0.35, _INK)  # frame, title block, scale bar
-LAYERS = (PHOTO, FACES, DETAILS, OPENINGS, OUTLINES, WALLS, GROUND, CAMERA, LEVELS, DIMENSIONS, SHEET)  # from below
+_OF_THE_SCENE = (DETAILS, OPENINGS, OUTLINES, WALLS)
+LAYERS = (  # from below
+    PHOTO, FACES, *(each for layer in _OF_THE_SCENE for each in (layer.of_guesses, layer)),
+    GROUND, CAMERA, LEVELS, DIMENSIONS, SHEET,
+)  # fmt: skip
 
 PHOTO_OPACITY = 0.6  # of the photo, so that the lines above it stand out
 CAPITALS = 0.69  # of the size of the font (exporters.drawings.fonts)
@@ -49,7 +59,6 @@ class Stroke:
     layer: Layer
     points: Float  # (M, 2)
     is_closed: bool = False
-    is_dashed: bool = False  # it is a guess
     is_filled: bool = False  # in the colour of its layer
 
     def __post_init__(self) -> None:

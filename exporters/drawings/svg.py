@@ -62,7 +62,7 @@ def _path(stroke: Stroke, height: float) -> str:
     places = "L".join(f"{_n(x)} {_n(height - y)}" for x, y in stroke.points.tolist())
     colour = _hex(stroke.layer.colour)
     style = f'fill="{colour if stroke.is_filled else "none"}" stroke="{colour}" stroke-width="{stroke.layer.pen:g}"'
-    dashes = f' stroke-dasharray="{_DASHES}"' if stroke.is_dashed else ' stroke-linecap="round"'
+    dashes = f' stroke-dasharray="{_DASHES}"' if stroke.layer.is_dashed else ' stroke-linecap="round"'
     return f'<path d="M{places}{"Z" if stroke.is_closed else ""}" {style}{dashes}/>'
 
 

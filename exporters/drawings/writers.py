@@ -21,8 +21,7 @@ def layers_on_paper(drawing: Drawing) -> Iterator[tuple[Layer, list[Stroke], lis
     """What each layer has on the paper, in mm, the lowest layer first; layers without anything are left out."""
     view = drawing.view
     strokes = [
-        Stroke(each.layer, view.to_paper(each.points), each.is_closed, each.is_dashed, each.is_filled)
-        for each in drawing.strokes
+        Stroke(each.layer, view.to_paper(each.points), each.is_closed, each.is_filled) for each in drawing.strokes
     ]
     strokes += [*drawing.sheet, *(stroke for each in drawing.dimensions for stroke in strokes_of(each, view))]
     labels = [*drawing.labels, *(label_of(each, view, drawing.unit) for each in drawing.dimensions)]

@@ -1,6 +1,7 @@
 """DXF, read back by ezdxf: metres in model space, and a sheet in mm with a viewport at scale."""
 
 from collections import Counter
+from dataclasses import replace
 
 import ezdxf
 import numpy as np
@@ -98,3 +99,13 @@ def test_the_plan_has_no_picture(facade, tmp_path):
     document = ezdxf.readfile(tmp_path / "a.plan.dxf")
     assert not document.modelspace().query("IMAGE")
     assert document.modelspace().query('LINE[layer=="WALLS"]')
+
+
+def test_guesses_are_on_dashed_layers_of_their_own(facade, told, tmp_path):
+    export(replace(facade, lines=told.lines), tmp_path / "a.elevation.dxf")
+    document = ezdxf.readfile(tmp_path / "a.elevation.dxf")
+    assert document.layers.get("OUTLINES_GUESS").dxf.linetype == "GUESS"
+    assert document.layers.get("OUTLINES").dxf.linetype == "Continuous"
+    lines = {name: document.modelspace().query(f'LINE[layer=="{name}"]') for name in ("OUTLINES", "OUTLINES_GUESS")}
+    assert all(lines.values())
+    assert {line.dxf.linetype for line in lines["OUTLINES_GUESS"]} == {"BYLAYER"}

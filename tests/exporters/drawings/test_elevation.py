@@ -21,7 +21,7 @@ def elevation(scene, **chosen):
 
 
 def on(drawing, layer):
-    return [stroke for stroke in drawing.strokes if stroke.layer.name == layer.name]
+    return [stroke for stroke in drawing.strokes if stroke.layer.name.removesuffix("_GUESS") == layer.name]
 
 
 def segments(strokes):
@@ -131,7 +131,7 @@ def test_metres_multiply_all_lengths(drawing, facade):
 
 def test_guesses_are_dashed_and_counted(told, facade):
     drawing = elevation(replace(facade, lines=told.lines))
-    dashed = [stroke for stroke in on(drawing, OUTLINES) if stroke.is_dashed]
+    dashed = [stroke for stroke in on(drawing, OUTLINES) if stroke.layer.is_dashed]
     assert 0 < len(dashed) < len(on(drawing, OUTLINES))
     assert any(label.text.startswith("- dashed: ") for label in drawing.labels)
 
@@ -139,7 +139,7 @@ def test_guesses_are_dashed_and_counted(told, facade):
 def test_an_opening_that_is_not_seen_is_dashed(facade):
     openings = (replace(facade.openings[0], is_completed=True), *facade.openings[1:])
     drawing = elevation(replace(facade, openings=openings))
-    assert [stroke.is_dashed for stroke in on(drawing, OPENINGS)] == 4 * [True] + 8 * [False]
+    assert [stroke.layer.is_dashed for stroke in on(drawing, OPENINGS)] == 4 * [True] + 8 * [False]
     assert any("1 openings that the photo does not show" in label.text for label in drawing.labels)
 
 
