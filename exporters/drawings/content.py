@@ -62,15 +62,20 @@ def corners_of(opening: Opening, model: Model) -> Float:
     return flat * metres_per_unit(scene) + model.eye
 
 
+def is_metric(model: Model) -> bool:
+    """Whether a length is known."""
+    return model.scene.metres_per_unit is not None
+
+
 def unit_of(model: Model, whole: float) -> Unit:
     """What lengths are told in: metres, or where none is known shares of `whole` drawing metres."""
-    return Unit(whole, 3, "") if model.scene.metres_per_unit is None else Unit(1.0, 2, " m")
+    return Unit(1.0, 2, " m") if is_metric(model) else Unit(whole, 3, "")
 
 
 def notes_of(model: Model, guessed: Sequence[str], whole: str) -> tuple[str, ...]:
     """Where lengths come from, what is guessed, then the scene's notes; `whole` is the length that is 1 without one."""
     scene = model.scene
-    first = [] if scene.metres_per_unit is not None else [f"lengths are shares of {whole}, as none is known"]
+    first = [] if is_metric(model) else [f"lengths are shares of {whole}, as none is known"]
     if scene.scale_source:
         first.append(f"scale: {scene.scale_source}")
     if scene.certainty is not None and scene.certainty.quality != QUALITIES[0]:

@@ -11,7 +11,16 @@ import numpy as np
 
 from exporters.beside import Names, SideFiles
 from exporters.drawings.choice import Choice
-from exporters.drawings.content import LAYER_OF, DrawnLines, camera_line, corners_of, lines_of, notes_of, unit_of
+from exporters.drawings.content import (
+    LAYER_OF,
+    DrawnLines,
+    camera_line,
+    corners_of,
+    is_metric,
+    lines_of,
+    notes_of,
+    unit_of,
+)
 from exporters.drawings.dimensions import (
     Measured,
     build_dimensions,
@@ -24,7 +33,7 @@ from exporters.drawings.dimensions import (
 from exporters.drawings.facades import Facade, facade_at
 from exporters.drawings.paper import fit
 from exporters.drawings.photo import build_picture
-from exporters.drawings.projection import Box, Projection, Shown, shown_faces, visible_parts
+from exporters.drawings.projection import EDGE_ON, Box, Projection, Shown, shown_faces, visible_parts
 from exporters.drawings.records import FACES, GROUND, OPENINGS, Drawing, Stroke
 from exporters.drawings.sheet import BORDERS, Facts, build_sheet, place_view
 from exporters.drawings.writers import write_drawing
@@ -32,7 +41,7 @@ from exporters.model import Model, metres_per_unit
 from exporters.options import Value
 from exporters.textures.rectify import Pixels
 from exporters.triangulation import checked_polygon
-from linecad.arrays import Float
+from linecad.arrays import Bool, Float
 from linecad.directions import UP
 from linecad.scene import OPENING, Opening, ground_of
 
@@ -61,10 +70,9 @@ def build_elevation(model: Model, choice: Choice, photo: Pixels | None = None) -
     projection = front_of(facade, model)
     width, height = extents_of(facade, projection)
     box = _box(width, height)
-    fitted = fit((box[2] - box[0], box[3] - box[1]), BORDERS, choice.paper, choice.drawing_scale, _is_metric(model))
+    fitted = fit((box[2] - box[0], box[3] - box[1]), BORDERS, choice.paper, choice.drawing_scale, is_metric(model))
     view = place_view(box, fitted)
-    section = float(projection(model.eye)[2])
-    shown = shown_faces(model.faces, projection, section)
+    shown = shown_faces(model.faces, projection, _section(projection, model))
     unit = unit_of(model, width[1] - width[0])
     strokes, guessed = _strokes(model, projection, shown, box)
     measured = measure(model, facade, projection)
@@ -92,6 +100,11 @@ def build_elevation(model: Model, choice: Choice, photo: Pixels | None = None) -
         dimensions=tuple(dimensions),
         picture=None if wanted is None else build_picture(model, shown, projection, view, choice.dpi, wanted),
     )
+
+
+def _section(projection: Projection, model: Model) -> float:
+    """Drawing metres from the facade to the camera: what is before that is not drawn."""
+    return float(projection(model.eye)[2])
 
 
 def front_of(facade: Facade, model: Model) -> Projection:
@@ -126,10 +139,6 @@ def measure(model: Model, facade: Facade, projection: Projection) -> Measured:
     return Measured(*extents_of(facade, projection), distinct_spans(across), distinct_spans(up))
 
 
-def _is_metric(model: Model) -> bool:
-    return model.scene.metres_per_unit is not None
-
-
 def _box(width: tuple[float, float], height: tuple[float, float]) -> Box:
     """What is drawn: the facade and what is about it, down to the ground."""
     side = max(width[1] - width[0], height[1] - height[0])
@@ -139,7 +148,7 @@ def _box(width: tuple[float, float], height: tuple[float, float]) -> Box:
 
 def _strokes(model: Model, projection: Projection, shown: list[Shown], box: Box) -> tuple[list[Stroke], list[str]]:
     """What of the scene is drawn, and what of it is guessed."""
-    section = float(projection(model.eye)[2])
+    section = _section(projection, model)
     touching = _TOUCHING * section
 
     def parts(lines: Float) -> list[tuple[int, Float]]:
@@ -167,20 +176,18 @@ def _strokes(model: Model, projection: Projection, shown: list[Shown], box: Box)
     rows = {row for row, _ in seen}
     dashed = sum(bool(lines.is_guess[row]) for row in rows)
     completed = len({row // 4 for row, _ in framed if openings[row // 4].is_completed})
-    guessed = [f"dashed: {dashed} of {len(rows)} lines, whose depth is probably wrong"] if dashed else []
-    guessed += (
-        [f"dashed: {completed} openings that the photo does not show and their rows ask for"] if completed else []
-    )
+    guessed = []
+    if dashed:
+        guessed.append(f"dashed: {dashed} of {len(rows)} lines, whose depth is probably wrong")
+    if completed:
+        guessed.append(f"dashed: {completed} openings that the photo does not show and their rows ask for")
     return strokes, guessed
 
 
 def _faces(opening: Opening, model: Model, projection: Projection) -> bool:
     """Whether the viewer sees the wall of an opening from a side, that of the camera."""
     normals = (face.normal for face in model.faces if face.plane == opening.plane)
-    return any(float(normal @ projection.toward) > _EDGE_ON for normal in normals)
-
-
-_EDGE_ON = 1e-6
+    return any(float(normal @ projection.toward) > EDGE_ON for normal in normals)
 
 
 def _sides(corners: Float) -> Float:
@@ -188,7 +195,7 @@ def _sides(corners: Float) -> Float:
     return np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
 
 
-def _repeats(flat: Float, lines: DrawnLines, sides: Float, near: float) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+def _repeats(flat: Float, lines: DrawnLines, sides: Float, near: float) -> Bool:
     """(N,) which lines of openings lie on a side of one, which is drawn in their place."""
     repeats = np.zeros(len(flat), np.bool_)
     if not len(sides):

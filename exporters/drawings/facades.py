@@ -10,6 +10,7 @@ from linecad.arrays import Float
 from linecad.directions import UP
 from linecad.errors import OutputError
 
+_FEW = 12  # facades that a message names
 _OF_WALLS = ("wall", "other")  # kinds of faces that make a facade; all are `other` in files of earlier versions
 
 
@@ -76,6 +77,3 @@ def _listed(facades: list[Facade]) -> str:
     shown = ", ".join(f"{each.number} (plane {each.plane})" for each in facades[:_FEW])
     more = len(facades) - _FEW
     return f"the facades are {shown}" + (f" and {more} more" if more > 0 else "")
-
-
-_FEW = 12  # facades that a message names

@@ -10,7 +10,7 @@ import numpy as np
 
 from exporters.beside import Names, SideFiles
 from exporters.drawings.choice import Choice
-from exporters.drawings.content import camera_line, corners_of, guessed_planes, lines_of, notes_of, unit_of
+from exporters.drawings.content import camera_line, corners_of, guessed_planes, is_metric, lines_of, notes_of, unit_of
 from exporters.drawings.dimensions import build_dimensions, distinct_spans, spread
 from exporters.drawings.elevation import extents_of, front_of
 from exporters.drawings.facades import Facade, facade_at, facades_of
@@ -55,8 +55,7 @@ def build_plan(model: Model, choice: Choice) -> Drawing:
     eye = projection(model.eye)[:2]
     places = np.concatenate([eye[None], *(ends for _, ends in walls)])
     box = _box(places)
-    metric = model.scene.metres_per_unit is not None
-    fitted = fit((box[2] - box[0], box[3] - box[1]), BORDERS, choice.paper, choice.drawing_scale, metric)
+    fitted = fit((box[2] - box[0], box[3] - box[1]), BORDERS, choice.paper, choice.drawing_scale, is_metric(model))
     view = place_view(box, fitted)
     width = extents_of(facade, front_of(facade, model))[0]
     unit = unit_of(model, width[1] - width[0])

@@ -11,7 +11,7 @@ from exporters.faces import FlatFace
 from exporters.textures.layout import cut_ring
 from linecad.arrays import Float
 
-_EDGE_ON = 1e-6  # of the normal that points to the viewer: a face with less is seen from its edge
+EDGE_ON = 1e-6  # of the normal that points to the viewer: a face with less is seen from its edge
 _SHORTEST = 1e-9  # of the diagonal of the box: what is shorter is a point
 
 Box = tuple[float, float, float, float]
@@ -61,7 +61,7 @@ def shown_faces(faces: Iterable[FlatFace], projection: Projection, section: floa
     found = []
     for face in faces:
         facing = float(face.normal @ projection.toward)
-        if abs(facing) <= _EDGE_ON:
+        if abs(facing) <= EDGE_ON:
             continue
         rings = [projection(ring) for ring in face.rings]
         if max(float(ring[:, 2].max()) for ring in rings) > section:

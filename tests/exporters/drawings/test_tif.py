@@ -38,6 +38,7 @@ def test_a_square_on_the_wall_is_where_the_drawing_has_it_within_a_pixel(path, m
     for found, centre in ((columns + x - reach, column), (rows + y - reach, row)):
         assert abs(found.min() - (centre - half)) <= 1
         assert abs(found.max() - (centre + half)) <= 1
+        assert abs(found.mean() - centre) <= 0.5
     assert abs(dark.sum() - (2 * half) ** 2) < 4 * 2 * half
 
 
