@@ -85,3 +85,13 @@ def test_texts_are_centred_by_the_widths_that_the_font_has(reader):
     widths = font["/Widths"]
     assert len(widths) == 256 - 32
     assert 200 < float(widths[ord("i") - 32]) < float(widths[ord("W") - 32]) < 1200
+
+
+def test_windows_lie_where_the_view_puts_them(reader, drawing):
+    """From the lower left corner of the page, y up."""
+    found = {tuple(point) for ends in strokes(reader)["openings"].tolist() for point in np.round(ends, 3).tolist()}
+    corners = np.array([(x + a, 4.8 + b) for x in (1.5, 4.8, 8.4) for a in (0, 1.2) for b in (0, 1.6)])
+    placed = drawing.view.to_paper(corners)
+    for point in placed:
+        assert min(np.abs(np.subtract(other, point)).max() for other in found) < 2e-3
+    assert len(found) == len(placed)

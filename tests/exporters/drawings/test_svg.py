@@ -69,3 +69,14 @@ def test_without_a_photo_the_layer_is_not_there(facade, tmp_path):
     root = ElementTree.parse(tmp_path / "a.elevation.svg").getroot()
     assert "photo" not in [group.get(LABEL) for group in root.iter(f"{SVG}g")]
     assert any("no photo lies beneath" in text.text for text in root.iter(f"{SVG}text"))
+
+
+def test_windows_lie_where_the_view_puts_them(root, drawing):
+    """From the upper left corner of the page, y down."""
+    found = {tuple(point) for path in layer(root, "openings") for point in points(path).round(3).tolist()}
+    corners = np.array([(x + a, 4.8 + b) for x in (1.5, 4.8, 8.4) for a in (0, 1.2) for b in (0, 1.6)])
+    placed = drawing.view.to_paper(corners) * [1, -1] + [0, 297]
+    assert found == {tuple(point) for point in placed.round(3).tolist()}
+    (image,) = layer(root, "photo")
+    assert np.isclose(float(image.get("x")), drawing.view.corner[0], atol=1e-4)
+    assert np.isclose(float(image.get("y")), 297 - drawing.view.corner[1] - drawing.view.size[1], atol=1e-4)
