@@ -46,7 +46,9 @@ from linecad.directions import UP
 from linecad.scene import OPENING, Opening, ground_of
 
 _AROUND = 0.08  # of the facade's larger side, that is drawn beside and above it
-_TOUCHING = 0.01  # of the distance of the camera from the facade: what lies so little behind a face is on it
+# Of the distance of the camera from the facade: what lies so little behind a face is on it, but for rounding. A larger
+# one would draw what is hidden (docs/decisions/0102).
+_TOUCHING = 1e-6
 _SAME = 2e-3  # of the facade's larger side: a line that is so near to the side of an opening repeats it
 
 
