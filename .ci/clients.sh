@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
 # Export every sample and open the files in FreeCAD, Blender, its newer module bpy, ezdxf, usd-core, ifcopenshell with
-# its validator, rhino3dm and Khronos's glTF validator, by the checkers in tests/clients. Then show that the checkers
-# notice faults, and let the add-on for Blender and the macro for FreeCAD convert a sample. Arguments: other photos to
-# check in place of the samples, each with its camera beside it as .json. The last line counts what passed and failed.
-# Needs .venv, as `make test` leaves it, or another Python with linecad's libraries in PYTHON; LINECAD names another
-# linecad than that Python's, BPY_PYTHON a Python that has bpy.
+# its validator, rhino3dm and Khronos's glTF validator, and the drawings in poppler and Inkscape, by the checkers in
+# tests/clients. Then show that the checkers notice faults, and let the add-on for Blender and the macro for FreeCAD
+# convert a sample. Arguments: other photos to check in place of the samples, each with its camera beside it as .json.
+# The last line counts what passed and failed. Needs .venv, as `make test` leaves it, or another Python with linecad's
+# libraries in PYTHON; LINECAD names another linecad than that Python's, BPY_PYTHON a Python that has bpy.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
@@ -27,6 +27,8 @@ command -v freecadcmd >/dev/null || packages+=(freecad)
 command -v blender >/dev/null || packages+=(blender)
 command -v node >/dev/null || packages+=(nodejs)
 command -v npm >/dev/null || packages+=(npm)
+command -v inkscape >/dev/null || packages+=(inkscape)
+command -v pdftoppm >/dev/null || packages+=(poppler-utils)
 if [ ${#packages[@]} -gt 0 ] && ! .ci/install.sh "${packages[@]}"; then
     if [ "${CI:-}" = true ]; then
         exit 1
@@ -123,7 +125,8 @@ check_photo() {
     if [ -f "${photo%.*}.json" ]; then
         camera=(--camera "${photo%.*}.json")
     fi
-    for suffix in json dxf step ifc 3dm skp glb usda usdc usdz obj ply stl fspy png; do
+    for suffix in json dxf step ifc 3dm skp glb usda usdc usdz obj ply stl fspy png {elevation,plan}.{pdf,svg,dxf} \
+        elevation.tif; do
         outputs+=(-o "$made.$suffix")
         again+=(-o "{OUT}/$name.$suffix")
     done
@@ -162,6 +165,10 @@ check_photo() {
         check "$name.usdc, bpy" "${in_bpy[@]}" "$made.usdc" "$expected" "${textures[@]}"
         check "$name.usdz, bpy" "${in_bpy[@]}" "$made.usdz" "$expected" "${textures[@]}" "${render_usd[@]}"
     fi
+    check "$name.elevation, poppler and Inkscape" \
+        "$python" "$checkers/check_drawing.py" "$made.elevation.pdf" "$made.elevation.svg"
+    check "$name.plan, poppler and Inkscape" \
+        "$python" "$checkers/check_drawing.py" "$made.plan.pdf" "$made.plan.svg"
     check "$name, every format three times" "$python" "$checkers/check_same.py" \
         "${linecad[@]}" export "$made.json" --photo "$photo" "${camera[@]}" "${again[@]}"
 }
@@ -221,6 +228,8 @@ check_faults() {
         "$python" "$checkers/faults.py" $fault "$folder/expectation.json" "$wrong"
         check_fault "$fault in IFC, FreeCAD" "${in_freecad[@]}" "$made.ifc" "$wrong"
     done
+    check_fault "another drawing, poppler and Inkscape" \
+        "$python" "$checkers/check_drawing.py" "$made.elevation.pdf" "$made.plan.svg"
     "$python" "$checkers/faults.py" wrong-bounds "$made.glb" "$broken"
     check_fault "wrong-bounds, Khronos" "${by_khronos[@]}" "$broken" "$folder/expectation.json"
 }

@@ -51,10 +51,11 @@ class Beside:
     folder: str = ""  # ending of the folder that the parts lie in, such as `.textures`; empty: no parts
     part: re.Pattern[str] = re.compile(r"(?!)")  # the whole name of a part; other files in the folder are the user's
     library: str = ""  # ending of the library, such as `.mtl`; empty: no library
+    keeps_name: bool = False  # readers find the library by the very name of the export, whatever it is
 
     def names(self, path: Path) -> Names:
         """The names for the export `path`: made of its own, fit for every reader, and unlike those of other exports."""
-        stem = _safe(path.name)
+        stem = path.name if self.keeps_name else _safe(path.name)
         return Names(self.folder and stem + self.folder, self.library and stem + self.library)
 
     def places(self, path: Path) -> list[Path]:

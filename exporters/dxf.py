@@ -45,15 +45,22 @@ _VIEW_MARGIN = 1.2  # height of the first view over the model's largest side
 
 def write(model: Model, path: Path, version: str = "R2010") -> None:
     """Write the model as DXF of that AutoCAD release to `path`; OSError where that fails."""
-    with _fixed_metadata():
-        document = _build_document(model, version)
-        text = io.StringIO()
-        document.write(text)
-    path.write_bytes(document.encode(text.getvalue()))
+    with fixed_metadata():
+        path.write_bytes(bytes_of(_build_document(model, version)))
+
+
+def bytes_of(document: Drawing) -> bytes:
+    """The file of a document, the same every time; within `fixed_metadata`."""
+    # ezdxf takes these from a set, whose order differs from run to run; what is there already stays where it is.
+    for name in sorted(document.entitydb.dxf_types_in_use()):
+        document.classes.add_class(name)
+    text = io.StringIO()
+    document.write(text)
+    return document.encode(text.getvalue())
 
 
 @contextlib.contextmanager
-def _fixed_metadata() -> Iterator[None]:
+def fixed_metadata() -> Iterator[None]:
     """Without the times and random identifiers that ezdxf puts into a document when it is made and when written."""
     before = options.write_fixed_meta_data_for_testing
     options.write_fixed_meta_data_for_testing = True
@@ -74,9 +81,6 @@ def _build_document(model: Model, version: str) -> Drawing:
         _add_face(document, face)
     _add_properties(document, model)
     _set_view(document, model)
-    # ezdxf takes these from a set, whose order differs from run to run; what is there already stays where it is.
-    for name in sorted(document.entitydb.dxf_types_in_use()):
-        document.classes.add_class(name)
     return document
 
 

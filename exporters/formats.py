@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exporters.beside import NOTHING, Beside, write_with_side_files
+from exporters.drawings.sizes import FIT, SCALES, SIZES
 from exporters.model import ORIGINS, build_model
 from exporters.options import Option, Value, read_options
 from exporters.textures.pages import PAGE_NAME, Textures
@@ -85,7 +86,23 @@ _FILL = Option(
 )  # fmt: skip
 TEXTURES = (_ON, _SIZE, _FILL)
 
+_FACADE = Option("facade", 0, "what is drawn, level in a plan: 0 is the largest facade, and so on", least=0, most=9999)
+_SCALE = Option(
+    "drawing-scale", FIT, "the scale of the drawing, or the largest usual one that fits on the paper",
+    words=(FIT, *(f"1:{each}" for each in SCALES)),
+)  # fmt: skip
+_PAPER = Option(
+    "paper", FIT, "the size of the sheet, or the smallest that the scale fits on, A3 without a scale",
+    words=(FIT, *SIZES),
+)  # fmt: skip
+_DPI = Option("dpi", 200, "the resolution of the photo on the paper", least=10, most=2400)
+UNDERLAY = Option("underlay", True, "the rectified photo beneath the lines, where it is at hand")
+DRAWING_SCALE, PAPER, FACADE = _SCALE.key, _PAPER.key, _FACADE.key
+_SHEET = (_FACADE, _SCALE, _PAPER)
+
 _PAGES = Beside(folder=".textures", part=PAGE_NAME)
+_PICTURE = Beside(folder=".pictures", part=PAGE_NAME)
+_WORLD_FILE = Beside(library="w", keeps_name=True)  # `a.tifw`: that is how readers find it
 _PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl")
 
 FORMATS: dict[str, Format] = {
@@ -168,6 +185,44 @@ FORMATS: dict[str, Format] = {
         "pixels",
         shows_photo=True,
     ),
+    ".elevation.svg": Format(
+        "exporters.drawings.elevation",
+        "a facade from the front, to scale, with dimensions",
+        "millimetres",
+        shows_photo=True,
+        options=(*_SHEET, _DPI, UNDERLAY),
+    ),
+    ".elevation.pdf": Format(
+        "exporters.drawings.elevation",
+        "the elevation as a page to print",
+        "millimetres",
+        shows_photo=True,
+        options=(*_SHEET, _DPI, UNDERLAY),
+    ),
+    ".elevation.dxf": Format(
+        "exporters.drawings.elevation",
+        "the elevation in metres, with its sheet in paper space",
+        "metres",
+        shows_photo=True,
+        options=(*_SHEET, _DPI, UNDERLAY),
+        beside=_PICTURE,
+    ),
+    ".elevation.tif": Format(
+        "exporters.drawings.elevation",
+        "the rectified photo of a facade, to scale",
+        "pixels",
+        shows_photo=True,
+        needs_photo=True,
+        options=(*_SHEET, _DPI),
+        beside=_WORLD_FILE,
+    ),
+    ".plan.svg": Format(
+        "exporters.drawings.plan", "walls from above and the camera, to scale", "millimetres", options=_SHEET
+    ),
+    ".plan.pdf": Format("exporters.drawings.plan", "the plan as a page to print", "millimetres", options=_SHEET),
+    ".plan.dxf": Format(
+        "exporters.drawings.plan", "the plan in metres, with its sheet in paper space", "metres", options=_SHEET
+    ),
 }
 
 
@@ -176,14 +231,30 @@ def suffixes() -> tuple[str, ...]:
     return tuple(FORMATS)
 
 
+def suffix_of(path: Path) -> str:
+    """The suffix that chooses the format, in lower case: the longest of FORMATS that the name ends with, or any."""
+    name = path.name.lower()[1:]  # the name of a hidden file is no suffix
+    return max((suffix for suffix in FORMATS if name.endswith(suffix)), key=len, default=path.suffix.lower())
+
+
 def find_format(path: Path) -> Format:
     """The format that the suffix of `path` chooses, in upper or lower case; OutputError for an unknown one."""
-    suffix = path.suffix.lower()
+    suffix = suffix_of(path)
     if suffix not in FORMATS:
         found = f"unknown suffix {suffix}" if suffix else "no suffix"
         known = f"{', '.join(FORMATS)}, or {SCENE_FILE} for the scene file"
         raise OutputError(f"{path.name}: {found}; use {known}")
     return FORMATS[suffix]
+
+
+def drawing_format(path: Path, is_plan: bool) -> Format:
+    """The format of a drawing by the last suffix of `path`; OutputError where drawings have no such format."""
+    kind, suffix = ".plan" if is_plan else ".elevation", path.suffix.lower()
+    if kind + suffix not in FORMATS:
+        known = ", ".join(each.removeprefix(kind) for each in FORMATS if each.startswith(kind))
+        found = f"unknown suffix {suffix}" if suffix else "no suffix"
+        raise OutputError(f"{path.name}: {found} for {'a plan' if is_plan else 'an elevation'}; use {known}")
+    return FORMATS[kind + suffix]
 
 
 def options_for(paths: Iterable[Path], texts: Iterable[str]) -> dict[str, Value]:
@@ -192,7 +263,7 @@ def options_for(paths: Iterable[Path], texts: Iterable[str]) -> dict[str, Value]
     Raises OutputError for an unknown suffix, a value that is not accepted, a key that none of the formats has, and a
     format whose extra is not installed: told before any work is done.
     """
-    formats = {path.suffix.lower(): find_format(path) for path in paths}
+    formats = {suffix_of(path): find_format(path) for path in paths}
     for suffix, row in formats.items():
         _check_installed(suffix, row)
     return read_options(texts, {suffix: row.options for suffix, row in formats.items()})
@@ -203,8 +274,9 @@ def export(
     path: Path,
     photo: NDArray[np.uint8] | None = None,
     options: Mapping[str, Value] | None = None,
+    row: Format | None = None,
 ) -> None:
-    """Write a scene in the format that the suffix of `path` chooses, whole or not at all.
+    """Write a scene in the format that the suffix of `path` chooses, or in that of `row`, whole or not at all.
 
     `photo` is RGB, (H, W, 3), of exactly the size of the scene's camera; formats that show the photo, or lay it on the
     faces, do without it where it is None. `options` has values by key, as `options_for` returns them; the format takes
@@ -212,7 +284,7 @@ def export(
     another kind, and OutputError for an unknown suffix, an extra that is not installed, a place that cannot be written,
     a full disk, or a scene that holds nothing for this format.
     """
-    chosen = find_format(path)
+    chosen = find_format(path) if row is None else row
     given = {} if options is None else options
     arguments: dict[str, Any] = {option.name: given.get(option.key, option.default) for option in chosen.options}
     if chosen.shows_photo:

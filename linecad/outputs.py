@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import exporters.formats
-from exporters.formats import SCENE_FILE, TEXTURES, find_format, options_for
+from exporters.formats import SCENE_FILE, TEXTURES, UNDERLAY, Format, find_format, options_for
 from exporters.options import Value
 from linecad.errors import LinecadError, OutputError
 from linecad.io.files import check_output
@@ -69,8 +69,9 @@ def write_outputs(
     outputs: Sequence[Path],
     values: Mapping[str, Value],
     on_stage: Callable[[str], None] | None = None,
+    format_of: Callable[[Path], Format] = find_format,
 ) -> None:
-    """Write a scene, each file whole or not at all. Raises OutputError.
+    """Write a scene, each file whole or not at all, in the format that `format_of` tells. Raises OutputError.
 
     `pixels` (H, W, 3) RGB are those of its photo, for formats that show it; `values` are options of formats as
     `format_values` reads them.
@@ -81,7 +82,7 @@ def write_outputs(
         if _is_scene_file(path):
             write_scene(scene, path)
         else:
-            exporters.formats.export(scene, path, pixels, values)
+            exporters.formats.export(scene, path, pixels, values, format_of(path))
 
 
 def pixels_for(
@@ -90,16 +91,18 @@ def pixels_for(
     values: Mapping[str, Value],
     photo: PhotoOfScene,
     on_note: Callable[[str], None],
+    format_of: Callable[[Path], Format] = find_format,
 ) -> NDArray[np.uint8] | None:
     """(H, W, 3) RGB of the scene's photo if an output shows it; None where none does, or it is not found.
 
     Textures do without the photo, and `on_note` is told, unless they were asked for. Raises PhotoError or CameraError
     where the photo cannot be used, OutputError where textures were asked for and there is none.
     """
-    formats = [find_format(path) for path in outputs if not _is_scene_file(path)]
+    formats = [format_of(path) for path in outputs if not _is_scene_file(path)]
     switch = TEXTURES[0]
     able = bool(scene.faces) and any(switch in row.options for row in formats)
-    drawn = any(row.shows_photo for row in formats)
+    beneath = values.get(UNDERLAY.key, UNDERLAY.default) is True and any(UNDERLAY in row.options for row in formats)
+    drawn = beneath or any(row.shows_photo and UNDERLAY not in row.options for row in formats)
     textured = able and values.get(switch.key, switch.default) is True
     if not drawn and not textured:
         return None
@@ -116,6 +119,8 @@ def pixels_for(
         if asked:
             raise OutputError(f"textures were asked for, but {missing}")
         on_note(f"{missing}; the faces have no textures")
+    if found is None and beneath:
+        on_note(f"{_missing(scene, photo)}; no photo lies beneath the drawing")
     return None if found is None else found.pixels
 
 

@@ -100,6 +100,7 @@ HOSTS = {
     "registry.khronos.org",
     "semver.org",
     "standards.buildingsmart.org",
+    "www.inkscape.org",  # the namespace of its layers
     "www.iso.org",
     "www.khronos.org",
     "www.loc.gov",

@@ -112,24 +112,25 @@ class Canvas:
         picture = Image.fromarray(self.pixels)
         draw = ImageDraw.Draw(picture)
         for text in self.texts:
-            draw.text((text.x, text.y), text.text, text.colour, _font(text.size), text.anchor)
+            draw.text((text.x, text.y), text.text, text.colour, default_font(text.size), text.anchor)
         return picture
 
 
 def text_width(text: str, size: int) -> float:
     """How wide a text is, in px."""
-    return float(_font(size).getlength(text))
+    return float(default_font(size).getlength(text))
 
 
 def drawable(text: str) -> str:
     """The text in the characters that the font has: without accents, and with question marks for all others."""
-    font = _font(20)
+    font = default_font(20)
     unknown = bytes(font.getmask("\uffff"))
     plain = [character for character in unicodedata.normalize("NFKD", text) if not unicodedata.combining(character)]
     return "".join("?" if bytes(font.getmask(character)) == unknown else character for character in plain)
 
 
-def _font(size: int) -> ImageFont.FreeTypeFont:
+def default_font(size: int) -> ImageFont.FreeTypeFont:
+    """Pillow's own font in a size, px."""
     font = ImageFont.load_default(size)  # the font that comes with Pillow: the same on every machine
     assert isinstance(font, ImageFont.FreeTypeFont)  # Pillow's wheels all have FreeType
     return font

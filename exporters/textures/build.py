@@ -39,8 +39,13 @@ def build_textures(scene: Scene, photo: NDArray[np.uint8], largest: int, fill: s
 
 
 def _page(pixels: NDArray[np.uint8]) -> Page:
+    data = jpeg_of(pixels)
+    return Page(page_name(data), data, pixels.shape[1], pixels.shape[0])
+
+
+def jpeg_of(pixels: NDArray[np.uint8]) -> bytes:
+    """A picture (H, W, 3) RGB as JPEG."""
     settings = [cv2.IMWRITE_JPEG_QUALITY, _QUALITY]
     settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]  # red stays in its line
     _, encoded = cv2.imencode(".jpg", cv2.cvtColor(pixels, cv2.COLOR_RGB2BGR), settings)
-    data = encoded.tobytes()
-    return Page(page_name(data), data, pixels.shape[1], pixels.shape[0])
+    return bytes(encoded.tobytes())

@@ -104,13 +104,13 @@ def seen_part(points: Float, view: View) -> Float:
     edges = np.array(  # of the photo, as planes through the camera: what is inside has a positive product with each
         [[1, 0, 0.5], [-1, 0, view.width - 0.5], [0, 1, 0.5], [0, -1, view.height - 0.5]]
     )
-    ring = _cut(ring, ring[:, 2] - _NEAREST * np.abs(ring[:, 2]).max())
+    ring = cut_ring(ring, ring[:, 2] - _NEAREST * np.abs(ring[:, 2]).max())
     for edge in edges:
-        ring = _cut(ring, ring @ edge)
+        ring = cut_ring(ring, ring @ edge)
     return ring
 
 
-def _cut(ring: Float, inside: Float) -> Float:
+def cut_ring(ring: Float, inside: Float) -> Float:
     """The part of a ring (V, 3) where a linear function, given at its corners (V,), is not negative."""
     following, after = np.roll(ring, -1, axis=0), np.roll(inside, -1)
     rows: list[Float] = []

@@ -66,7 +66,7 @@ def _pixels(ring: Float, view: View) -> float:
     return abs(signed_area(seen[:, :2] / seen[:, 2:])) if len(seen) else 0.0
 
 
-def _hidden(shape: Shape, nearest: Nearest) -> Bool:
+def hidden_in_photo(shape: Shape, nearest: Nearest) -> Bool:
     """Where in its box a face is behind another one.
 
     Not within _ROUNDED of the line where their planes meet: the difference of the inverse depths is linear in the
@@ -86,7 +86,7 @@ def _paint(
     """RGB of a patch with its margin, and where something without a face hides it, 255; None where nothing does."""
     left, top, right, bottom = shape.box
     here = np.s_[top:bottom, left:right]
-    shown = np.where(_hidden(shape, nearest), np.uint8(0), np.uint8(255))
+    shown = np.where(hidden_in_photo(shape, nearest), np.uint8(0), np.uint8(255))
     to_box = np.array([[1.0, 0.0, -left], [0.0, 1.0, -top], [0.0, 0.0, 1.0]])
     to_photo = to_box @ view.projection @ _to_space(face, patch)
     size = (patch.columns + 2 * MARGIN, patch.rows + 2 * MARGIN)
@@ -95,11 +95,11 @@ def _paint(
     )
     corner = (patch.left - MARGIN, patch.top - MARGIN)
     rings = [patch.texels(ring) - 0.5 for ring in face.rings]
-    known = (seen >= _WHOLLY_SEEN) & filled(rings, corner, size[::-1]) & _in_front(to_photo, size)
+    known = (seen >= _WHOLLY_SEEN) & filled(rings, corner, size[::-1]) & in_front(to_photo, size)
 
     texels = abs(signed_area(rings[0]))
     step = math.sqrt(abs(signed_area(shape.rings[0])) / texels)  # px a texel, in the mean
-    colours, to_colours = _reduced(photo[here], step, to_photo)
+    colours, to_colours = reduced(photo[here], step, to_photo)
     warped = cv2.warpPerspective(
         colours, to_colours, size, flags=cv2.INTER_CUBIC | cv2.WARP_INVERSE_MAP, borderMode=cv2.BORDER_REPLICATE
     )
@@ -124,14 +124,14 @@ def _to_space(face: FlatFace, patch: Patch) -> Float:
     return np.stack([across, down, start], axis=1)
 
 
-def _in_front(to_photo: Float, size: tuple[int, int]) -> Bool:
+def in_front(to_photo: Float, size: tuple[int, int]) -> Bool:
     """(rows, columns) where the plane is before the camera: behind it, too, the mathematics finds a pixel."""
     a, b, c = to_photo[2]
     before: Bool = (a * np.arange(size[0]))[None, :] > -(b * np.arange(size[1]) + c)[:, None]
     return before
 
 
-def _reduced(colours: Pixels, step: float, to_photo: Float) -> tuple[Pixels, Float]:
+def reduced(colours: Pixels, step: float, to_photo: Float) -> tuple[Pixels, Float]:
     """The photo in about the resolution of a patch, so that no pixel is skipped, and the way from texels to it."""
     factor = 2 ** max(0, round(math.log2(step)))
     if factor == 1:

@@ -67,7 +67,11 @@ class Job:
 
     def _exports(self) -> list[tuple[Path, Beside]]:
         """The outputs beside which other files may lie, with what may: not the scene file."""
-        return [(path, FORMATS[path.suffix].beside) for path in self.outputs if path.suffix in FORMATS]
+        return [
+            (path, FORMATS[suffix].beside)
+            for path, suffix in zip(self.outputs, self.suffixes, strict=True)
+            if suffix in FORMATS
+        ]
 
     @property
     def thumbnail(self) -> Path:

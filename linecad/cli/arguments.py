@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 DETAILS = ("none", "openings", "all")  # as linecad.model.choice has them, which loads NumPy
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
+_LENGTH = "a known length: of a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo"
 
 
 class Parser(argparse.ArgumentParser):
@@ -80,11 +81,15 @@ def add_option(parser: argparse.ArgumentParser, options: str) -> None:
 def add_scale(parser: argparse.ArgumentParser) -> None:
     """A known length."""
     scale = parser.add_mutually_exclusive_group()
-    scale.add_argument(
-        "--scale", type=_length, dest="known", metavar="LINE=METRES",
-        help="a known length: of a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo",
-    )  # fmt: skip
+    scale.add_argument("--scale", type=_length, dest="known", metavar="LINE=METRES", help=_LENGTH)
     add_camera_height(scale)
+
+
+def add_length(parser: argparse.ArgumentParser) -> None:
+    """A known length, where --scale is the scale of a drawing."""
+    length = parser.add_mutually_exclusive_group()
+    length.add_argument("--length", type=_length, dest="known", metavar="LINE=METRES", help=_LENGTH)
+    add_camera_height(length)
 
 
 def add_camera_height(parser: "argparse._ActionsContainer") -> None:
@@ -156,6 +161,13 @@ def positive(text: str) -> float:
     if value == 0:
         raise argparse.ArgumentTypeError(f"{text} is not a positive number")
     return value
+
+
+def identity(text: str) -> int:
+    """A whole number of 0 or more, as ids are."""
+    if not (text.isascii() and text.isdecimal() and len(text) < LONGEST_ID):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number of 0 or more")
+    return int(text)
 
 
 def _not_negative(text: str) -> float:

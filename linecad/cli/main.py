@@ -14,7 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from linecad import __version__
-from linecad.cli import addon, batch, camera, convert, dataset, edit, evaluate, export, options
+from linecad.cli import addon, batch, camera, convert, dataset, edit, elevation, evaluate, export, options
 from linecad.cli.arguments import Parser
 from linecad.errors import LinecadError
 
@@ -72,6 +72,6 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"linecad {__version__}")
     commands = parser.add_subparsers(dest="command", required=True)
-    for command in (convert, camera, batch, edit, evaluate, export, addon, options, dataset):
+    for command in (convert, camera, batch, edit, evaluate, export, elevation, addon, options, dataset):
         command.add_to(commands)
     return parser

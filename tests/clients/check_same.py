@@ -37,7 +37,9 @@ def check(findings, command, pause=PAUSE):
         findings.need(str(output) in first, f"{output} was not written")
     for name in first:
         top = Path(name).parts[0]
-        ours = any(top == output.name or top.startswith(f"{output.name}.") for output in outputs)
+        ours = any(  # a world file has the name of its picture and a w
+            top in (output.name, f"{output.name}w") or top.startswith(f"{output.name}.") for output in outputs
+        )
         findings.need(ours, f"{name} is left over")
     for number, files in enumerate(made[1:], 2):
         differing = sorted(name for name in first.keys() | files.keys() if first.get(name) != files.get(name))

@@ -23,6 +23,7 @@ from linecad.io.scene_file import write_scene
 
 FACES_ONLY = {".ply", ".stl"}
 NO_FACES = {".fspy", ".png"}  # the picture draws faces as they are, the project has none
+DRAWINGS = {suffix for suffix, row in FORMATS.items() if row.module.startswith("exporters.drawings.")}
 REPOSITORY = Path(__file__).parents[2]
 HEAVY = {"OCP", "build123d", "cv2", "ezdxf", "ifcopenshell", "openskp", "pxr", "rhino3dm", "shapely", "trimesh"}
 
@@ -35,7 +36,7 @@ def save(scene, path):
 
 
 every_format = pytest.mark.parametrize("suffix", FORMATS)
-with_lines = pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in FACES_ONLY])
+with_lines = pytest.mark.parametrize("suffix", [suffix for suffix in FORMATS if suffix not in FACES_ONLY | DRAWINGS])
 
 
 def start(script, *arguments, **environment):
@@ -62,7 +63,7 @@ def names(folder):
 def exported(folder, *suffixes):
     """The names of the files `a` of these suffixes, and of all that lies beside them by their rows."""
     paths = [folder / f"a{suffix}" for suffix in suffixes]
-    found = [file for path in paths for file in (path, *FORMATS[path.suffix].beside.found(path))]
+    found = [file for path in paths for file in (path, *find_format(path).beside.found(path))]
     return sorted(str(file.relative_to(folder)) for file in found)
 
 
@@ -151,7 +152,7 @@ def test_without_the_option_groups_have_their_plain_names(told, tmp_path, suffix
 
 
 def test_every_format_with_names_for_lines_has_them_by_probability():
-    assert set(BY_BAND) == set(FORMATS) - FACES_ONLY - NO_FACES
+    assert set(BY_BAND) == set(FORMATS) - FACES_ONLY - NO_FACES - DRAWINGS
 
 
 @with_lines
@@ -171,6 +172,19 @@ def test_lines_alone_do_not_fit_into_formats_for_faces(no_faces, tmp_path, suffi
     with pytest.raises(OutputError, match=f"{suffix} holds faces only and the scene has none"):
         export(no_faces, tmp_path / f"a{suffix}")
     assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize("suffix", sorted(DRAWINGS))
+def test_a_drawing_needs_a_wall(no_faces, tmp_path, suffix):
+    with pytest.raises(OutputError, match="a drawing shows walls and the scene has no upright face"):
+        save(no_faces, tmp_path / f"a{suffix}")
+    assert names(tmp_path) == []
+
+
+def test_the_longest_suffix_chooses():
+    assert find_format(Path("a.Elevation.DXF")) is FORMATS[".elevation.dxf"]
+    assert find_format(Path("a.elevation.png")) is FORMATS[".png"]
+    assert find_format(Path("elevation.dxf")) is FORMATS[".dxf"]
 
 
 @every_format
@@ -259,8 +273,9 @@ def test_an_unknown_suffix_is_told_the_known_ones(scene, tmp_path):
 
 
 def test_a_name_without_suffix_is_told_so():
-    with pytest.raises(OutputError, match="no suffix"):
-        find_format(Path("result"))
+    for name in ("result", ".dxf"):
+        with pytest.raises(OutputError, match="no suffix"):
+            find_format(Path(name))
 
 
 def test_the_suffix_chooses_the_format_in_any_case():
@@ -379,6 +394,8 @@ def test_a_writer_that_fails_midway_leaves_the_old_file(scene, tmp_path, monkeyp
 
 
 UNITS = {
+    ".elevation.dxf": b"$INSUNITS\n 70\n6\n",
+    ".plan.dxf": b"$INSUNITS\n 70\n6\n",
     ".dxf": b"$INSUNITS\n 70\n6\n",
     ".step": b"SI_UNIT(.MILLI.,.METRE.)",
     ".usda": b"metersPerUnit = 1\n",

@@ -54,3 +54,12 @@ def test_what_it_made_is_found_with_what_others_refer_to_first(job):
 )
 def test_it_may_make_its_own_files_alone(job, file, allowed):
     assert job.may_make(file) is allowed
+
+
+def test_drawings_may_have_files_beside_them(tmp_path):
+    suffixes = (".elevation.dxf", ".elevation.tif", ".dxf")
+    job = Job(tmp_path / "p.jpg", "0" * 64, "p", tmp_path, suffixes, Conversion(), Limits(1.0, 100), "f" * 64)
+    names = [str(place.relative_to(job.folder)) for place in job.places]
+    assert names[:2] == ["p.elevation.dxf.pictures", "p.elevation.tifw"]
+    assert job.may_make("p.elevation.tifw")
+    assert not job.may_make("p.dxf.pictures/photo-0123456789abcdef.jpg")
