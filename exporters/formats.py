@@ -293,7 +293,7 @@ def export(
     if not len(scene.lines) and not scene.faces:
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
     check_output(path)
-    _check_installed(path.suffix.lower(), chosen)
+    _check_installed(suffix_of(path), chosen)
     module = importlib.import_module(chosen.module)
     by_band, by_role, origin = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
     model = build_model(scene, by_band, by_role, origin)

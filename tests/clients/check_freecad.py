@@ -44,9 +44,7 @@ def report_from(script, told, program="freecadcmd", libraries=None):
                 "XDG_RUNTIME_DIR": folder,
                 "CHECK_REPORT": str(report),
                 "BROWSER": "true",  # a program that shows nothing
-                "PYTHONPATH": os.pathsep.join(
-                    map(str, [script.parent, *([libraries.resolve()] if libraries else [])])
-                ),
+                "PYTHONPATH": os.pathsep.join(map(str, [script.parent, *([libraries.resolve()] if libraries else [])])),
                 "QT_QPA_PLATFORM": "offscreen",
                 "QTWEBENGINE_DISABLE_SANDBOX": "1",
             }
