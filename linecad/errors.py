@@ -12,6 +12,7 @@ LinecadError
 ├── ScaleError         a known length that the scene does not hold
 ├── ConfidenceError    a confidence that no line of the scene reaches, or of which it tells nothing
 ├── OutputError        a result that cannot be written: suffix, folder, disk
+│   └── UnwrittenError some of several results cannot be written, the others are
 ├── ReconstructionError the photo was read, but holds too little for a model
 ├── CorrectionError    an edit that names no line, or that cannot be done
 ├── EditorError        the page cannot be served
@@ -20,6 +21,9 @@ LinecadError
 
 The text of each is one line: what was found, and what to do about it.
 """
+
+from collections.abc import Sequence
+from pathlib import Path
 
 
 class LinecadError(Exception):
@@ -68,6 +72,15 @@ class ConfidenceError(LinecadError):
 
 class OutputError(LinecadError):
     """A result cannot be written."""
+
+
+class UnwrittenError(OutputError):
+    """Some of several results cannot be written; the others are."""
+
+    def __init__(self, text: str, unwritten: Sequence[Path] = ()) -> None:
+        """Where nothing else is said, which ones is not known."""
+        super().__init__(text)
+        self.unwritten = tuple(unwritten)
 
 
 class ReconstructionError(LinecadError):

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
 
     from exporters.options import Value
     from linecad.model.scale import Known
+    from linecad.model.wanted import Wanted
     from linecad.options import Options
 
     Commands: TypeAlias = argparse._SubParsersAction["Parser"]
@@ -116,6 +117,13 @@ def add_loudness(parser: argparse.ArgumentParser) -> None:
     loudness = parser.add_mutually_exclusive_group()
     loudness.add_argument("--quiet", action="store_true", help="no progress")
     loudness.add_argument("--verbose", action="store_true", help="the time of every stage")
+
+
+def wanted_of(parsed: argparse.Namespace) -> "Wanted":
+    """What of a scene is to be written, and at which scale."""
+    from linecad.model.wanted import Wanted
+
+    return Wanted(parsed.known, parsed.confidence, parsed.detail)
 
 
 def reconstruction_of(parsed: argparse.Namespace, texts: "Iterable[str]") -> "Options":

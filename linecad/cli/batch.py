@@ -16,6 +16,7 @@ from linecad.cli.arguments import (
     count,
     options_of,
     positive,
+    wanted_of,
 )
 from linecad.cli.former import add_former
 from linecad.cli.progress import ProgressDisplay
@@ -76,9 +77,7 @@ def run(parsed: argparse.Namespace) -> int:
 
     means = Means(parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit)
     options, values = options_of(parsed, [Path(f"photo{suffix}") for suffix in parsed.format])
-    conversion = Conversion(
-        parsed.camera, parsed.focal, options, parsed.known, values, confidence=parsed.confidence, detail=parsed.detail
-    )
+    conversion = Conversion(parsed.camera, parsed.focal, options, values, wanted=wanted_of(parsed))
     plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means, parsed.depth_maps)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"

@@ -15,6 +15,7 @@ from linecad.cli.arguments import (
     add_reconstruction,
     add_scale,
     options_of,
+    wanted_of,
 )
 from linecad.cli.checks import check_outputs, check_some
 from linecad.cli.former import add_former
@@ -57,14 +58,13 @@ def run(parsed: argparse.Namespace) -> int:
     from linecad.convert import Conversion
 
     conversion = Conversion(
-        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence, parsed.depth,
-        parsed.detail,
-    ).checked()  # fmt: skip
+        parsed.camera, parsed.focal, options, values, parsed.corrections, parsed.depth, wanted_of(parsed)
+    ).checked()
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the photo")
         photo = conversion.read(parsed.photo)
         scene = conversion.reconstruct(photo, show.progress, show.stage)
-        conversion.write(scene, photo, parsed.output, show.stage)
+        scene = conversion.write(scene, photo, parsed.photo, parsed.output, show.stage)
     print("\n".join(_summary(scene)))
     return 0
 

@@ -4,7 +4,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linecad.cli.arguments import add_confidence, add_detail, add_loudness, add_option, add_outputs, add_scale
+from linecad.cli.arguments import (
+    add_confidence,
+    add_detail,
+    add_loudness,
+    add_option,
+    add_outputs,
+    add_scale,
+    wanted_of,
+)
 from linecad.cli.checks import check_outputs, check_some
 from linecad.cli.progress import ProgressDisplay
 from linecad.errors import OutputError
@@ -45,22 +53,18 @@ def run(parsed: argparse.Namespace) -> int:
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
     check_some(parsed.output)
-    from linecad.confidence import keep_probable
     from linecad.io.scene_file import read_scene
-    from linecad.model.choice import keep_drawn
-    from linecad.model.scale import set_scale
     from linecad.outputs import PhotoOfScene, format_values, pixels_for, write_outputs
 
     values = format_values(parsed.output, parsed.option)
-    check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    wanted = wanted_of(parsed)
+    # The scene file itself may come back, with a scale, where nothing of it would be lost.
+    kept = [parsed.photo, parsed.camera, None if wanted.is_whole else parsed.scene]
+    check_outputs(parsed.output, kept)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
-        if parsed.known is not None:
-            scene = set_scale(scene, parsed.known)  # first, because the known line itself may be left out
-        if parsed.confidence is not None:
-            scene = keep_probable(scene, parsed.confidence)
-        scene = keep_drawn(scene, parsed.detail)
+        scene = wanted.of(scene)
         photo = PhotoOfScene(parsed.photo, parsed.camera, parsed.scene)
         pixels = pixels_for(scene, parsed.output, values, photo, show.note)
         write_outputs(scene, pixels, parsed.output, values, show.stage)

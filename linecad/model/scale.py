@@ -32,6 +32,11 @@ class LineLength:
     line: int  # id
     metres: float
 
+    @property
+    def arguments(self) -> tuple[str, str]:
+        """As on the command line."""
+        return "--scale", f"{self.line}={self.metres:g}"
+
 
 @dataclass(frozen=True)
 class PointDistance:
@@ -40,12 +45,23 @@ class PointDistance:
     points: tuple[tuple[float, float], tuple[float, float]]  # px, as `segment` of the scene file counts them
     metres: float
 
+    @property
+    def arguments(self) -> tuple[str, str]:
+        """As on the command line."""
+        (a, b), (c, d) = self.points
+        return "--scale", f"{a:g},{b:g}:{c:g},{d:g}={self.metres:g}"
+
 
 @dataclass(frozen=True)
 class CameraHeight:
     """The camera stands `metres` above the ground."""
 
     metres: float
+
+    @property
+    def arguments(self) -> tuple[str, str]:
+        """As on the command line."""
+        return "--camera-height", f"{self.metres:g}"
 
 
 Known = LineLength | PointDistance | CameraHeight
@@ -114,7 +130,10 @@ def _line_length(scene: Scene, line: int) -> float:
     rows = np.flatnonzero(scene.lines.id == line)
     if len(rows) == 0:
         last = f"has ids up to {scene.lines.id.max()}" if len(scene.lines) else "has no lines"
-        raise ScaleError(f"the scene has no line {line}, it {last}; see the ids in the scene file")
+        raise ScaleError(
+            f"the scene has no line {line}, it {last}; name two places in the photo, U,V:U2,V2=METRES, or see the ids "
+            "in a picture with --option ids=on"
+        )
     component = int(scene.lines.component[rows[0]])
     if component != 0:
         raise ScaleError(

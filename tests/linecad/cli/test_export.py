@@ -21,9 +21,24 @@ COURTYARD = SAMPLES / "courtyard.jpg"
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
 
 
-def test_the_scene_file_is_never_overwritten(fails, folder, scene_file):
+@pytest.mark.parametrize("loss", [("--detail", "none"), ("--confidence", "0.5")])
+def test_the_scene_file_is_not_overwritten_by_a_part_of_it(fails, folder, scene_file, loss):
     shutil.copy(scene_file, folder)
-    assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json")
+    assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json", *loss)
+
+
+def test_a_scale_is_set_in_place(folder, scene_file):
+    shutil.copy(scene_file, folder)
+    line = json.loads(scene_file.read_text())["lines"][7]["id"]
+    assert main(["export", "room.json", "--scale", f"{line}=3", "-o", "room.json", "--quiet"]) == 0
+    before, after = (json.loads((where / "room.json").read_text()) for where in (scene_file.parent, folder))
+    assert (before["metres_per_unit"], after["lines"]) == (None, before["lines"])
+    assert after["metres_per_unit"] > 0
+
+
+def test_a_scale_that_cannot_be_set_in_place_changes_nothing(fails, folder, scene_file):
+    shutil.copy(scene_file, folder)
+    assert "no line 99999" in fails("export", "room.json", "--scale", "99999=3", "-o", "room.json")
 
 
 @pytest.mark.parametrize("text", ["", "{", "{}", "[1]", '{"format": "linecad-scene", "version": 99}', "\x00\xff"])
