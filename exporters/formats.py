@@ -63,6 +63,8 @@ _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is f
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
 _TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
 
+_UP = Option("up", "y", "what is up in an OBJ: y as most programs take it, or z as FreeCAD does", words=("y", "z"))
+
 _ON = Option("textures", True, "the photo on the faces, where it is at hand")
 _SIZE = Option("texture-size", 4096, "the most texels a side of a picture of textures", least=256, most=16384)
 TEXTURES = (_ON, _SIZE)
@@ -110,7 +112,7 @@ FORMATS: dict[str, Format] = {
         "exporters.obj",
         "faces as triangles, and lines",
         "metres",
-        options=(*MODEL_OPTIONS, *TEXTURES),
+        options=(_UP, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES_AND_MATERIALS,
     ),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres", options=(_ORIGIN,)),

@@ -127,7 +127,8 @@ def read_obj(path):
         elif word == "o":
             name, vertices_before, corners = rest, len(vertices), []
         elif word == "v":
-            vertices.append([float(number) for number in rest.split()])
+            x, up, minus_y = map(float, rest.split())
+            vertices.append([x, -minus_y, up])
         elif word == "vt":
             coordinates.append([float(number) for number in rest.split()])
         elif word == "usemtl":
