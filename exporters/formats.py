@@ -63,6 +63,7 @@ _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is f
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
 _TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
 
+_IDS = Option("ids", False, "the ids of lines on them in the picture, in place of the marks of crossings")
 _UP = Option("up", "y", "what is up in an OBJ: y as most programs take it, or z as FreeCAD does", words=("y", "z"))
 
 _ON = Option("textures", True, "the photo on the faces, where it is at hand")
@@ -130,6 +131,7 @@ FORMATS: dict[str, Format] = {
         "the photo with its lines, and three views of them in space",
         "pixels",
         shows_photo=True,
+        options=(_IDS,),
     ),
 }
 

@@ -20,7 +20,6 @@ from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
 from linecad.arrays import Float
 
-
 Points = Callable[[Float], list[str]]  # (M, 3) m, z up: a row of the file each
 
 
