@@ -50,11 +50,15 @@ _ROLES = Option(
     "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of openings, "
     "..._detail for bars, panes, joints and courses",
 )  # fmt: skip
+_COMPONENTS = Option(
+    "components", False, "layers and groups of lines and faces by the groups of lines that hang together: "
+    "..._component_1 and so on for all but component 0",
+)  # fmt: skip
 _ORIGIN = Option(
     "origin", ORIGINS[0], "z = 0 is the ground, where the scale and the ground are known, or the camera is the origin",
     words=ORIGINS,
 )  # fmt: skip
-MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN)
+MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN, _COMPONENTS)
 _INSTANCES = Option(
     "instances", False, "equal windows and doors as one shape placed many times, in GLB and USD with the texture of "
     "the one that the photo shows best, in STEP and USD without names by id",
@@ -184,8 +188,8 @@ def export(
         raise OutputError(f"{path.name}: the scene holds neither lines nor faces; there is nothing to write")
     check_output(path)
     module = importlib.import_module(chosen.module)
-    by_band, by_role, origin = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
-    model = build_model(scene, by_band, by_role, origin)
+    by_band, by_role, origin, by_component = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
+    model = build_model(scene, by_band, by_role, origin, by_component)
     if TEXTURES[0] in chosen.options:
         on, size = (arguments.pop(option.name) for option in TEXTURES)
         arguments["textures"] = _textures(scene, photo, size) if on else None

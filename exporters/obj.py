@@ -15,7 +15,7 @@ import numpy as np
 
 from exporters.beside import NO_FILES, Names, SideFiles
 from exporters.faces import FlatFace
-from exporters.model import LineGroup, Model
+from exporters.model import LineGroup, Model, in_component
 from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
 from linecad.arrays import Float
@@ -31,14 +31,22 @@ def write(model: Model, path: Path, names: Names, up: str = "y", textures: Textu
     if textures is not None and model.faces:
         rows.append(f"mtllib {names.library}")
     first = 1  # OBJ counts vertices from 1, through all objects
+    parted = len(model.components) > 1
     for face in model.faces:
+        rows += _group("faces", face.component) if parted else []
         rows += _face(face, first, points, textures, model.eye)
         first += len(face.vertices)
     for group in model.groups:
+        rows += _group("lines", group.component) if parted else []
         rows += _lines(group, first, points)
         first += 2 * len(group.ids)
     path.write_text("\n".join(rows) + "\n", encoding="utf-8", newline="\n")
     return NO_FILES if textures is None else SideFiles(textures.files, _materials(textures, names.folder))
+
+
+def _group(name: str, component: int) -> list[str]:
+    """That what follows is of a component; it holds for one object, whose name the next row begins."""
+    return [f"g {in_component(name, component)}"]
 
 
 def _materials(textures: Textures, folder: str) -> str:

@@ -10,6 +10,7 @@ LinecadError
 │   └── CorrectionsFileError a corrections file that is malformed or belongs to another photo
 ├── OptionError        an option that does not exist, or a value that it does not take
 ├── ScaleError         a known length that the scene does not hold
+├── GroupError         a place in the photo at which the scene has nothing
 ├── ConfidenceError    a confidence that no line of the scene reaches, or of which it tells nothing
 ├── OutputError        a result that cannot be written: suffix, folder, disk
 │   └── UnwrittenError some of several results cannot be written, the others are
@@ -64,6 +65,10 @@ class OptionError(LinecadError):
 
 class ScaleError(LinecadError):
     """A known length was given that cannot be measured in the scene."""
+
+
+class GroupError(LinecadError):
+    """Nothing stands at a place in the photo that was to tell what the scene is about."""
 
 
 class ConfidenceError(LinecadError):

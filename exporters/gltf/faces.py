@@ -4,6 +4,7 @@ Equal openings share the numbers of their corners in any case. They share meshes
 has one set of texture coordinates, so equal windows with a picture each need a mesh each.
 """
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from exporters.faces import FlatFace
-from exporters.model import FlatPlane, Model
+from exporters.model import FlatPlane, Model, in_component
 from exporters.openings import Fitting
 from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
@@ -49,19 +50,28 @@ def meshes_of(model: Model, textures: Textures | None, instances: bool) -> dict[
     return meshes
 
 
+def add_parents(graph: trimesh.Scene, root: str, name: str, components: Iterable[int]) -> None:
+    """Add the node of what is of component 0 below `root`, and in it one for each of the others."""
+    graph.graph.update(frame_from=root, frame_to=name)
+    for component in sorted({*components} - {0}):
+        graph.graph.update(frame_from=name, frame_to=in_component(name, component))
+
+
 def add_faces(
     graph: trimesh.Scene, parent: str, model: Model, meshes: dict[str, FaceMesh], textures: Textures | None
 ) -> None:
-    """Add the nodes of all faces, and those of openings with the faces of each, below the node `parent`."""
+    """Add the nodes of all faces and openings below `parent`, or below the node of their component in it."""
     for mesh in dict.fromkeys(meshes.values()):
         coordinates = None if textures is None else textures.coordinates(mesh.shown, model.eye)
         graph.geometry[mesh.name] = _trimesh(mesh.face, coordinates)
     for face in model.loose_faces:
-        graph.graph.update(frame_from=parent, frame_to=face.name, geometry=meshes[face.name].name)
+        graph.graph.update(
+            frame_from=in_component(parent, face.component), frame_to=face.name, geometry=meshes[face.name].name
+        )
     for fitting in model.fittings:
         pose = np.eye(4)
         pose[:3, 3] = Y_UP @ fitting.place
-        graph.graph.update(frame_from=parent, frame_to=fitting.label, matrix=pose)
+        graph.graph.update(frame_from=in_component(parent, fitting.component), frame_to=fitting.label, matrix=pose)
         for face in fitting.faces:
             graph.graph.update(frame_from=fitting.label, frame_to=face.name, geometry=meshes[face.name].name)
 

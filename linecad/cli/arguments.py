@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
     Commands: TypeAlias = argparse._SubParsersAction["Parser"]
 
+GROUPS = ("main", "all")  # as linecad.model.groups has them, which loads NumPy
 DETAILS = ("none", "openings", "all")  # as linecad.model.choice has them, which loads NumPy
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
@@ -65,7 +66,7 @@ def add_reconstruction(parser: argparse.ArgumentParser, options: str) -> None:
     """How a photo is reconstructed; `options` says whose keys --option takes."""
     parser.add_argument("--fast", action="store_true", help="a robust fit in tenths of a second, nothing proven")
     parser.add_argument(
-        "--time-limit", type=positive, metavar="S", help="seconds for the solver (none; formulation gain 10, paper 60)"
+        "--time-limit", type=positive, metavar="S", help="seconds for the solver (none; gain 10, paper 60)"
     )
     add_option(parser, options)
 
@@ -82,8 +83,8 @@ def add_scale(parser: argparse.ArgumentParser) -> None:
     """A known length."""
     scale = parser.add_mutually_exclusive_group()
     scale.add_argument(
-        "--scale", type=_length, dest="known", metavar="LINE=METRES",
-        help="a known length: of a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo",
+        "--scale", type=_length, dest="known", metavar="WHAT=METRES",
+        help="a known length: between two px of the photo, U,V:U,V=METRES, or of a line by its id, LINE=METRES",
     )  # fmt: skip
     add_camera_height(scale)
 
@@ -101,6 +102,22 @@ def add_confidence(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--confidence", type=_probability, metavar="P",
         help="leave out lines less likely right than P, 0 to 1",
+    )  # fmt: skip
+
+
+def add_groups(parser: argparse.ArgumentParser) -> None:
+    """Which groups of lines are written."""
+    parser.add_argument(
+        "--groups", choices=GROUPS, default="all", metavar="WHICH",
+        help="of lines: main (component 0) or all (all)",
+    )  # fmt: skip
+
+
+def add_main(parser: argparse.ArgumentParser) -> None:
+    """What the scene is about."""
+    parser.add_argument(
+        "--main", type=_place, metavar="U,V",
+        help="a place in the photo, px, that component 0 is at",
     )  # fmt: skip
 
 
@@ -123,7 +140,8 @@ def wanted_of(parsed: argparse.Namespace) -> "Wanted":
     """What of a scene is to be written, and at which scale."""
     from linecad.model.wanted import Wanted
 
-    return Wanted(parsed.known, parsed.confidence, parsed.detail)
+    main = getattr(parsed, "main", None)  # a batch has none: photos show what they show at other places
+    return Wanted(main, parsed.known, parsed.groups, parsed.confidence, parsed.detail)
 
 
 def reconstruction_of(parsed: argparse.Namespace, texts: "Iterable[str]") -> "Options":
@@ -200,6 +218,14 @@ def _length(text: str) -> "Known":
         raise argparse.ArgumentTypeError(f"{what!r} is neither the id of a line nor two px like 840,310:840,655")
     a, b, c, d = map(_pixel, numbers)
     return PointDistance(((a, b), (c, d)), metres)
+
+
+def _place(text: str) -> tuple[float, float]:
+    numbers = text.split(",")
+    if len(numbers) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is no place in a photo; write it like 840,310")
+    u, v = map(_pixel, numbers)
+    return u, v
 
 
 def _pixel(text: str) -> float:

@@ -11,6 +11,7 @@ from linecad.cli.arguments import (
     add_confidence,
     add_depth_maps,
     add_detail,
+    add_groups,
     add_loudness,
     add_reconstruction,
     count,
@@ -48,6 +49,7 @@ def add_to(commands: "Commands") -> None:
     add_camera_height(command)
     add_confidence(command)
     add_detail(command)
+    add_groups(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)

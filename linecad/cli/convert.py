@@ -10,7 +10,9 @@ from linecad.cli.arguments import (
     add_confidence,
     add_depth,
     add_detail,
+    add_groups,
     add_loudness,
+    add_main,
     add_outputs,
     add_reconstruction,
     add_scale,
@@ -45,6 +47,8 @@ def add_to(commands: "Commands") -> None:
     add_scale(command)
     add_confidence(command)
     add_detail(command)
+    add_groups(command)
+    add_main(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)

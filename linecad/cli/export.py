@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING
 from linecad.cli.arguments import (
     add_confidence,
     add_detail,
+    add_groups,
     add_loudness,
+    add_main,
     add_option,
     add_outputs,
     add_scale,
@@ -41,6 +43,8 @@ def add_to(commands: "Commands") -> None:
     add_scale(command)
     add_confidence(command)
     add_detail(command)
+    add_groups(command)
+    add_main(command)
     add_option(command, "an option of a format")
     command.add_argument("--formats", action="store_true", help="list the formats and end")
     add_loudness(command)

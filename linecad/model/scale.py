@@ -187,7 +187,7 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     for plane, face in scene.faces:
         if plane.id in planes:
             for number in range(2):
-                if _meets(rays[number], plane, face, scene.turns):
+                if depth_on_face(rays[number], plane, face, scene.turns) is not None:
                     hit[number].add(plane.id)
     for number, word in enumerate(("first", "second")):
         if not hit[number]:
@@ -204,16 +204,17 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     return planes[common[0]]
 
 
-def _meets(ray: Float, plane: Plane, face: Face, turns: Turns) -> bool:
-    """Whether a ray from the camera meets a face."""
-    along = plane.along_normal(ray, turns)
+def depth_on_face(ray: Float, plane: Plane, face: Face, turns: Turns) -> float | None:
+    """How many times as long a ray (3,) from the camera must be to meet a face; None where it does not meet it."""
+    along = float(plane.along_normal(ray, turns))
     if along * plane.offset <= 0:
-        return False
+        return None
     ray = components(ray, turns)
     others = sorted(across(np.array(plane.axis)).tolist())
     shell, *holes = (components(ring, turns)[:, others] for ring in (face.outline, *face.holes))
     polygon = shapely.Polygon(shell, holes)
-    return bool(shapely.contains_xy(polygon, *(ray * (plane.offset / along))[others]))
+    depth = plane.offset / along
+    return depth if shapely.contains_xy(polygon, *(ray * depth)[others]) else None
 
 
 def _checked(scene: Scene, units: float, what: str) -> float:

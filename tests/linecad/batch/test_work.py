@@ -45,7 +45,7 @@ def test_a_map_that_is_damaged_fails_its_photo(small_photo, job_of, mapped):
 
 @pytest.mark.parametrize(("suffixes", "kept"), [((".json", ".obj"), ["room.json"]), ((".obj",), [])])
 def test_a_length_that_is_not_there_keeps_the_scene(small_photo, job_of, conversion, suffixes, kept):
-    wanted = replace(conversion, wanted=Wanted(LineLength(99999, 3.0)))
+    wanted = replace(conversion, wanted=Wanted(known=LineLength(99999, 3.0)))
     job = job_of(small_photo, suffixes, conversion=wanted)
     outcome = do(job)
     assert outcome.status == "failed"

@@ -381,3 +381,23 @@ def test_a_scene_that_cannot_be_kept_either_is_said(folder, capsys, monkeypatch)
     assert said.endswith("the scene was not kept either: " + "room.json was not written: no space is left for it; "
                          "free some or choose another disk")  # fmt: skip
     assert list(folder.iterdir()) == []
+
+
+@pytest.mark.usefixtures("folder")
+def test_groups_and_the_main_one(capsys):
+    """A place on another group makes it component 0, and that alone is written."""
+    made = ["convert", str(ROOM), "--quiet"]
+    assert main([*made, "-o", "a.json"]) == 0
+    whole = read_scene("a.json").lines
+    assert whole.component.max() > 0
+    u, v = whole.segment[whole.component == 1][0].mean(axis=0)
+    assert main([*made, "--groups", "main", "-o", "b.json"]) == 0
+    assert read_scene("b.json").lines.id.tolist() == whole.id[whole.component == 0].tolist()
+    assert main(["export", "a.json", "--main", f"{u},{v}", "--groups", "main", "-o", "c.json", "--quiet"]) == 0
+    assert read_scene("c.json").lines.id.tolist() == whole.id[whole.component == 1].tolist()
+    assert main([*made, "--main", f"{u},{v}", "-o", "d.json"]) == 0
+    assert (read_scene("d.json").lines.component == 0).tolist() == (whole.component == 1).tolist()
+    capsys.readouterr()
+    said = failing(capsys, "--main", "1e6,1e6", "-o", "e.json")
+    assert "no line and no face stands at 1e+06,1e+06 px" in said
+    assert command_in(said) == ["export", "e.json", "--photo", str(ROOM), "--main", "U,V", "-o", "e.json"]

@@ -21,7 +21,7 @@ COURTYARD = SAMPLES / "courtyard.jpg"
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
 
 
-@pytest.mark.parametrize("loss", [("--detail", "none"), ("--confidence", "0.5")])
+@pytest.mark.parametrize("loss", [("--detail", "none"), ("--confidence", "0.5"), ("--groups", "main")])
 def test_the_scene_file_is_not_overwritten_by_a_part_of_it(fails, folder, scene_file, loss):
     shutil.copy(scene_file, folder)
     assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json", *loss)
@@ -86,6 +86,9 @@ def test_formats_lists_every_option_with_its_default(capsys):
         (["--scale", "1,2,3,4=2"], "neither the id of a line"),
         (["--scale", "1,2:3,x=2"], "'x' is not a number of px"),
         (["--scale", "1,2:3,nan=2"], "nan px lies outside every photo"),
+        (["--main", "12"], "'12' is no place in a photo; write it like 840,310"),
+        (["--main", "1,nan"], "nan px lies outside every photo"),
+        (["--groups", "some"], "invalid choice: 'some'"),
         (["--camera-height", "-2"], "-2 is not a number of zero or more"),
         (["--camera-height", "2", "--scale", "1=2"], "not allowed with"),
     ],
