@@ -38,7 +38,7 @@ def add_to(commands: "Commands") -> None:
         "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for formats that show it (else looked for)"
     )
     command.add_argument(
-        "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
+        "--camera", type=Path, metavar="FILE", help="the photo's calibration, for scene files of earlier versions"
     )
     add_scale(command)
     add_confidence(command)
