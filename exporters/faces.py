@@ -77,6 +77,12 @@ class FlatFace:
         """(V, 3) m, the points of all rings in their order."""
         return np.concatenate(self.rings)
 
+    @property
+    def foot(self) -> Float:
+        """(3,) m, where the face stands: the middle of the box around it, at its lowest."""
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        return np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+
     def moved(self, by: Float) -> "FlatFace":
         """The same face elsewhere; `by` is (3,) m."""
         rings, hidden = (tuple(ring + by for ring in each) for each in (self.rings, self.hidden))

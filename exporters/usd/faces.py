@@ -70,8 +70,9 @@ class _Writer:
     textures: Textures | None
 
     def add_face(self, parent: Sdf.Path, face: FlatFace) -> None:
-        """A face by itself, in the frame of `parent`."""
-        mesh = self._define(parent, face.name, face)
+        """A face by itself, with its foot as its origin."""
+        mesh = self._define(parent, face.name, face.moved(-face.foot))
+        mesh.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*face.foot.tolist()))
         self._set_own(mesh, face)
         self._cover(mesh, face)
 
