@@ -1,6 +1,7 @@
-"""Open a STEP or DXF in FreeCAD: check_freecad.py FILE.step|FILE.dxf EXPECTATION.json [--gui]
+"""Open a STEP or DXF in FreeCAD: check_freecad.py FILE.step|FILE.dxf EXPECTATION.json [--gui] [--guide GUIDE.md]
 
 With --gui the window is loaded too, on no screen, and colours are looked at; they are no part of the model itself.
+With --guide the Python of the guide opens the file instead, in its window, and the names in the tree are looked at.
 """
 
 import argparse
@@ -13,11 +14,12 @@ from pathlib import Path
 from verdict import judge, passed
 
 INSIDE = Path(__file__).with_name("inside_freecad.py")
+BY_GUIDE = Path(__file__).with_name("guide_in_freecad.py")
 MOST_SECONDS = 280
 LAST_WORDS = 400  # characters of FreeCAD's own output to show where it said nothing else
 
 
-def report_of(path, expectation, gui, program="freecadcmd"):
+def report_of(path, expectation, gui, program="freecadcmd", guide=None):
     """What the checker says that runs inside FreeCAD, line by line."""
     with tempfile.TemporaryDirectory(prefix="freecad-") as folder:
         report = Path(folder) / "report.txt"
@@ -30,11 +32,13 @@ def report_of(path, expectation, gui, program="freecadcmd"):
             "CHECK_EXPECTATION": str(expectation.resolve()),
             "CHECK_REPORT": str(report),
             "CHECK_GUI": "1" if gui else "",
+            "CHECK_GUIDE": "" if guide is None else str(guide.resolve()),
             "PYTHONPATH": str(INSIDE.parent),
             "QT_QPA_PLATFORM": "offscreen",
             "QTWEBENGINE_DISABLE_SANDBOX": "1",
         }
-        command = [program, "-u", f"{folder}/user.cfg", "-s", f"{folder}/system.cfg", str(INSIDE)]
+        command = [program, "-u", f"{folder}/user.cfg", "-s", f"{folder}/system.cfg"]
+        command.append(str(INSIDE if guide is None else BY_GUIDE))
         try:
             ended = subprocess.run(
                 command,
@@ -69,8 +73,9 @@ def main():
     parser.add_argument("file", type=Path)
     parser.add_argument("expectation", type=Path)
     parser.add_argument("--gui", action="store_true")
+    parser.add_argument("--guide", type=Path)
     chosen = parser.parse_args()
-    report = report_of(chosen.file, chosen.expectation, chosen.gui)
+    report = report_of(chosen.file, chosen.expectation, chosen.gui, guide=chosen.guide)
     print("\n".join(report))
     return 0 if passed(report) else 1
 
