@@ -209,7 +209,7 @@ def _length(text: str) -> "Known":
 
     what, equals, length = text.rpartition("=")
     if not equals:
-        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 12=3.5 or 840,310:840,655=2.1")
+        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 840,310:840,655=2.1 or 45237=3.5")
     metres = positive(length)
     if what.isascii() and what.isdecimal() and len(what) < LONGEST_ID:
         return LineLength(int(what), metres)

@@ -76,7 +76,7 @@ def test_formats_lists_every_option_with_its_default(capsys):
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        (["--scale", "12"], "is no length; write it like 12=3.5"),
+        (["--scale", "12"], "is no length; write it like 840,310:840,655=2.1 or 45237=3.5"),
         (["--scale", "=3"], "'' is neither the id of a line nor two px"),
         (["--scale", "12="], "'' is not a number"),
         (["--scale", "12=0"], "0 is not a positive number"),
