@@ -106,7 +106,7 @@ def find_ground(scene: Scene) -> Plane:
     below = [plane for plane in scene.planes if plane.axis == 2 and plane.offset < 0 and own & set(plane.lines)]
     if not below:
         raise ScaleError(
-            "the largest group of lines has no horizontal plane below the camera that could be the ground; "
+            "component 0 has no horizontal plane below the camera that could be the ground; "
             "give a length with --scale instead"
         )
     ground = min(below, key=lambda plane: plane.offset)
@@ -138,7 +138,7 @@ def _line_length(scene: Scene, line: int) -> float:
     if component != 0:
         raise ScaleError(
             f"line {line} belongs to component {component}, whose own scale is a guess; "
-            "choose a line of component 0, the largest"
+            "choose a line of component 0, or make its group that one with --main U,V, a place on it in the photo"
         )
     start, end = scene.lines.ends[rows[0]]
     return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
@@ -192,7 +192,7 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     for number, word in enumerate(("first", "second")):
         if not hit[number]:
             raise ScaleError(
-                f"the {word} point lies on no face of the largest group of lines, and the two on none of its lines; "
+                f"the {word} point lies on no face of component 0, and the two on none of its lines; "
                 "choose two points on one line or in one plane, or give a line by its id"
             )
     common = sorted(hit[0] & hit[1])
