@@ -307,6 +307,27 @@ check_addons() {
     addon check_fault "wrong-confidence, macro" fault "$folder/fault/linecad.FCMacro" "${by_freecad[@]}"
 }
 
+# The Python that the guides show, in the programs that they are about. tests/linecad/cli/test_guides.py runs the rest.
+check_guides() {
+    local folder=$out/guides made=$out/guides/facade guide=docs/guide
+    rm -rf "$folder"
+    mkdir -p "$folder"
+    cp samples/courtyard.jpg "$made.jpg"
+    if ! "${linecad[@]}" convert "$made.jpg" -o "$made.json" -o "$made.glb" -o "$made.step" >"$log" 2>&1 ||
+        ! "$python" "$checkers/expectation.py" "$made.json" "$folder/expectation.json" >"$log" 2>&1; then
+        report_failure "guides: linecad convert"
+        return
+    fi
+    check "the guide's Python, FreeCAD" "${in_freecad[@]}" "$made.step" "$folder/expectation.json" \
+        --guide "$guide/freecad.md"
+    check "the guide's Python, Blender" blender -b --factory-startup --python-exit-code 3 \
+        --python "$checkers/guide_in_blender.py" -- "$guide/blender.md" "$made.glb" "$folder/expectation.json"
+    if [ -n "$bpy" ]; then
+        check "the guide's Python, bpy" "$bpy" "$checkers/guide_in_blender.py" "$guide/blender.md" "$made.glb" \
+            "$folder/expectation.json"
+    fi
+}
+
 shopt -s nullglob
 photos=("$@")
 if [ $# = 0 ]; then
@@ -319,6 +340,7 @@ check_metric "${photos[0]}"
 check_faults "${photos[0]}"
 check_turned
 check_addons
+check_guides
 
 echo "clients: $passed passed, $failed failed"
 [ "$failed" = 0 ] && [ "$passed" -gt 0 ]

@@ -21,7 +21,7 @@ from ezdxf.entities.dxfgfx import DXFGraphic
 from exporters.bands import BANDS
 from exporters.camera import principal_point
 from exporters.faces import FlatFace
-from exporters.model import LineGroup, Model, group_name
+from exporters.model import LineGroup, Model, group_name, in_component
 from exporters.triangulation import triangulate
 from linecad.directions import MAIN, axis_name, count_of
 from linecad.scene import DETAIL, OUTLINE, ROLES
@@ -97,8 +97,17 @@ def _add_layers(document: Drawing, model: Model) -> None:
         name = group_name(axis, is_boundary, role, band).upper()
         weight = _DETAIL_LINEWEIGHT if role == DETAIL else _LINEWEIGHT[is_boundary]
         document.layers.add(name, color=colour, lineweight=weight)
-    document.layers.add(_FACES, color=_FACE_COLOUR)
-    document.layers.add(_OUTLINES, color=_OUTLINE_COLOUR)
+    for group in model.groups:
+        if group.component:  # of component 0 every programs finds all layers, whether lines are on them or not
+            plain = document.layers.get(group_name(group.axis, group.is_boundary, group.role, group.band).upper())
+            document.layers.add(group.name.upper(), color=plain.color, lineweight=plain.dxf.lineweight)
+    for component in sorted({0, *(face.component for face in model.faces)}):
+        document.layers.add(_layer(_FACES, component), color=_FACE_COLOUR)
+        document.layers.add(_layer(_OUTLINES, component), color=_OUTLINE_COLOUR)
+
+
+def _layer(name: str, component: int) -> str:
+    return in_component(name, component).upper()
 
 
 def _add_lines(document: Drawing, group: LineGroup) -> None:
@@ -117,13 +126,17 @@ def _add_face(document: Drawing, face: FlatFace) -> None:
     outer_edges = _ring_edges(face)
     words = [(_STRING, word) for word in (face.name, face.kind, face.label)]
     for triangle in triangulate(face).tolist():
-        entity = space.add_3dface([corners[index] for index in triangle], dxfattribs={"layer": _FACES})
+        entity = space.add_3dface(
+            [corners[index] for index in triangle], dxfattribs={"layer": _layer(_FACES, face.component)}
+        )
         edges = zip(triangle, triangle[1:] + triangle[:1], strict=True)
         hidden = [flag for edge, flag in zip(edges, _HIDDEN_EDGE, strict=True) if frozenset(edge) not in outer_edges]
         entity.dxf.invisible_edges = sum(hidden)
         _describe(entity, "face", face.id, *words)
     for number, ring in enumerate(face.rings):
-        outline = space.add_polyline3d(ring.tolist(), close=True, dxfattribs={"layer": _OUTLINES})
+        outline = space.add_polyline3d(
+            ring.tolist(), close=True, dxfattribs={"layer": _layer(_OUTLINES, face.component)}
+        )
         _describe(outline, "face", face.id, (_INT16, number), *words)
 
 

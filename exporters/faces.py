@@ -60,6 +60,7 @@ class FlatFace:
     rings: tuple[Float, ...]  # outline first, then holes; each (V, 3) m, not closed
     hidden: tuple[Float, ...]  # each (H, 3) m, not closed: parts of it that a thing without a face hides in the photo
     opening: int | None  # id of the opening that it is the pane or a reveal of
+    component: int  # of the scene, where these are parted; else 0
 
     @property
     def name(self) -> str:
@@ -76,20 +77,28 @@ class FlatFace:
         """(V, 3) m, the points of all rings in their order."""
         return np.concatenate(self.rings)
 
+    @property
+    def foot(self) -> Float:
+        """(3,) m, where the face stands: the middle of the box around it, at its lowest."""
+        low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
+        return np.array([(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, low[2]])
+
     def moved(self, by: Float) -> "FlatFace":
         """The same face elsewhere; `by` is (3,) m."""
         rings, hidden = (tuple(ring + by for ring in each) for each in (self.rings, self.hidden))
         return replace(self, offset=self.offset + float(self.direction @ by), rings=rings, hidden=hidden)
 
 
-def build_faces(scene: Scene, frame: Frame) -> tuple[FlatFace, ...]:
-    """All faces of a scene, in ascending id."""
+def build_faces(scene: Scene, frame: Frame, by_component: bool = False) -> tuple[FlatFace, ...]:
+    """All faces of a scene, in ascending id; they tell their components where that is asked for."""
+    components = scene.components_of_faces if by_component else {}
     openings = {opening.id: opening for opening in scene.openings}
     things = _things(scene, openings)
     made = []
     for plane, face in scene.faces:
         opening = None if face.opening is None else openings[face.opening]
-        made.append(_flat_face(plane, face, opening, things[_key(face)], frame))
+        flat = _flat_face(plane, face, opening, things[_key(face)], frame)
+        made.append(replace(flat, component=components.get(face.id, 0)))
     return tuple(made)
 
 
@@ -135,6 +144,7 @@ def _flat_face(plane: Plane, face: Face, opening: Opening | None, thing: str, fr
         rings=rings,
         hidden=hidden,
         opening=face.opening,
+        component=0,
     )
 
 

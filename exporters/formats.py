@@ -64,11 +64,15 @@ _ROLES = Option(
     "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of openings, "
     "..._detail for bars, panes, joints and courses",
 )  # fmt: skip
+_COMPONENTS = Option(
+    "components", False, "layers and groups of lines and faces by the groups of lines that hang together: "
+    "..._component_1 and so on for all but component 0",
+)  # fmt: skip
 _ORIGIN = Option(
-    "origin", ORIGINS[0], "z = 0 is the ground, where the scale and the ground are known, or the camera is the origin",
+    "origin", ORIGINS[0], "z = 0 is the ground, where the scene has one, or the camera is the origin",
     words=ORIGINS,
 )  # fmt: skip
-MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN)
+MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN, _COMPONENTS)
 _INSTANCES = Option(
     "instances", False, "equal windows and doors as one shape placed many times, in GLB and USD with the texture of "
     "the one that the photo shows best, in STEP and USD without names by id",
@@ -76,6 +80,9 @@ _INSTANCES = Option(
 _VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
 _SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
 _TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
+
+_IDS = Option("ids", False, "the ids of lines on them in the picture, in place of the marks of crossings")
+_UP = Option("up", "y", "what is up in an OBJ: y as most programs take it, or z as FreeCAD does", words=("y", "z"))
 
 _ON = Option("textures", True, "the photo on the faces, where it is at hand")
 _SIZE = Option("texture-size", 4096, "the most texels a side of a picture of textures", least=256, most=16384)
@@ -166,7 +173,7 @@ FORMATS: dict[str, Format] = {
         "exporters.obj",
         "faces as triangles, and lines",
         "metres",
-        options=(*MODEL_OPTIONS, *TEXTURES),
+        options=(_UP, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES_AND_MATERIALS,
     ),
     ".ply": Format("exporters.mesh", "faces as triangles", "metres", options=(_ORIGIN,)),
@@ -184,6 +191,7 @@ FORMATS: dict[str, Format] = {
         "the photo with its lines, and three views of them in space",
         "pixels",
         shows_photo=True,
+        options=(_IDS,),
     ),
     ".elevation.svg": Format(
         "exporters.drawings.elevation",
@@ -295,8 +303,8 @@ def export(
     check_output(path)
     _check_installed(suffix_of(path), chosen)
     module = importlib.import_module(chosen.module)
-    by_band, by_role, origin = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
-    model = build_model(scene, by_band, by_role, origin)
+    by_band, by_role, origin, by_component = (arguments.pop(option.name, option.default) for option in MODEL_OPTIONS)
+    model = build_model(scene, by_band, by_role, origin, by_component)
     if TEXTURES[0] in chosen.options:
         on, size, fill = (arguments.pop(option.name) for option in TEXTURES)
         arguments["textures"] = _textures(scene, photo, size, fill) if on else None

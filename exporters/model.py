@@ -1,7 +1,7 @@
 """What every format writes of a scene: lines in groups by axis and kind, flat faces with holes, all in metres.
 
 The axes are the scene's: right-handed, z up. The origin is at the camera, so that every coordinate is small enough for
-the float32 of glTF and USD; or straight below it on the ground, where a length and the ground are known.
+the float32 of glTF and USD; or straight below it on the ground, where the scene has one.
 """
 
 from dataclasses import dataclass
@@ -29,7 +29,7 @@ ON_THE_GROUND, AT_THE_CAMERA = ORIGINS = ("ground", "camera")  # where the origi
 
 @dataclass(frozen=True, eq=False)
 class LineGroup:
-    """The lines, in ascending id, of one axis that are all boundaries, or all not, and may be of one role and band."""
+    """The lines, in ascending id, of an axis that are all boundaries or all not; maybe of one role, band, component."""
 
     axis: int  # number of a direction
     is_boundary: bool
@@ -39,11 +39,12 @@ class LineGroup:
     band: str  # one of BANDS; "" for lines of all bands, or where the scene does not tell
     probability: Float  # (N,) that the depth is right; (0,) where the scene does not tell
     roles: Text  # (N,) what each line is drawn for: one of ROLES
+    component: int  # of the scene; 0 also for lines of all components
 
     @property
     def name(self) -> str:
         """The group's name in every format, such as `lines_x_boundary` or `lines_x_boundary_detail_sure`."""
-        return group_name(self.axis, self.is_boundary, self.role, self.band)
+        return in_component(group_name(self.axis, self.is_boundary, self.role, self.band), self.component)
 
 
 @dataclass(frozen=True)
@@ -62,13 +63,18 @@ class Model:
     """The geometry of a scene as the formats write it."""
 
     scene: Scene
-    groups: tuple[LineGroup, ...]  # x boundary, x nonboundary, y ..., each by ROLES, then BANDS; none is empty
+    groups: tuple[LineGroup, ...]  # by component, x boundary, x nonboundary, y ..., by ROLES, then BANDS; none is empty
     faces: tuple[FlatFace, ...]  # in ascending id
     fittings: tuple[Fitting, ...]  # the same faces again, as far as they are of openings; in ascending id
     planes: tuple[FlatPlane, ...]  # all of the scene, also those without a face, in its order
     eye: Float  # (3,) m, where the camera stands
     photo: str  # name of the photo without its folder: one line of valid Unicode
     unit_note: str  # one ASCII phrase that says what a unit is
+
+    @property
+    def components(self) -> tuple[int, ...]:
+        """Those of the scene that have lines or faces here, ascending; 0 alone where they are not parted."""
+        return tuple(sorted({group.component for group in self.groups} | {face.component for face in self.faces}))
 
     @property
     def loose_faces(self) -> tuple[FlatFace, ...]:
@@ -96,20 +102,32 @@ def group_name(axis: int, is_boundary: bool, role: str, band: str) -> str:
     return "_".join(["lines", axis_name(axis), kind, *(word for word in (role, band) if word not in ("", ROLES[0]))])
 
 
-def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, origin: str = AT_THE_CAMERA) -> Model:
+def in_component(name: str, component: int) -> str:
+    """The name of what is of a component; that of component 0 is the plain one."""
+    return f"{name}_component_{component}" if component else name
+
+
+def build_model(
+    scene: Scene,
+    by_band: bool = False,
+    by_role: bool = False,
+    origin: str = AT_THE_CAMERA,
+    by_component: bool = False,
+) -> Model:
     """The groups and faces of a scene in metres; lines shorter than SHORTEST_LINE are left out.
 
     `by_role` gives the lines of each role a group of their own, `by_band` those of each band, where the scene tells
-    probabilities. `origin` is one of ORIGINS: the ground is z = 0 where the scene has it and its scale is known.
+    probabilities; `by_component` parts lines and faces by the components of the scene. `origin` is
+    one of ORIGINS: the ground is z = 0 where the scene has it.
     """
     ground = _ground_height(scene) if origin == ON_THE_GROUND else None
     eye = np.array([0.0, 0.0, 0.0 if ground is None else -ground])
     frame = Frame(metres_per_unit(scene), eye, directions_of(scene.turns), scene.turns)
-    faces = build_faces(scene, frame)
+    faces = build_faces(scene, frame, by_component)
     unit = FREE_UNIT if scene.metres_per_unit is None else KNOWN_UNIT
     return Model(
         scene=scene,
-        groups=_line_groups(scene, frame, bands_of(scene.lines) if by_band else None, by_role),
+        groups=_line_groups(scene, frame, bands_of(scene.lines) if by_band else None, by_role, by_component),
         faces=faces,
         fittings=build_fittings(scene.openings, faces),
         planes=tuple(
@@ -122,12 +140,12 @@ def build_model(scene: Scene, by_band: bool = False, by_role: bool = False, orig
 
 
 def _ground_height(scene: Scene) -> float | None:
-    """m from the camera up to the ground, so negative; None where the scene tells no scale or no ground below it.
+    """m from the camera up to the ground, so negative; None where the scene has no ground below it.
 
     Of several planes with faces of the ground the lowest counts, as where a camera's height is measured from.
     """
     ground = ground_of(scene.planes)
-    return None if ground is None or scene.metres_per_unit is None else ground.offset * scene.metres_per_unit
+    return None if ground is None else ground.offset * metres_per_unit(scene)
 
 
 def metres_per_unit(scene: Scene) -> float:
@@ -140,16 +158,21 @@ def photo_name(scene: Scene) -> str:
     return " ".join(Path(scene.photo).name.encode(errors="replace").decode().split())
 
 
-def _line_groups(scene: Scene, frame: Frame, bands: Text | None, by_role: bool) -> tuple[LineGroup, ...]:
+def _line_groups(
+    scene: Scene, frame: Frame, bands: Text | None, by_role: bool, by_component: bool
+) -> tuple[LineGroup, ...]:
     lines, directions = scene.lines, count_of(scene.turns)
     order = np.argsort(lines.id)
     ends = frame(lines.ends)
     long_enough = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) > SHORTEST_LINE
     probability = np.asarray(lines.probability)
     groups = []
+    component = lines.component if by_component else np.zeros(len(lines), np.int64)
     words = (ROLES if by_role else ("",), ("",) if bands is None else BANDS)
-    for axis, is_boundary, role, band in product(range(directions), (True, False), *words):
-        wanted = long_enough & (lines.axis == axis) & (lines.is_boundary == is_boundary)
+    for own, axis, is_boundary, role, band in product(
+        np.unique(component).tolist(), range(directions), (True, False), *words
+    ):
+        wanted = long_enough & (component == own) & (lines.axis == axis) & (lines.is_boundary == is_boundary)
         if by_role:
             wanted &= lines.role == role
         if bands is not None:
@@ -158,5 +181,7 @@ def _line_groups(scene: Scene, frame: Frame, bands: Text | None, by_role: bool) 
         if len(chosen):
             told = probability[chosen] if len(probability) else probability
             drawn_for = np.asarray(lines.role)[chosen]
-            groups.append(LineGroup(axis, is_boundary, role, lines.id[chosen], ends[chosen], band, told, drawn_for))
+            groups.append(
+                LineGroup(axis, is_boundary, role, lines.id[chosen], ends[chosen], band, told, drawn_for, own)
+            )
     return tuple(groups)

@@ -29,6 +29,11 @@ class Fitting:
     model: int  # id of the first opening that is equal to it, its own where none before it is
 
     @property
+    def component(self) -> int:
+        """Of the scene, where these are parted; else 0."""
+        return self.faces[0].component
+
+    @property
     def key(self) -> str:
         """Its label as an identifier, such as `window_12`."""
         return self.label.replace(" ", "_")

@@ -10,14 +10,13 @@ from exporters.options import Value
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import read_calibration
 from linecad.camera.photo import Photo
-from linecad.confidence import keep_probable
 from linecad.corrections.file import check_belongs, read_corrections
 from linecad.depth.for_photo import check_depth_options, open_depth_map
 from linecad.depth.read import check_depth_file
-from linecad.model.choice import Detail, keep_drawn
-from linecad.model.scale import Known, set_scale
+from linecad.errors import LinecadError, OutputError, UnwrittenError
+from linecad.model.wanted import Wanted
 from linecad.options import Options
-from linecad.outputs import write_outputs
+from linecad.outputs import export_command, keep_scene, write_outputs
 from linecad.progress import StageReport, silent
 from linecad.scene import Scene
 from solver.options import OnProgress
@@ -30,12 +29,10 @@ class Conversion:
     camera: Path | None = None  # the calibration of the photo; not together with `focal`
     focal: float | None = None  # px
     options: Options = field(default_factory=Options)
-    known: Known | None = None  # a length that sets the scale
     values: Mapping[str, Value] = field(default_factory=dict)  # options of formats, as linecad.outputs reads them
     corrections: Path | None = None  # a person's, of this one photo
-    confidence: float | None = None  # 0 to 1; lines whose depth is right with a smaller probability are left out
     depth: Path | None = None  # a depth map of this one photo
-    detail: Detail = "all"  # which lines are written
+    wanted: Wanted = field(default_factory=Wanted)  # what of the scene is written, and at which scale
 
     def checked(self, maps_come: bool = False) -> Self:
         """This conversion, once its files are known to be readable and its options to go together.
@@ -58,11 +55,10 @@ class Conversion:
         return open_photo(photo, self.camera, self.focal)
 
     def reconstruct(self, photo: Photo, on_progress: OnProgress = None, on_stage: StageReport = silent) -> Scene:
-        """The scene of the photo.
+        """The whole scene of the photo, of which `wanted` tells what is to be written.
 
-        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, DepthMapError
-        for a depth map that cannot be used, ScaleError for a length that the scene does not hold, or ConfidenceError
-        where no line is as sure as was asked for.
+        Raises ReconstructionError, SolverError, CorrectionsFileError for corrections of another photo, or DepthMapError
+        for a depth map that cannot be used.
         """
         corrections = None
         if self.corrections is not None:
@@ -72,22 +68,45 @@ class Conversion:
         if self.depth is not None:
             on_stage("reading the depth map")
             depth = open_depth_map(self.depth, photo, self.options)
-        scene = linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections, depth)
-        if self.known is not None:
-            scene = set_scale(scene, self.known)  # first, because the known line itself may be left out
-        if self.confidence is not None:
-            scene = keep_probable(scene, self.confidence)
-        return keep_drawn(scene, self.detail)
+        return linecad.pipeline.reconstruct(photo, self.options, on_progress, on_stage, corrections, depth)
 
     def write(
         self,
         scene: Scene,
         photo: Photo,
+        source: Path,
         outputs: Sequence[Path],
         on_stage: Callable[[str], None] | None = None,
-    ) -> None:
-        """Write a scene in the formats that the suffixes choose, each file whole or not at all. Raises OutputError."""
-        write_outputs(scene, photo.pixels, outputs, self.values, on_stage)
+    ) -> Scene:
+        """Write what is wanted of a scene, each file whole or not at all, and return it.
+
+        `source` is the file of the photo. Whatever cannot be done, the scene file is written where a disk takes it, so
+        that nothing has to be solved again. Raises OutputError, ScaleError or ConfidenceError, which tells the command
+        to go on with.
+        """
+        try:
+            wanted = self.wanted.of(scene)
+        except LinecadError as error:
+            raise self._kept(error, scene, source, outputs, outputs) from error
+        try:
+            write_outputs(wanted, photo.pixels, outputs, self.values, on_stage)
+        except UnwrittenError as error:
+            raise self._kept(error, wanted, source, outputs, error.unwritten) from error
+        return wanted
+
+    def _kept(
+        self, error: LinecadError, scene: Scene, source: Path, outputs: Sequence[Path], missing: Sequence[Path]
+    ) -> LinecadError:
+        """The same error, once the scene is kept, with how to go on to those of the outputs that are missing."""
+        try:
+            file = keep_scene(scene, outputs)
+        except OutputError as other:
+            return type(error)(f"{error}; the scene was not kept either: {other}")
+        more = [] if isinstance(error, UnwrittenError) else self.wanted.again(error)
+        if not self.wanted.is_whole:
+            missing = [path for path in missing if path != file]  # what holds all of the scene is not written over
+        command = export_command(file, source, more, missing, self.values)
+        return type(error)(f"{error}; the scene is kept in {file}, go on with: {command}")
 
 
 def reconstruct(

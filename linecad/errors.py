@@ -10,8 +10,10 @@ LinecadError
 │   └── CorrectionsFileError a corrections file that is malformed or belongs to another photo
 ├── OptionError        an option that does not exist, or a value that it does not take
 ├── ScaleError         a known length that the scene does not hold
+├── GroupError         a place in the photo at which the scene has nothing
 ├── ConfidenceError    a confidence that no line of the scene reaches, or of which it tells nothing
 ├── OutputError        a result that cannot be written: suffix, folder, disk
+│   └── UnwrittenError some of several results cannot be written, the others are
 ├── ReconstructionError the photo was read, but holds too little for a model
 ├── CorrectionError    an edit that names no line, or that cannot be done
 ├── EditorError        the page cannot be served
@@ -20,6 +22,9 @@ LinecadError
 
 The text of each is one line: what was found, and what to do about it.
 """
+
+from collections.abc import Sequence
+from pathlib import Path
 
 
 class LinecadError(Exception):
@@ -62,12 +67,25 @@ class ScaleError(LinecadError):
     """A known length was given that cannot be measured in the scene."""
 
 
+class GroupError(LinecadError):
+    """Nothing stands at a place in the photo that was to tell what the scene is about."""
+
+
 class ConfidenceError(LinecadError):
     """No line of the scene is as sure as was asked for, or the scene does not tell how sure its lines are."""
 
 
 class OutputError(LinecadError):
     """A result cannot be written."""
+
+
+class UnwrittenError(OutputError):
+    """Some of several results cannot be written; the others are."""
+
+    def __init__(self, text: str, unwritten: Sequence[Path] = ()) -> None:
+        """Where nothing else is said, which ones is not known."""
+        super().__init__(text)
+        self.unwritten = tuple(unwritten)
 
 
 class ReconstructionError(LinecadError):

@@ -1,8 +1,11 @@
 """A scene to files, each in the format that its suffix chooses, with the photo where a format shows it."""
 
+import os
+import shlex
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain, count
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,7 +15,7 @@ from numpy.typing import NDArray
 import exporters.formats
 from exporters.formats import SCENE_FILE, TEXTURES, UNDERLAY, Format, find_format, options_for
 from exporters.options import Value
-from linecad.errors import LinecadError, OutputError
+from linecad.errors import LinecadError, OutputError, UnwrittenError
 from linecad.io.files import check_output
 from linecad.io.scene_file import write_scene
 from linecad.scene import Scene
@@ -71,18 +74,54 @@ def write_outputs(
     on_stage: Callable[[str], None] | None = None,
     format_of: Callable[[Path], Format] = find_format,
 ) -> None:
-    """Write a scene, each file whole or not at all, in the format that `format_of` tells. Raises OutputError.
+    """Write a scene, each file whole or not at all: the scene file first, and what can be written beside what cannot.
 
     `pixels` (H, W, 3) RGB are those of its photo, for formats that show it; `values` are options of formats as
-    `format_values` reads them.
+    `format_values` reads them. Raises UnwrittenError, with the text of the first that failed.
     """
-    for path in outputs:
+    failed: dict[Path, OutputError] = {}
+    for path in sorted(outputs, key=lambda path: not _is_scene_file(path)):
         if on_stage is not None:
             on_stage(f"writing {path}")
-        if _is_scene_file(path):
-            write_scene(scene, path)
-        else:
-            exporters.formats.export(scene, path, pixels, values, format_of(path))
+        try:
+            if _is_scene_file(path):
+                write_scene(scene, path)
+            else:
+                exporters.formats.export(scene, path, pixels, values, format_of(path))
+        except OutputError as error:
+            failed[path] = error
+    if failed:
+        first = next(iter(failed.values()))
+        others = f" ({len(failed) - 1} more were not written)" if len(failed) > 1 else ""
+        raise UnwrittenError(f"{first}{others}", tuple(failed)) from first
+
+
+def keep_scene(scene: Scene, outputs: Sequence[Path]) -> Path:
+    """Write the scene file of a scene whose `outputs` could not all be written, and return its path.
+
+    It is the one among them, else it lies beside the first, under a name that no file has. Raises OutputError.
+    """
+    named = [path for path in outputs if _is_scene_file(path)]
+    path = named[0] if named else _free_name(outputs[0])
+    write_scene(scene, path)
+    return path
+
+
+def _free_name(output: Path) -> Path:
+    suffixes = chain([SCENE_FILE], (f".{number}{SCENE_FILE}" for number in count(2)))
+    return next(path for path in map(output.with_suffix, suffixes) if not os.path.lexists(path))
+
+
+def export_command(
+    scene_file: Path, photo: Path, more: Sequence[str], outputs: Sequence[Path], values: Mapping[str, Value]
+) -> str:
+    """The command that writes `outputs` of a scene file, with the options of their formats; `more` are arguments."""
+    beside = scene_file.parent / photo.name
+    given = [] if beside.exists() and beside.samefile(photo) else ["--photo", str(photo)]
+    keys = {option.key for path in outputs if not _is_scene_file(path) for option in find_format(path).options}
+    options = [f"--option {key}={_text(value)}" for key, value in values.items() if key in keys]
+    written = [word for path in outputs for word in ("-o", str(path))]
+    return " ".join([shlex.join(["linecad", "export", str(scene_file), *given]), *more, *options, shlex.join(written)])
 
 
 def pixels_for(

@@ -1,9 +1,12 @@
 """The faces of a GLB: a mesh a face, or one for all equal ones; the faces of an opening under a node that is its place.
 
+The origin of a face is its foot, so that programs turn and scale it there.
+
 Equal openings share the numbers of their corners in any case. They share meshes where these carry no picture: a mesh
 has one set of texture coordinates, so equal windows with a picture each need a mesh each.
 """
 
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +15,7 @@ from trimesh.visual import TextureVisuals
 from trimesh.visual.material import PBRMaterial
 
 from exporters.faces import FlatFace
-from exporters.model import FlatPlane, Model
+from exporters.model import FlatPlane, Model, in_component
 from exporters.openings import Fitting
 from exporters.textures.pages import Textures
 from exporters.triangulation import triangulate
@@ -36,7 +39,7 @@ class FaceMesh(NamedTuple):
 
 def meshes_of(model: Model, textures: Textures | None, instances: bool) -> dict[str, FaceMesh]:
     """The mesh of every face by the name of the face; equal faces have the same one where they can share it."""
-    meshes = {face.name: FaceMesh(face.name, face.label, face, face) for face in model.loose_faces}
+    meshes = {face.name: FaceMesh(face.name, face.label, face.moved(-face.foot), face) for face in model.loose_faces}
     for equal in model.equal_fittings:
         for number, local in enumerate(equal[0].local_faces):
             faces = [fitting.faces[number] for fitting in equal]
@@ -49,21 +52,38 @@ def meshes_of(model: Model, textures: Textures | None, instances: bool) -> dict[
     return meshes
 
 
+def add_parents(graph: trimesh.Scene, root: str, name: str, components: Iterable[int]) -> None:
+    """Add the node of what is of component 0 below `root`, and in it one for each of the others."""
+    graph.graph.update(frame_from=root, frame_to=name)
+    for component in sorted({*components} - {0}):
+        graph.graph.update(frame_from=name, frame_to=in_component(name, component))
+
+
 def add_faces(
     graph: trimesh.Scene, parent: str, model: Model, meshes: dict[str, FaceMesh], textures: Textures | None
 ) -> None:
-    """Add the nodes of all faces, and those of openings with the faces of each, below the node `parent`."""
+    """Add the nodes of all faces and openings below `parent`, or below the node of their component in it."""
     for mesh in dict.fromkeys(meshes.values()):
         coordinates = None if textures is None else textures.coordinates(mesh.shown, model.eye)
         graph.geometry[mesh.name] = _trimesh(mesh.face, coordinates)
     for face in model.loose_faces:
-        graph.graph.update(frame_from=parent, frame_to=face.name, geometry=meshes[face.name].name)
+        graph.graph.update(
+            frame_from=in_component(parent, face.component), frame_to=face.name, matrix=_pose(face.foot),
+            geometry=meshes[face.name].name,
+        )  # fmt: skip
     for fitting in model.fittings:
-        pose = np.eye(4)
-        pose[:3, 3] = Y_UP @ fitting.place
-        graph.graph.update(frame_from=parent, frame_to=fitting.label, matrix=pose)
+        graph.graph.update(
+            frame_from=in_component(parent, fitting.component), frame_to=fitting.label, matrix=_pose(fitting.place)
+        )
         for face in fitting.faces:
             graph.graph.update(frame_from=fitting.label, frame_to=face.name, geometry=meshes[face.name].name)
+
+
+def _pose(place: Float) -> Float:
+    """(4, 4) where a node stands in its parent, of a place in the scene."""
+    pose = np.eye(4)
+    pose[:3, 3] = Y_UP @ place
+    return pose
 
 
 def _trimesh(face: FlatFace, coordinates: Float | None) -> trimesh.Trimesh:
@@ -83,7 +103,8 @@ def describe_faces(tree: _Tree, model: Model, meshes: dict[str, FaceMesh]) -> No
         mesh["name"] = labels.get(mesh["name"], mesh["name"])
     told = {face.name: _told_of_face(face) for face in model.faces}
     told |= {fitting.label: _told_of_fitting(fitting) for fitting in model.fittings}
-    places = {fitting.label: fitting.place for fitting in model.fittings}
+    places = {face.name: face.foot for face in model.loose_faces}
+    places |= {fitting.label: fitting.place for fitting in model.fittings}
     for node in tree["nodes"]:
         if node["name"] in told:
             node["extras"] = told[node["name"]]

@@ -28,10 +28,10 @@ from trimesh.path import Path3D
 from trimesh.path.entities import Line
 
 from exporters.camera import camera_to_world, clipping_range, line_width, padded_frame, principal_point
-from exporters.gltf.faces import Y_UP, add_faces, describe_faces, meshes_of, tilted
+from exporters.gltf.faces import Y_UP, add_faces, add_parents, describe_faces, meshes_of, tilted
 from exporters.gltf.materials import add_pictures, set_materials
 from exporters.gltf.tubes import build_tubes
-from exporters.model import LineGroup, Model
+from exporters.model import LineGroup, Model, in_component
 from exporters.textures.pages import Textures
 from linecad.directions import axis_name
 
@@ -66,7 +66,7 @@ def write(
 
     graph = _build_scene(model, tubes)
     if model.faces:
-        graph.graph.update(frame_from=_ROOT, frame_to=_FACES)
+        add_parents(graph, _ROOT, _FACES, [face.component for face in model.faces])
         add_faces(graph, _FACES, model, meshes, textures)
     path.write_bytes(
         export_glb(graph, include_normals=True, tree_postprocessor=complete, buffer_postprocessor=add_to_buffer)
@@ -78,11 +78,13 @@ def _build_scene(model: Model, tubes: bool) -> trimesh.Scene:
     graph = trimesh.Scene(base_frame="world")
     graph.graph.update(frame_from="world", frame_to=_ROOT)
     if model.groups:
-        graph.graph.update(frame_from=_ROOT, frame_to=_LINES)
+        add_parents(graph, _ROOT, _LINES, [group.component for group in model.groups])
     for group in model.groups:
         width = line_width(model, group.is_boundary)
         lines = _tubes(group, width) if tubes else _path(group)
-        graph.add_geometry(lines, node_name=group.name, geom_name=group.name, parent_node_name=_LINES)
+        graph.add_geometry(
+            lines, node_name=group.name, geom_name=group.name, parent_node_name=in_component(_LINES, group.component)
+        )
     return graph
 
 

@@ -14,6 +14,7 @@ from exporters.colours import line_colour
 from exporters.model import Model, photo_name
 from exporters.picture.canvas import Canvas, drawable, text_width
 from exporters.picture.faces import OPACITY, draw_faces, draw_line, words_of
+from exporters.picture.ids import draw_ids
 from exporters.picture.views import VIEWS, draw_view
 from linecad.arrays import Float
 from linecad.directions import MAIN, axis_name, count_of
@@ -51,17 +52,20 @@ class _Box(NamedTuple):
     height: int
 
 
-def write(model: Model, path: Path, photo: NDArray[np.uint8] | None) -> None:
-    """Write the picture to `path`; OSError where that fails. `photo` is RGB, of the size of the camera, or None."""
+def write(model: Model, path: Path, photo: NDArray[np.uint8] | None, ids: bool = False) -> None:
+    """Write the picture to `path`; OSError where that fails. `photo` is RGB, of the size of the camera, or None.
+
+    With `ids` lines have their ids written onto them in place of the marks of their crossings.
+    """
     scene = model.scene
     top = _TOP if scene.depth_map is None else _TOP + _ROW
     shape, views, height = _layout(scene.camera.width / scene.camera.height, top)
-    legend = _legend(words_of(scene.lines)[1], count_of(scene.turns))
+    legend = _legend(words_of(scene.lines)[1], count_of(scene.turns), marks=not ids)
     canvas = Canvas(_WIDTH, height + _ROW * (len(legend) - 1), _PAPER)
-    _draw_title(canvas, scene)
+    named = _draw_photo(canvas.window(*shape), scene, photo, ids)
+    _draw_title(canvas, scene, f"ids of {named} of {_count(len(scene.lines), 'line')}" if ids else "")
     if scene.depth_map is not None:
         _draw_depth_map(canvas, scene.depth_map, scene.lines)
-    _draw_photo(canvas.window(*shape), scene, photo)
     for box, (name, right, up) in zip(views, VIEWS, strict=True):
         draw_view(canvas.window(*box), scene, name, right, up)
     _draw_legend(canvas, legend)
@@ -85,7 +89,8 @@ def _layout(aspect: float, top: int) -> tuple[_Box, list[_Box], int]:
     return photo, views, top + max(photo.height, 3 * height + 2 * _GAP) + 96
 
 
-def _draw_title(canvas: Canvas, scene: Scene) -> None:
+def _draw_title(canvas: Canvas, scene: Scene, more: str = "") -> None:
+    """What the picture shows, and `more` of it where that is not empty."""
     lines, real = scene.lines, int(scene.intersections.real.sum())
     title = (
         f"{drawable(photo_name(scene))}: {_count(len(lines), 'line')} "
@@ -103,7 +108,7 @@ def _draw_title(canvas: Canvas, scene: Scene) -> None:
         f"{solve.solver}, {solve.formulation}: {solve.status}, gap {share}",
         f"focal length {scene.camera.focal:.0f} px ({scene.camera.source})",
     ]
-    facts += _sureness(lines)
+    facts += [*_sureness(lines), *([more] if more else [])]
     _draw_facts(canvas, _MARGIN, _MARGIN + 88, facts)
 
 
@@ -142,7 +147,8 @@ def _count(number: int, one: str, many: str = "") -> str:
     return f"{number} {one if number == 1 else many or one + 's'}"
 
 
-def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) -> None:
+def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None, ids: bool = False) -> int:
+    """Draw the photo with the scene on it, and return how many lines have their ids there."""
     if photo is None:
         panel.fill(_NO_PHOTO)
     else:
@@ -155,9 +161,12 @@ def _draw_photo(panel: Canvas, scene: Scene, photo: NDArray[np.uint8] | None) ->
 
     draw_faces(panel, scene, scale)
     _draw_segments(panel, scene, shown(scene.lines.segment))
-    _draw_crossings(panel, scene, shown(scene.intersections.pixel))
     if photo is None:
         panel.text(panel.width / 2, 24, "photo not given", _TEXT, _QUIET, "ma")
+    if ids:
+        return draw_ids(panel, scene, shown(scene.lines.segment))
+    _draw_crossings(panel, scene, shown(scene.intersections.pixel))
+    return 0
 
 
 def _draw_segments(panel: Canvas, scene: Scene, ends: Float) -> None:
@@ -214,11 +223,11 @@ class _Entry:
         return self.indent + text_width(self.label, _TEXT)
 
 
-def _legend(words: Sequence[str], directions: int) -> list[list[_Entry]]:
+def _legend(words: Sequence[str], directions: int, marks: bool = True) -> list[list[_Entry]]:
     """The entries of the legend, row by row, so that each row fits the picture."""
     rows: list[list[_Entry]] = [[]]
     left = float(_MARGIN)
-    for entry in _entries(words, directions):
+    for entry in _entries(words, directions, marks):
         if rows[-1] and left + entry.width > _WIDTH - _MARGIN:
             rows.append([])
             left = float(_MARGIN)
@@ -227,7 +236,9 @@ def _legend(words: Sequence[str], directions: int) -> list[list[_Entry]]:
     return rows
 
 
-def _entries(words: Sequence[str], directions: int) -> list[_Entry]:
+def _entries(words: Sequence[str], directions: int, marks: bool) -> list[_Entry]:
+    """The legend of lines, of the marks of crossings where these are drawn, and of how sure depths are."""
+
     def line(axis: int, length: int, is_boundary: bool) -> Callable[[Canvas, float, float], None]:
         colour, width = line_colour(axis, True), _LINE_WIDTH[is_boundary]
         return lambda canvas, x, y: canvas.line((x, y), (x + length, y), colour, width)
@@ -239,10 +250,11 @@ def _entries(words: Sequence[str], directions: int) -> list[_Entry]:
     ]
     # Short, for there may be many.
     entries += [_Entry(axis_name(axis), 28, 20, line(axis, 20, True)) for axis in range(MAIN, directions)]
-    entries += [
+    crossings = [
         _Entry("real crossing", 26, _APART, lambda canvas, x, y: _draw_real(canvas, [x + 8, y], _MARK_RADIUS)),
         _Entry("fake crossing", 26, _APART, lambda canvas, x, y: _draw_fake(canvas, [x + 8, y], _MARK_RADIUS)),
     ]
+    entries += crossings if marks else []
     for word in words:
         entries.append(_Entry(_MEANING.get(word, word), 70 if word in LEAST else 46, _APART, partial(_draw_word, word)))
     return entries

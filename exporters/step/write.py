@@ -44,7 +44,7 @@ from OCP.XSControl import XSControl_WorkSession
 
 from exporters.colours import FACE, RGB, face_colour, line_colour
 from exporters.faces import FlatFace
-from exporters.model import LineGroup, Model
+from exporters.model import LineGroup, Model, in_component
 from exporters.openings import Fitting
 from exporters.step.canonical import canonical
 from exporters.triangulation import checked_polygon
@@ -122,25 +122,37 @@ def _build_document(model: Model, sewn: bool, instances: bool) -> TDocStd_Docume
     assembly = _Assembly()
     root = assembly.add_assembly(None, "linecad")
     if model.groups:
-        lines = assembly.add_assembly(root, "lines")
+        lines = _add_parents(assembly, root, "lines", [group.component for group in model.groups])
         for group in model.groups:
-            _add_lines(assembly, lines, group)
+            _add_lines(assembly, lines[group.component], group)
+    components = [face.component for face in model.faces]
     if model.faces and sewn:
-        assembly.paint(assembly.add_part(root, "faces", _sewn(map(_face_shape, model.faces))), FACE, _SURFACE)
+        for component in sorted(set(components)):
+            shapes = (_face_shape(face) for face in model.faces if face.component == component)
+            part = assembly.add_part(root, in_component("faces", component), _sewn(shapes))
+            assembly.paint(part, FACE, _SURFACE)
     elif model.faces:
-        faces = assembly.add_assembly(root, "faces")
+        faces = _add_parents(assembly, root, "faces", components)
         for face in model.loose_faces:
-            _add_face(assembly, faces, face, face.name)
+            _add_face(assembly, faces[face.component], face, face.name)
         for equal in model.equal_fittings:
             if instances and len(equal) > 1:
                 _add_equal(assembly, faces, equal)
             else:
                 for fitting in equal:
-                    _add_fitting(assembly, faces, fitting)
+                    _add_fitting(assembly, faces[fitting.component], fitting)
     # In a compound, because OCCT loses the name of a bare vertex.
     eye = gp_Pnt(*(model.eye * _MILLIMETRES).tolist())
     assembly.add_part(root, "camera", _compound([BRepBuilderAPI_MakeVertex(eye).Vertex()]))
     return assembly.finish()
+
+
+def _add_parents(assembly: _Assembly, root: TDF_Label, name: str, components: Iterable[int]) -> dict[int, TDF_Label]:
+    """An assembly for component 0, and in it one for each of the others."""
+    parents = {0: assembly.add_assembly(root, name)}
+    for component in sorted({*components} - {0}):
+        parents[component] = assembly.add_assembly(parents[0], in_component(name, component))
+    return parents
 
 
 def _add_face(assembly: _Assembly, parent: TDF_Label | None, face: FlatFace, name: str) -> TDF_Label:
@@ -159,7 +171,7 @@ def _add_fitting(assembly: _Assembly, parent: TDF_Label, fitting: Fitting) -> No
         _add_face(assembly, opening, face, face.name)
 
 
-def _add_equal(assembly: _Assembly, parent: TDF_Label, equal: tuple[Fitting, ...]) -> None:
+def _add_equal(assembly: _Assembly, parents: dict[int, TDF_Label], equal: tuple[Fitting, ...]) -> None:
     """Equal openings as one assembly in several places, or as one part where they are panes alone."""
     first, name = equal[0], f"{equal[0].kind} shape {equal[0].shape}"
     faces = first.local_faces
@@ -170,7 +182,7 @@ def _add_equal(assembly: _Assembly, parent: TDF_Label, equal: tuple[Fitting, ...
         for number, face in enumerate(faces):
             _add_face(assembly, shape, face, f"{face.kind} {number}")
     for fitting in equal:
-        assembly.place(parent, shape, fitting.label, fitting.place)
+        assembly.place(parents[fitting.component], shape, fitting.label, fitting.place)
 
 
 def _add_lines(assembly: _Assembly, parent: TDF_Label, group: LineGroup) -> None:

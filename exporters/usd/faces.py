@@ -49,7 +49,7 @@ def add_faces(stage: Usd.Stage, places: Places, model: Model, textures: Textures
     """Add all faces; their materials must be there."""
     writer = _Writer(stage, places, model, textures)
     for face in model.loose_faces:
-        writer.add_face(places.faces, face)
+        writer.add_face(within(places.faces, face.component), face)
     if any(len(equal) > 1 for equal in model.equal_fittings):
         stage.CreateClassPrim(places.shapes)
     shape_of: dict[int, Sdf.Path] = {}
@@ -70,8 +70,9 @@ class _Writer:
     textures: Textures | None
 
     def add_face(self, parent: Sdf.Path, face: FlatFace) -> None:
-        """A face by itself, in the frame of `parent`."""
-        mesh = self._define(parent, face.name, face)
+        """A face by itself, with its foot as its origin."""
+        mesh = self._define(parent, face.name, face.moved(-face.foot))
+        mesh.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*face.foot.tolist()))
         self._set_own(mesh, face)
         self._cover(mesh, face)
 
@@ -86,7 +87,7 @@ class _Writer:
 
     def add_fitting(self, fitting: Fitting, shape: Sdf.Path | None, instances: bool) -> None:
         """An opening at its place, by its shape where it has one."""
-        path = self.places.faces.AppendChild(fitting.key)
+        path = within(self.places.faces, fitting.component).AppendChild(fitting.key)
         place = UsdGeom.Xform.Define(self.stage, path)
         place.AddTranslateOp(UsdGeom.XformOp.PrecisionDouble).Set(Gf.Vec3d(*fitting.place.tolist()))
         prim = place.GetPrim()
@@ -149,6 +150,11 @@ class _Writer:
             set_coordinates(mesh, self.textures.coordinates(face, self.model.eye))
             name = _photo(self.textures.page(face))
         bind(self.stage, mesh.GetPrim(), self.places.materials.AppendChild(name))
+
+
+def within(path: Sdf.Path, component: int) -> Sdf.Path:
+    """Where below `path` what is of a component stands: that of component 0 right below it."""
+    return path.AppendChild(f"component_{component}") if component else path
 
 
 def _part(number: int) -> str:

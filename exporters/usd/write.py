@@ -19,7 +19,7 @@ from exporters.colours import line_colour, linear
 from exporters.model import LineGroup, Model
 from exporters.textures.pages import Textures
 from exporters.usd.attributes import set_display_colour, set_extent, set_own
-from exporters.usd.faces import Places, add_face_materials, add_faces
+from exporters.usd.faces import Places, add_face_materials, add_faces, within
 from exporters.usd.materials import add_material, bind
 from linecad.directions import axis_name
 from linecad.io.files import UNFINISHED
@@ -95,6 +95,9 @@ def _build_stage(model: Model, textures: Textures | None, folder: str, instances
     Usd.ModelAPI(root.GetPrim()).SetKind(Kind.Tokens.component)
     for path in (_LINES, _FACES, _MATERIALS):
         UsdGeom.Scope.Define(stage, path)
+    for path, things in ((_LINES, model.groups), (_FACES, model.faces)):
+        for component in sorted({thing.component for thing in things} - {0}):
+            UsdGeom.Scope.Define(stage, within(path, component))
     for group in model.groups:
         _add_lines(stage, group, line_width(model, group.is_boundary))
     places = Places(_FACES, _SHAPES, _MATERIALS)
@@ -110,7 +113,7 @@ def _build_stage(model: Model, textures: Textures | None, folder: str, instances
 
 
 def _add_lines(stage: Usd.Stage, group: LineGroup, width: float) -> None:
-    curves = UsdGeom.BasisCurves.Define(stage, _LINES.AppendChild(group.name))
+    curves = UsdGeom.BasisCurves.Define(stage, within(_LINES, group.component).AppendChild(group.name))
     curves.CreateTypeAttr(UsdGeom.Tokens.linear)
     curves.CreateWrapAttr(UsdGeom.Tokens.nonperiodic)
     curves.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(group.ends.reshape(-1, 3).astype(np.float32)))

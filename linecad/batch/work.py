@@ -5,11 +5,13 @@ import math
 import traceback
 from pathlib import Path
 
+from exporters.formats import SCENE_FILE
 from linecad.batch.job import Figures, Job, Outcome
 from linecad.batch.record import options_hash
 from linecad.batch.thumbnail import write_thumbnail
 from linecad.camera.photo import Photo
 from linecad.errors import InputError, LinecadError, PhotoError
+from linecad.outputs import write_outputs
 from linecad.scene import Scene
 
 OUT_OF_MEMORY = ("std::bad_alloc", "Insufficient memory")  # as OpenCV says it, from C++ and from its own allocator
@@ -50,9 +52,22 @@ def _do(job: Job) -> Outcome:
     except LinecadError as error:
         _write_thumbnail(job, photo, None)
         return Outcome("failed", str(error), files=_sizes(job, [job.thumbnail]))
-    job.conversion.write(scene, photo, job.outputs)
+    try:
+        wanted = job.conversion.wanted.of(scene)
+    except LinecadError as error:
+        return _kept(job, photo, scene, error)
+    write_outputs(wanted, photo.pixels, job.outputs, job.conversion.values)
+    _write_thumbnail(job, photo, wanted)
+    return Outcome("done", figures=_figures(wanted), files=_sizes(job, job.made()))
+
+
+def _kept(job: Job, photo: Photo, scene: Scene, error: LinecadError) -> Outcome:
+    """What was wanted of a scene is not in it: its file, if the batch makes one, holds all of it."""
+    files = [path for path in job.outputs if path.suffix == SCENE_FILE]
+    write_outputs(scene, photo.pixels, files, {})
     _write_thumbnail(job, photo, scene)
-    return Outcome("done", figures=_figures(scene), files=_sizes(job, job.made()))
+    told = f"; the whole scene is kept in {files[0].name}, for linecad export" if files else ""
+    return Outcome("failed", f"{error}{told}", files=_sizes(job, [*files, job.thumbnail]))
 
 
 def _write_thumbnail(job: Job, photo: Photo, scene: Scene | None) -> None:

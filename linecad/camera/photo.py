@@ -122,7 +122,10 @@ def read_photo_of(path: Path, camera: Camera) -> Photo:
             f"{', '.join(map(str, DISTORTION_LENGTHS))}; make the scene again, or give the calibration with --camera"
         )
     decoded = decode_image(path)
-    calibration = Calibration(camera.width, camera.height, camera.matrix, camera.distortion)
+    matrix = camera.matrix.copy()
+    if camera.taken_fy is not None:
+        matrix[1, 1] = camera.taken_fy
+    calibration = Calibration(camera.width, camera.height, matrix, camera.distortion)
     _check_belongs(calibration, "the scene", decoded, f"{path}")
     return replace(_calibrated(path.name, decoded, calibration, "the scene", "as in the scene"), camera=camera)
 
@@ -178,6 +181,7 @@ def _calibrated(name: str, decoded: Decoded, calibration: Calibration, camera_na
         "file",
         calibration.distortion,
         not calibration.has_square_pixels,
+        None if calibration.matrix[1, 1] == calibration.matrix[0, 0] else float(calibration.matrix[1, 1]),
     )
     undistortion = None if calibration.is_pinhole else calibration
     return Photo(name, pixels, camera, tuple(notes), undistortion=undistortion)

@@ -21,13 +21,14 @@ def find_beside(photo: str, scene_file: Path) -> Path | None:
 def reread_photo(path: Path, name: str, camera: Camera, camera_file: Path | None = None) -> Photo:
     """The photo of a scene, which calls it `name`, with the pixels of the scene's `camera`.
 
-    What the photo's own lines told of its distortion is in the camera. What a camera file told is read from
-    `camera_file` again. Raises PhotoError or CameraError where file or calibration are missing, or not the scene's.
+    The camera tells how the photo was straightened; where `camera_file` is given, it must tell the same. Scenes of
+    earlier versions do not tell fy of pixels that were not square, so that they need it. Raises PhotoError or
+    CameraError where file or calibration are missing, or not the scene's.
     """
-    if camera_file is None and camera.distortion and camera.source != "file":
-        return read_photo_of(path, camera)
-    if camera_file is None and (camera.distortion or camera.is_resampled):
+    if camera_file is None and camera.is_resampled and camera.taken_fy is None:
         raise CameraError(f"{name} was straightened by its calibration; give that with --camera")
+    if camera_file is None and (camera.distortion or camera.taken_fy is not None):
+        return read_photo_of(path, camera)
     photo = read_photo(path, camera_file, None if camera_file else camera.focal)
     check_size(photo, path, camera)
     if photo.camera is not None and camera_file is not None:

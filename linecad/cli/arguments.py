@@ -11,14 +11,16 @@ if TYPE_CHECKING:
 
     from exporters.options import Value
     from linecad.model.scale import Known
+    from linecad.model.wanted import Wanted
     from linecad.options import Options
 
     Commands: TypeAlias = argparse._SubParsersAction["Parser"]
 
+GROUPS = ("main", "all")  # as linecad.model.groups has them, which loads NumPy
 DETAILS = ("none", "openings", "all")  # as linecad.model.choice has them, which loads NumPy
 LONGEST_ID = 17  # digits; ids are below 2^53
 LARGEST_PIXEL = 1e6
-_LENGTH = "a known length: of a line by its id in the scene file, or U,V:U,V=METRES between two px of the photo"
+_LENGTH = "a known length: between two px of the photo, U,V:U,V=METRES, or of a line by its id, LINE=METRES"
 
 
 class Parser(argparse.ArgumentParser):
@@ -65,7 +67,7 @@ def add_reconstruction(parser: argparse.ArgumentParser, options: str) -> None:
     """How a photo is reconstructed; `options` says whose keys --option takes."""
     parser.add_argument("--fast", action="store_true", help="a robust fit in tenths of a second, nothing proven")
     parser.add_argument(
-        "--time-limit", type=positive, metavar="S", help="seconds for the solver (none; formulation gain 10, paper 60)"
+        "--time-limit", type=positive, metavar="S", help="seconds for the solver (none; gain 10, paper 60)"
     )
     add_option(parser, options)
 
@@ -81,14 +83,14 @@ def add_option(parser: argparse.ArgumentParser, options: str) -> None:
 def add_scale(parser: argparse.ArgumentParser) -> None:
     """A known length."""
     scale = parser.add_mutually_exclusive_group()
-    scale.add_argument("--scale", type=_length, dest="known", metavar="LINE=METRES", help=_LENGTH)
+    scale.add_argument("--scale", type=_length, dest="known", metavar="WHAT=METRES", help=_LENGTH)
     add_camera_height(scale)
 
 
 def add_length(parser: argparse.ArgumentParser) -> None:
     """A known length, where --scale is the scale of a drawing."""
     length = parser.add_mutually_exclusive_group()
-    length.add_argument("--length", type=_length, dest="known", metavar="LINE=METRES", help=_LENGTH)
+    length.add_argument("--length", type=_length, dest="known", metavar="WHAT=METRES", help=_LENGTH)
     add_camera_height(length)
 
 
@@ -108,6 +110,22 @@ def add_confidence(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
 
 
+def add_groups(parser: argparse.ArgumentParser) -> None:
+    """Which groups of lines are written."""
+    parser.add_argument(
+        "--groups", choices=GROUPS, default="all", metavar="WHICH",
+        help="of lines: main (component 0) or all (all)",
+    )  # fmt: skip
+
+
+def add_main(parser: argparse.ArgumentParser) -> None:
+    """What the scene is about."""
+    parser.add_argument(
+        "--main", type=_place, metavar="U,V",
+        help="a place in the photo, px, that component 0 is at",
+    )  # fmt: skip
+
+
 def add_detail(parser: argparse.ArgumentParser) -> None:
     """Which lines are written."""
     parser.add_argument(
@@ -121,6 +139,14 @@ def add_loudness(parser: argparse.ArgumentParser) -> None:
     loudness = parser.add_mutually_exclusive_group()
     loudness.add_argument("--quiet", action="store_true", help="no progress")
     loudness.add_argument("--verbose", action="store_true", help="the time of every stage")
+
+
+def wanted_of(parsed: argparse.Namespace) -> "Wanted":
+    """What of a scene is to be written, and at which scale."""
+    from linecad.model.wanted import Wanted
+
+    main = getattr(parsed, "main", None)  # a batch has none: photos show what they show at other places
+    return Wanted(main, parsed.known, parsed.groups, parsed.confidence, parsed.detail)
 
 
 def reconstruction_of(parsed: argparse.Namespace, texts: "Iterable[str]") -> "Options":
@@ -195,7 +221,7 @@ def _length(text: str) -> "Known":
 
     what, equals, length = text.rpartition("=")
     if not equals:
-        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 12=3.5 or 840,310:840,655=2.1")
+        raise argparse.ArgumentTypeError(f"{text!r} is no length; write it like 840,310:840,655=2.1 or 45237=3.5")
     metres = positive(length)
     if what.isascii() and what.isdecimal() and len(what) < LONGEST_ID:
         return LineLength(int(what), metres)
@@ -204,6 +230,14 @@ def _length(text: str) -> "Known":
         raise argparse.ArgumentTypeError(f"{what!r} is neither the id of a line nor two px like 840,310:840,655")
     a, b, c, d = map(_pixel, numbers)
     return PointDistance(((a, b), (c, d)), metres)
+
+
+def _place(text: str) -> tuple[float, float]:
+    numbers = text.split(",")
+    if len(numbers) != 2:
+        raise argparse.ArgumentTypeError(f"{text!r} is no place in a photo; write it like 840,310")
+    u, v = map(_pixel, numbers)
+    return u, v
 
 
 def _pixel(text: str) -> float:

@@ -11,11 +11,13 @@ from linecad.cli.arguments import (
     add_confidence,
     add_depth_maps,
     add_detail,
+    add_groups,
     add_loudness,
     add_reconstruction,
     count,
     options_of,
     positive,
+    wanted_of,
 )
 from linecad.cli.former import add_former
 from linecad.cli.progress import ProgressDisplay
@@ -47,6 +49,7 @@ def add_to(commands: "Commands") -> None:
     add_camera_height(command)
     add_confidence(command)
     add_detail(command)
+    add_groups(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)
@@ -76,9 +79,7 @@ def run(parsed: argparse.Namespace) -> int:
 
     means = Means(parsed.workers, parsed.scheduler, parsed.shared_files, parsed.photo_limit, parsed.memory_limit)
     options, values = options_of(parsed, [Path(f"photo{suffix}") for suffix in parsed.format])
-    conversion = Conversion(
-        parsed.camera, parsed.focal, options, parsed.known, values, confidence=parsed.confidence, detail=parsed.detail
-    )
+    conversion = Conversion(parsed.camera, parsed.focal, options, values, wanted=wanted_of(parsed))
     plan, workers = make_plan(parsed.photos, parsed.output, parsed.format, conversion, means, parsed.depth_maps)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         where = f"with {workers} at a time" if workers else f"on {parsed.scheduler}"

@@ -10,11 +10,14 @@ from linecad.cli.arguments import (
     add_confidence,
     add_depth,
     add_detail,
+    add_groups,
     add_loudness,
+    add_main,
     add_outputs,
     add_reconstruction,
     add_scale,
     options_of,
+    wanted_of,
 )
 from linecad.cli.checks import check_outputs, check_some
 from linecad.cli.former import add_former
@@ -44,6 +47,8 @@ def add_to(commands: "Commands") -> None:
     add_scale(command)
     add_confidence(command)
     add_detail(command)
+    add_groups(command)
+    add_main(command)
     add_reconstruction(command, "any other option, of the reconstruction or a format")
     add_loudness(command)
     add_former(command)
@@ -57,14 +62,13 @@ def run(parsed: argparse.Namespace) -> int:
     from linecad.convert import Conversion
 
     conversion = Conversion(
-        parsed.camera, parsed.focal, options, parsed.known, values, parsed.corrections, parsed.confidence, parsed.depth,
-        parsed.detail,
-    ).checked()  # fmt: skip
+        parsed.camera, parsed.focal, options, values, parsed.corrections, parsed.depth, wanted_of(parsed)
+    ).checked()
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the photo")
         photo = conversion.read(parsed.photo)
         scene = conversion.reconstruct(photo, show.progress, show.stage)
-        conversion.write(scene, photo, parsed.output, show.stage)
+        scene = conversion.write(scene, photo, parsed.photo, parsed.output, show.stage)
     print("\n".join(_summary(scene)))
     return 0
 

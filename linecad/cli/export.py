@@ -4,7 +4,17 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from linecad.cli.arguments import add_confidence, add_detail, add_loudness, add_option, add_outputs, add_scale
+from linecad.cli.arguments import (
+    add_confidence,
+    add_detail,
+    add_groups,
+    add_loudness,
+    add_main,
+    add_option,
+    add_outputs,
+    add_scale,
+    wanted_of,
+)
 from linecad.cli.checks import check_outputs, check_some
 from linecad.cli.progress import ProgressDisplay
 from linecad.errors import OutputError
@@ -28,11 +38,13 @@ def add_to(commands: "Commands") -> None:
         "--photo", type=Path, metavar="PHOTO", help="the scene's photo, for formats that show it (else looked for)"
     )
     command.add_argument(
-        "--camera", type=Path, metavar="FILE", help="the photo's calibration, if it was given to convert"
+        "--camera", type=Path, metavar="FILE", help="the photo's calibration, for scene files of earlier versions"
     )
     add_scale(command)
     add_confidence(command)
     add_detail(command)
+    add_groups(command)
+    add_main(command)
     add_option(command, "an option of a format")
     command.add_argument("--formats", action="store_true", help="list the formats and end")
     add_loudness(command)
@@ -45,22 +57,18 @@ def run(parsed: argparse.Namespace) -> int:
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
     check_some(parsed.output)
-    from linecad.confidence import keep_probable
     from linecad.io.scene_file import read_scene
-    from linecad.model.choice import keep_drawn
-    from linecad.model.scale import set_scale
     from linecad.outputs import PhotoOfScene, format_values, pixels_for, write_outputs
 
     values = format_values(parsed.output, parsed.option)
-    check_outputs(parsed.output, [parsed.scene, parsed.photo, parsed.camera])
+    wanted = wanted_of(parsed)
+    # The scene file itself may come back, with a scale, where nothing of it would be lost.
+    kept = [parsed.photo, parsed.camera, None if wanted.is_whole else parsed.scene]
+    check_outputs(parsed.output, kept)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
-        if parsed.known is not None:
-            scene = set_scale(scene, parsed.known)  # first, because the known line itself may be left out
-        if parsed.confidence is not None:
-            scene = keep_probable(scene, parsed.confidence)
-        scene = keep_drawn(scene, parsed.detail)
+        scene = wanted.of(scene)
         photo = PhotoOfScene(parsed.photo, parsed.camera, parsed.scene)
         pixels = pixels_for(scene, parsed.output, values, photo, show.note)
         write_outputs(scene, pixels, parsed.output, values, show.stage)

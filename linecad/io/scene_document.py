@@ -35,6 +35,7 @@ def document_of(scene: Scene) -> dict[str, object]:
             "K": camera.matrix.tolist(),
             "distortion": [float(coefficient) for coefficient in camera.distortion],
             "resampled": camera.is_resampled,
+            **({} if camera.taken_fy is None else {"taken_fy": float(camera.taken_fy)}),
             "source": camera.source,
             "R_cam_from_world": scene.rotation.tolist(),
         },

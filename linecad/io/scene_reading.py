@@ -114,8 +114,16 @@ def _camera(node: Node) -> tuple[Camera, Float]:
         source=cast(CameraSource, node["source"].one_of(CAMERA_SOURCES)),
         distortion=tuple(item.number(LARGEST_NUMBER) for item in optional_items(node, "distortion")),
         is_resampled=optional_boolean(node, "resampled"),
+        taken_fy=_taken_fy(node),
     )
     return camera, rotation
+
+
+def _taken_fy(node: Node) -> float | None:
+    told = known_member(node, "taken_fy")
+    if told is not None and not told.number(LARGEST_NUMBER) > 0:
+        raise told.wrong("a positive number")
+    return None if told is None else told.number()
 
 
 def _certainty(node: Node | None) -> Certainty | None:

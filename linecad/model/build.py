@@ -31,6 +31,8 @@ from linecad.model.frames import (
     planes_of,
     sight_in,
 )
+from linecad.model.groups import with_main_first
+from linecad.model.ids import with_ids_by_place
 from linecad.model.lifting import Lifted
 from linecad.model.merging import with_merged_lines
 from linecad.model.openings.cutting import with_openings
@@ -161,9 +163,9 @@ def build_scene(
         openings=openings,
         turns=graph.turns,
     )
-    scene = with_merged_lines(*without_ticks(scene, framed, sight), sight)
+    scene = with_main_first(with_merged_lines(*without_ticks(scene, framed, sight), sight))
     last = (inexact_crossings(scene), *on_faces.notes(scene.lines))
-    return replace(scene, notes=(*scene.notes, *filter(None, last)))
+    return with_ids_by_place(replace(scene, notes=(*scene.notes, *filter(None, last))))
 
 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:

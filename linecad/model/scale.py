@@ -32,6 +32,11 @@ class LineLength:
     line: int  # id
     metres: float
 
+    @property
+    def arguments(self) -> tuple[str, str]:
+        """As on the command line."""
+        return "--scale", f"{self.line}={self.metres:g}"
+
 
 @dataclass(frozen=True)
 class PointDistance:
@@ -40,12 +45,23 @@ class PointDistance:
     points: tuple[tuple[float, float], tuple[float, float]]  # px, as `segment` of the scene file counts them
     metres: float
 
+    @property
+    def arguments(self) -> tuple[str, str]:
+        """As on the command line."""
+        (a, b), (c, d) = self.points
+        return "--scale", f"{a:g},{b:g}:{c:g},{d:g}={self.metres:g}"
+
 
 @dataclass(frozen=True)
 class CameraHeight:
     """The camera stands `metres` above the ground."""
 
     metres: float
+
+    @property
+    def arguments(self) -> tuple[str, str]:
+        """As on the command line."""
+        return "--camera-height", f"{self.metres:g}"
 
 
 Known = LineLength | PointDistance | CameraHeight
@@ -90,7 +106,7 @@ def find_ground(scene: Scene) -> Plane:
     below = [plane for plane in scene.planes if plane.axis == 2 and plane.offset < 0 and own & set(plane.lines)]
     if not below:
         raise ScaleError(
-            "the largest group of lines has no horizontal plane below the camera that could be the ground; "
+            "component 0 has no horizontal plane below the camera that could be the ground; "
             "give a length with --scale instead"
         )
     ground = min(below, key=lambda plane: plane.offset)
@@ -114,12 +130,15 @@ def _line_length(scene: Scene, line: int) -> float:
     rows = np.flatnonzero(scene.lines.id == line)
     if len(rows) == 0:
         last = f"has ids up to {scene.lines.id.max()}" if len(scene.lines) else "has no lines"
-        raise ScaleError(f"the scene has no line {line}, it {last}; see the ids in the scene file")
+        raise ScaleError(
+            f"the scene has no line {line}, it {last}; name two places in the photo, U,V:U2,V2=METRES, or see the ids "
+            "in a picture with --option ids=on"
+        )
     component = int(scene.lines.component[rows[0]])
     if component != 0:
         raise ScaleError(
             f"line {line} belongs to component {component}, whose own scale is a guess; "
-            "choose a line of component 0, the largest"
+            "choose a line of component 0, or make its group that one with --main U,V, a place on it in the photo"
         )
     start, end = scene.lines.ends[rows[0]]
     return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
@@ -168,12 +187,12 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     for plane, face in scene.faces:
         if plane.id in planes:
             for number in range(2):
-                if _meets(rays[number], plane, face, scene.turns):
+                if depth_on_face(rays[number], plane, face, scene.turns) is not None:
                     hit[number].add(plane.id)
     for number, word in enumerate(("first", "second")):
         if not hit[number]:
             raise ScaleError(
-                f"the {word} point lies on no face of the largest group of lines, and the two on none of its lines; "
+                f"the {word} point lies on no face of component 0, and the two on none of its lines; "
                 "choose two points on one line or in one plane, or give a line by its id"
             )
     common = sorted(hit[0] & hit[1])
@@ -185,16 +204,17 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     return planes[common[0]]
 
 
-def _meets(ray: Float, plane: Plane, face: Face, turns: Turns) -> bool:
-    """Whether a ray from the camera meets a face."""
-    along = plane.along_normal(ray, turns)
+def depth_on_face(ray: Float, plane: Plane, face: Face, turns: Turns) -> float | None:
+    """How many times as long a ray (3,) from the camera must be to meet a face; None where it does not meet it."""
+    along = float(plane.along_normal(ray, turns))
     if along * plane.offset <= 0:
-        return False
+        return None
     ray = components(ray, turns)
     others = sorted(across(np.array(plane.axis)).tolist())
     shell, *holes = (components(ring, turns)[:, others] for ring in (face.outline, *face.holes))
     polygon = shapely.Polygon(shell, holes)
-    return bool(shapely.contains_xy(polygon, *(ray * (plane.offset / along))[others]))
+    depth = plane.offset / along
+    return depth if shapely.contains_xy(polygon, *(ray * depth)[others]) else None
 
 
 def _checked(scene: Scene, units: float, what: str) -> float:

@@ -21,7 +21,8 @@ class Camera:
     matrix: Float  # (3, 3) K, px; K[0, 0] == K[1, 1]
     source: CameraSource
     distortion: tuple[float, ...] = ()  # OpenCV's coefficients, as they were before the photo was undistorted
-    is_resampled: bool = False  # its pixels were not square; how they were made so, the camera file alone tells
+    is_resampled: bool = False  # its pixels were not square and were made so
+    taken_fy: float | None = None  # px, fy of the photo as it was taken; None: it is fx, or the scene does not tell
 
     def __post_init__(self) -> None:
         freeze(self, "matrix", np.float64, (3, 3))
@@ -29,6 +30,8 @@ class Camera:
             raise ValueError(f"Camera is {self.width} x {self.height} px, expected positive sizes")
         if not (self.matrix[0, 0] > 0 and self.matrix[1, 1] > 0):
             raise ValueError(f"Camera has focal lengths {self.matrix[0, 0]} and {self.matrix[1, 1]}, expected positive")
+        if self.taken_fy is not None and not 0 < self.taken_fy < np.inf:
+            raise ValueError(f"Camera.taken_fy is {self.taken_fy}, expected a positive number")
         if self.matrix[2].tolist() != [0.0, 0.0, 1.0]:
             raise ValueError(f"Camera.matrix ends in {self.matrix[2].tolist()}, expected [0, 0, 1]")
 

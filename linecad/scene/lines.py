@@ -18,7 +18,7 @@ class Lines:
     segment: Float  # (N, 2, 2) px
     ends: Float  # (N, 2, 3) world, in the scene's unit
     is_boundary: Bool  # (N,) at the meeting of two planes
-    component: Int  # (N,) 0 is the largest; each component has its own scale
+    component: Int  # (N,) 0 is what the scene is about (linecad.model.groups); each may have its own scale
     confidence: Text  # (N,) proven, supported, weak
     # (N,) 0 to 1, that the depth relative to component 0 is right within 5 %; (0,) in scenes that do not tell
     probability: Float | tuple[()] = ()

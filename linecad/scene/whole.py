@@ -1,5 +1,6 @@
 """The whole scene: what was found in one photo."""
 
+from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -59,6 +60,27 @@ class Scene:
     def remarks(self) -> tuple[str, ...]:
         """What a reader of the scene should know: the notes, and where the scale came from."""
         return (*self.notes, *([f"scale: {self.scale_source}"] if self.scale_source else []))
+
+    @property
+    def components_of_planes(self) -> dict[int, int]:
+        """The component that most lines of a plane are of, by the id of the plane; 0 where it has none.
+
+        What shows the ground is of component 0, since all stand on it.
+        """
+        component = dict(zip(self.lines.id.tolist(), self.lines.component.tolist(), strict=True))
+        counts = {
+            plane.id: Counter(() if plane.shows_ground else (component[line] for line in plane.lines))
+            for plane in self.planes
+        }
+        return {plane: min(count, key=lambda c: (-count[c], c), default=0) for plane, count in counts.items()}
+
+    @property
+    def components_of_faces(self) -> dict[int, int]:
+        """The component of each face by its id: that of its plane, but of the parts of an opening that of its wall."""
+        of_plane, wall = self.components_of_planes, {each.id: each.plane for each in self.openings}
+        return {
+            face.id: of_plane[plane.id if face.opening is None else wall[face.opening]] for plane, face in self.faces
+        }
 
     @property
     def faces(self) -> list[tuple[Plane, Face]]:

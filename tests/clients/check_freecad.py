@@ -1,7 +1,8 @@
-"""Open a STEP, DXF or IFC in FreeCAD: check_freecad.py FILE.step|.dxf|.ifc EXPECTATION.json [--gui] [--libraries DIR]
+"""Open a STEP, DXF or IFC in FreeCAD: check_freecad.py FILE.step|.dxf|.ifc EXPECTATION.json [--gui] [--guide GUIDE.md]
 
-FreeCAD opens IFC with ifcopenshell, which --libraries has for its Python. With --gui the window is loaded too, on no
-screen, and colours are looked at; they are no part of the model itself.
+FreeCAD opens IFC with ifcopenshell, which --libraries DIR has for its Python. With --gui the window is loaded too, on
+no screen, and colours are looked at; they are no part of the model itself. With --guide the Python of the guide opens
+the file instead, in its window, and the names in the tree are looked at.
 """
 
 import argparse
@@ -14,18 +15,23 @@ from pathlib import Path
 from verdict import judge, passed
 
 INSIDE = Path(__file__).with_name("inside_freecad.py")
+BY_GUIDE = Path(__file__).with_name("guide_in_freecad.py")
 MOST_SECONDS = 280
 LAST_WORDS = 400  # characters of FreeCAD's own output to show where it said nothing else
 
 
-def report_of(path, expectation, gui, program="freecadcmd", libraries=None):
-    """What the checker says that runs inside FreeCAD, line by line; `libraries` is a folder of more modules for it."""
+def report_of(path, expectation, gui, program="freecadcmd", libraries=None, guide=None):
+    """What the checker says that runs inside FreeCAD, line by line; `libraries` is a folder of more modules for it.
+
+    With a `guide`, its Python opens the file.
+    """
     told = {
         "CHECK_FILE": str(path.resolve()),
         "CHECK_EXPECTATION": str(expectation.resolve()),
         "CHECK_GUI": "1" if gui else "",
+        "CHECK_GUIDE": "" if guide is None else str(guide.resolve()),
     }
-    return report_from(INSIDE, told, program, libraries)
+    return report_from(INSIDE if guide is None else BY_GUIDE, told, program, libraries)
 
 
 def report_from(script, told, program="freecadcmd", libraries=None):
@@ -86,8 +92,9 @@ def main():
     parser.add_argument("expectation", type=Path)
     parser.add_argument("--gui", action="store_true")
     parser.add_argument("--libraries", type=Path)
+    parser.add_argument("--guide", type=Path)
     chosen = parser.parse_args()
-    report = report_of(chosen.file, chosen.expectation, chosen.gui, libraries=chosen.libraries)
+    report = report_of(chosen.file, chosen.expectation, chosen.gui, libraries=chosen.libraries, guide=chosen.guide)
     print("\n".join(report))
     return 0 if passed(report) else 1
 

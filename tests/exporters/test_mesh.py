@@ -7,6 +7,11 @@ from exporters.model import FREE_UNIT, KNOWN_UNIT, ORIGINS, build_model
 from exporters.triangulation import triangulate
 
 
+def y_up(points):
+    """Points (..., 3) turned by a quarter about x, so that z up becomes y up."""
+    return points @ np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]])
+
+
 @pytest.fixture(scope="module")
 def paths(scene, tmp_path_factory):
     folder = tmp_path_factory.mktemp("mesh")
@@ -37,7 +42,7 @@ def test_every_face_is_an_object_of_the_obj(paths, model):
     read = trimesh.load_scene(paths[".obj"], process=False, split_objects=True, group_material=False)
     for face in model.faces:
         mesh = read.geometry[face.name]
-        expected = trimesh.Trimesh(face.vertices, triangulate(face), process=False)
+        expected = trimesh.Trimesh(y_up(face.vertices), triangulate(face), process=False)
         assert mesh.area == pytest.approx(expected.area, rel=1e-6)
         np.testing.assert_allclose(mesh.bounds, expected.bounds, atol=1e-7)
 
@@ -56,7 +61,7 @@ def test_z_0_is_the_ground_unless_the_camera_is_to_be_the_origin(grounded, tmp_p
     export(grounded, path, options={"origin": origin})
     height = build_model(grounded, origin=origin).eye[2]
     faces = np.concatenate([face.outline for _, face in grounded.faces])
-    low, high = trimesh.load_mesh(path, process=False).bounds[:, 2]
+    low, high = trimesh.load_mesh(path, process=False).bounds[:, 1 if suffix == ".obj" else 2]
     assert (low, high) == pytest.approx((faces[:, 2].min() + height, faces[:, 2].max() + height), abs=1e-5)
     assert (height > 0) == (origin == "ground")
 
@@ -86,7 +91,7 @@ def test_every_line_is_in_the_obj(request, tmp_path, name):
     found = {number: ends for group in groups.values() for number, ends in group.items()}
     assert set(found) == set(scene.lines.id.tolist())
     for number, ends, axis in zip(scene.lines.id.tolist(), scene.lines.ends, scene.lines.axis.tolist(), strict=True):
-        np.testing.assert_allclose(found[number], ends, atol=1e-7)
+        np.testing.assert_allclose(found[number], y_up(ends), atol=1e-7)
         assert any(number in group for key, group in groups.items() if key.startswith(f"lines_{'xyz'[axis]}_"))
 
 
@@ -104,3 +109,12 @@ def test_a_binary_stl_does_not_begin_like_one_in_text(paths):
 
 def test_lines_end_in_a_newline_alone(paths):
     assert b"\r" not in paths[".obj"].read_bytes()
+
+
+def test_an_obj_stands_upright_where_y_is_up(paths, scene, tmp_path):
+    """It lay on its back in Blender, which takes y for up unless told otherwise."""
+    export(scene, tmp_path / "a.obj", options={"up": "z"})
+    upright, flat = (trimesh.load_mesh(path, process=False).vertices for path in (paths[".obj"], tmp_path / "a.obj"))
+    np.testing.assert_allclose(upright, y_up(flat), atol=1e-7)
+    first = [path.read_text().splitlines()[0] for path in (paths[".obj"], tmp_path / "a.obj")]
+    assert [", y up: its x, y, z are x, z, -y of the scene;" in first[0], ", z up;" in first[1]] == [True, True]

@@ -322,9 +322,12 @@ def test_groups_that_only_the_horizon_ties_keep_scales_of_their_own():
     lifted = lift(graph, decision.real, solution.log_depth)
     view = View("two.png", camera, frame, None, len(rows), ())
     scene = build_scene(view, graph, solution, decision, find_components(view, graph, decision, lifted))
-    assert scene.lines.component.tolist() == [0] * 4 + [1] * 4
+    at = {tuple(ends.ravel()): number for number, ends in enumerate(graph.segments.ends)}
+    rows = [at[tuple(ends.ravel())] for ends in scene.lines.segment]
+    assert scene.lines.component[np.argsort(rows)].tolist() == [0] * 4 + [1] * 4
     for plane in scene.planes:
-        assert (scene.lines.ends[list(plane.lines), :, plane.axis] == plane.offset).all()
+        own = np.isin(scene.lines.id, plane.lines)
+        assert (scene.lines.ends[own][:, :, plane.axis] == plane.offset).all()
 
 
 def test_notes_are_plain_text_on_one_line(any_scene):

@@ -44,7 +44,7 @@ def made(row, photo, tmp_path_factory, request):
 
 def test_every_face_is_in_its_place_below_its_opening(made, row):
     path, _, _ = made
-    model, tree, read = build_model(row), document(path), trimesh.load_scene(path)
+    model, tree, read = build_model(row, origin="ground"), document(path), trimesh.load_scene(path)
     for face in model.faces:
         pose, geometry = read.graph[face.name]
         vertices = read.geometry[geometry].vertices @ pose[:3, :3].T + pose[:3, 3]
@@ -60,7 +60,7 @@ def test_every_face_is_in_its_place_below_its_opening(made, row):
 
 def test_the_node_of_a_face_tells_its_opening(made, row):
     tree = document(made[0])
-    for face in build_model(row).faces:
+    for face in build_model(row, origin="ground").faces:
         extras = node_of(tree, face.name)["extras"]
         assert (extras["face_id"], extras["label"], extras["axis"]) == (face.id, face.label, AXES[face.axis])
         assert extras.get("opening") == face.opening
@@ -68,7 +68,7 @@ def test_the_node_of_a_face_tells_its_opening(made, row):
 
 def test_equal_faces_share_numbers_and_where_no_picture_or_the_user_forbids_it_meshes(made, row):
     path, textured, instances = made
-    tree, (first, *others) = document(path), build_model(row).fittings
+    tree, (first, *others) = document(path), build_model(row, origin="ground").fittings
     for other in others:
         for one, same in zip(first.faces, other.faces, strict=True):
             a, b = (primitive_of(tree, face) for face in (one, same))
@@ -84,5 +84,17 @@ def test_equal_faces_share_numbers_and_where_no_picture_or_the_user_forbids_it_m
 def test_faces_with_pictures_have_their_own_places_on_them(row, photo, tmp_path):
     export(row, tmp_path / "a.glb", photo)
     tree = document(tmp_path / "a.glb")
-    panes = [fitting.faces[0] for fitting in build_model(row).fittings]
+    panes = [fitting.faces[0] for fitting in build_model(row, origin="ground").fittings]
     assert len({primitive_of(tree, pane)["attributes"]["TEXCOORD_0"] for pane in panes}) == len(panes)
+
+
+def test_a_face_that_is_of_no_opening_has_its_origin_at_its_foot(made, row):
+    """So that Blender turns and scales it where it stands."""
+    tree = document(made[0])
+    for face in build_model(row, origin="ground").loose_faces:
+        x, y, z = node_of(tree, face.name)["translation"]
+        assert (x, -z, y) == pytest.approx(tuple(face.foot))
+        low, high = (np.array(tree["accessors"][primitive_of(tree, face)["attributes"]["POSITION"]][key])
+                     for key in ("min", "max"))  # fmt: skip
+        assert low[1] == pytest.approx(0, abs=1e-6)
+        assert (low + high)[[0, 2]] == pytest.approx((0, 0), abs=1e-5)

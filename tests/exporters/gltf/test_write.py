@@ -44,7 +44,8 @@ class Glb:
 
     def positions(self, name):
         """In the scene's frame: z up."""
-        x, y, z = self.array(self.primitive(name)["attributes"]["POSITION"]).astype(float).T
+        local = self.array(self.primitive(name)["attributes"]["POSITION"]).astype(float)
+        x, y, z = (local + self.node(name).get("translation", [0, 0, 0])).T
         return np.stack([x, -z, y], axis=1)
 
     def material(self, name):

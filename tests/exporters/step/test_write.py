@@ -159,7 +159,7 @@ def test_on_the_ground_the_camera_stands_above_it(grounded, tmp_path):
 
 def test_an_opening_is_an_assembly_of_its_faces_in_their_places(row, tmp_path):
     export(row, tmp_path / "a.step")
-    read, model = Reader(tmp_path / "a.step"), build_model(row)
+    read, model = Reader(tmp_path / "a.step"), build_model(row, origin="ground")
     for fitting in model.fittings:
         assert read.parents[fitting.label] == "faces"
         for face in fitting.faces:
@@ -173,7 +173,7 @@ def test_as_instances_equal_openings_are_one_assembly_in_many_places(row, tmp_pa
     path = tmp_path / "a.step"
     export(row, path, options={"instances": True})
     text = path.read_text()
-    model = build_model(row)
+    model = build_model(row, origin="ground")
     assert text.count("PRODUCT('window shape 4'") == 1
     assert text.count("ADVANCED_FACE") == len(model.loose_faces) + 5
     for fitting in model.fittings:
@@ -197,7 +197,7 @@ def panes(row):
 def test_a_pane_alone_is_a_part_and_no_assembly_that_would_take_its_name(panes, tmp_path):
     export(panes, tmp_path / "a.step")
     read = Reader(tmp_path / "a.step")
-    for fitting in build_model(panes).fittings:
+    for fitting in build_model(panes, origin="ground").fittings:
         (face,) = fitting.faces
         assert read.parents[face.name] == "faces"
         assert read.places[face.name] == fitting.label
@@ -209,7 +209,7 @@ def test_as_instances_panes_alone_are_one_part_in_many_places(panes, tmp_path):
     export(panes, path, options={"instances": True})
     assert path.read_text().count("ADVANCED_FACE") == 3
     middles = sorted(tuple(points(face).mean(axis=0)) for face in import_step(path).faces())
-    wanted = sorted(tuple(face.vertices.mean(axis=0)) for face in build_model(panes).faces)
+    wanted = sorted(tuple(face.vertices.mean(axis=0)) for face in build_model(panes, origin="ground").faces)
     panes_only = [each for each in wanted if any(np.allclose(each, other, atol=2e-6) for other in middles)]
     assert len(middles) == len(wanted)
     assert len(panes_only) >= 3

@@ -75,15 +75,16 @@ def read_glb(path):
         return np.frombuffer(view(tree["accessors"][index]["bufferView"]), kind).reshape(-1, width)
 
     faces = {}
-    meshes = [(node["name"], tree["meshes"][node["mesh"]]) for node in tree["nodes"] if "mesh" in node]
-    for name, mesh in meshes:
+    meshes = [(node, tree["meshes"][node["mesh"]]) for node in tree["nodes"] if "mesh" in node]
+    for node, mesh in meshes:
         (primitive,) = mesh["primitives"]
         material = tree["materials"][primitive["material"]]
         if "baseColorTexture" in material["pbrMetallicRoughness"]:
             texture = tree["textures"][material["pbrMetallicRoughness"]["baseColorTexture"]["index"]]
-            x, y, z = array(primitive["attributes"]["POSITION"], np.float32, 3).T
+            points = array(primitive["attributes"]["POSITION"], np.float32, 3) + node.get("translation", [0, 0, 0])
+            x, y, z = points.T
             s, t = array(primitive["attributes"]["TEXCOORD_0"], np.float32, 2).astype(float).T
-            faces[name] = Textured(
+            faces[node["name"]] = Textured(
                 np.stack([x, -z, y], axis=1).astype(float),
                 array(primitive["indices"], np.uint32, 3),
                 np.stack([s, 1 - t], axis=1),
@@ -107,7 +108,8 @@ def read_usd(path):
                 picture = Path(asset.resolvedPath).read_bytes()
             mesh = UsdGeom.Mesh(prim)
             triangles = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
-            points = np.array(mesh.GetPointsAttr().Get(), float)
+            matrix = np.array(UsdGeom.XformCache().GetLocalToWorldTransform(prim))
+            points = np.array(mesh.GetPointsAttr().Get(), float) @ matrix[:3, :3] + matrix[3, :3]
             faces[prim.GetName()] = Textured(points, triangles, np.array(variable.Get(), float), picture)
     return faces
 
@@ -127,7 +129,8 @@ def read_obj(path):
         elif word == "o":
             name, vertices_before, corners = rest, len(vertices), []
         elif word == "v":
-            vertices.append([float(number) for number in rest.split()])
+            x, up, minus_y = map(float, rest.split())
+            vertices.append([x, -minus_y, up])
         elif word == "vt":
             coordinates.append([float(number) for number in rest.split()])
         elif word == "usemtl":

@@ -40,7 +40,7 @@ def instanced(row, photo, textured, tmp_path_factory):
 
 
 def test_an_opening_is_a_prim_above_its_faces(plain, row):
-    for fitting in build_model(row).fittings:
+    for fitting in build_model(row, origin="ground").fittings:
         prim = plain.GetPrimAtPath(f"{FACES}/{fitting.key}")
         assert prim.GetDisplayName() == fitting.label
         ids = [face.id for face in fitting.faces]
@@ -51,7 +51,7 @@ def test_an_opening_is_a_prim_above_its_faces(plain, row):
 
 def test_every_face_has_its_own_name_place_and_ids_though_equal_ones_are_one_shape(plain, row, textured):
     meshes = {prim.GetName(): prim for prim in plain.Traverse() if prim.IsA(UsdGeom.Mesh)}
-    model = build_model(row)
+    model = build_model(row, origin="ground")
     assert sorted(meshes) == [face.name for face in model.faces]
     for face in model.faces:
         prim = meshes[face.name]
@@ -72,7 +72,7 @@ def test_nothing_draws_the_shape_by_itself(plain):
 
 
 def test_instances_are_one_prototype_that_looks_the_same_everywhere(instanced, row, textured):
-    model = build_model(row)
+    model = build_model(row, origin="ground")
     assert len(instanced.GetPrototypes()) == 1
     found = set()
     for fitting in model.fittings:
@@ -94,4 +94,6 @@ def test_openings_that_are_alone_need_no_shape(row, tmp_path):
     export(replace(row, openings=openings), tmp_path / "a.usda", options={"instances": True})
     stage = Usd.Stage.Open(str(tmp_path / "a.usda"))
     assert not stage.GetPrimAtPath(SHAPES)
-    assert len([prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]) == len(build_model(row).faces)
+    assert len([prim for prim in stage.Traverse() if prim.IsA(UsdGeom.Mesh)]) == len(
+        build_model(row, origin="ground").faces
+    )

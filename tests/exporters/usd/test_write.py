@@ -110,11 +110,17 @@ def test_every_group_of_lines_is_a_prim(stage, model):
         assert np.array(curves.GetDisplayColorAttr().Get())[0] == pytest.approx(colour)
 
 
+def in_world(prim):
+    matrix = np.array(UsdGeom.XformCache().GetLocalToWorldTransform(prim))
+    return np.array(UsdGeom.Mesh(prim).GetPointsAttr().Get(), float) @ matrix[:3, :3] + matrix[3, :3]
+
+
 def test_every_face_is_a_mesh(stage, model):
     for face in model.faces:
         prim = stage.GetPrimAtPath(f"{ROOT}/Faces/{face.name}")
         mesh = UsdGeom.Mesh(prim)
-        np.testing.assert_allclose(np.array(mesh.GetPointsAttr().Get()), face.vertices, atol=1e-5)
+        np.testing.assert_allclose(in_world(prim), face.vertices, atol=1e-5)
+        np.testing.assert_allclose(np.min(mesh.GetPointsAttr().Get(), axis=0)[2], 0, atol=1e-6)
         triangles = np.array(mesh.GetFaceVertexIndicesAttr().Get()).reshape(-1, 3)
         np.testing.assert_array_equal(triangles, triangulate(face))
         assert set(mesh.GetFaceVertexCountsAttr().Get()) == {3}
@@ -158,7 +164,7 @@ def test_z_0_is_the_ground_and_the_camera_still_sees_the_lines_on_the_photo(grou
     stage = Usd.Stage.Open(str(tmp_path / "a.usdc"))
     offsets = list(stage.GetDefaultPrim().GetAttribute("linecad:planeOffsets").Get())
     assert offsets == [plane.offset for plane in model.planes]
-    ground = UsdGeom.Mesh(stage.GetPrimAtPath(f"{ROOT}/Faces/face_0002")).GetPointsAttr().Get()
+    ground = in_world(stage.GetPrimAtPath(f"{ROOT}/Faces/face_0002"))
     assert {point[2] == 0 for point in ground} == {origin == "ground"}
 
 

@@ -11,6 +11,7 @@ from linecad.batch.job import STATUSES, Figures, Outcome
 from linecad.batch.record import NAME, Record, Row, options_hash, parse_row, row_line, settled
 from linecad.convert import Conversion
 from linecad.errors import InputError, OutputError
+from linecad.model.wanted import Wanted
 from linecad.options import Options
 from linecad.scene import QUALITIES
 from solver.options import SolveOptions
@@ -136,8 +137,8 @@ def test_options_hash_changes_with_everything_that_decides(tmp_path):
         options_hash(Conversion(), (".json",)),
         options_hash(Conversion(), (".json", ".png")),
         options_hash(Conversion(focal=500.0), (".json",)),
-        options_hash(Conversion(confidence=0.5), (".json",)),
-        options_hash(Conversion(detail="none"), (".json",)),
+        options_hash(Conversion(wanted=Wanted(confidence=0.5)), (".json",)),
+        options_hash(Conversion(wanted=Wanted(detail="none")), (".json",)),
         options_hash(Conversion(camera=camera), (".json",)),
         options_hash(Conversion(camera=other), (".json",)),
         options_hash(Conversion(depth=camera), (".json",)),

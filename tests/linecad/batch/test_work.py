@@ -1,5 +1,7 @@
 """A job does what was asked for, with the files as they were when it was."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ import linecad.pipeline
 from linecad.batch.work import do
 from linecad.convert import Conversion
 from linecad.errors import ReconstructionError
+from linecad.model.scale import LineLength
+from linecad.model.wanted import Wanted
 
 
 @pytest.fixture
@@ -37,3 +41,15 @@ def test_a_map_that_is_damaged_fails_its_photo(small_photo, job_of, mapped):
     outcome = do(job_of(small_photo, conversion=mapped))
     assert outcome.status == "failed"
     assert "map.npz is damaged or incomplete" in outcome.error
+
+
+@pytest.mark.parametrize(("suffixes", "kept"), [((".json", ".obj"), ["room.json"]), ((".obj",), [])])
+def test_a_length_that_is_not_there_keeps_the_scene(small_photo, job_of, conversion, suffixes, kept):
+    wanted = replace(conversion, wanted=Wanted(known=LineLength(99999, 3.0)))
+    job = job_of(small_photo, suffixes, conversion=wanted)
+    outcome = do(job)
+    assert outcome.status == "failed"
+    assert "no line 99999" in outcome.error
+    assert ("the whole scene is kept in" in outcome.error) == bool(kept)
+    assert sorted(outcome.files) == sorted([*kept, "thumbnails/room.jpg"])
+    assert sorted(path.name for path in job.folder.iterdir()) == sorted([*kept, "thumbnails"])

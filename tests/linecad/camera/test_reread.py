@@ -1,6 +1,7 @@
 """The photo of a scene, read again: straightened as it was, or refused."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -26,14 +27,30 @@ def camera_file(folder, fy=150.0, **more):
     return path
 
 
-@pytest.mark.parametrize("more", [{"fy": 165.0}, {"distortion": [-0.1, 0.01, 0, 0]}], ids=["not square", "bent"])
-def test_what_a_camera_file_straightened_needs_it_again(photo, tmp_path, more):
+BENT = {"distortion": [-0.1, 0.01, 0, 0]}
+
+
+@pytest.mark.parametrize(
+    "more",
+    [{"fy": 165.0}, BENT, {"fy": 165.0, **BENT}, {"fy": 150.000001, **BENT}],
+    ids=["not square", "bent", "both", "nearly square and bent"],
+)
+def test_what_a_camera_file_straightened_does_not_need_it_again(photo, tmp_path, more):
+    """A scene with fx and fy apart lost its textures at export unless the camera file was given again."""
     file = camera_file(tmp_path, **more)
     first = read_photo(photo, file)
+    for given in (None, file):
+        again = reread_photo(photo, "a.png", first.camera, given)
+        np.testing.assert_array_equal(again.pixels, first.pixels)
+        assert again.camera.taken_fy == more.get("fy")
+
+
+def test_scenes_of_earlier_versions_need_the_camera_file_where_pixels_were_not_square(photo, tmp_path):
+    file = camera_file(tmp_path, fy=165.0)
+    former = replace(read_photo(photo, file).camera, taken_fy=None)
     with pytest.raises(CameraError, match=r"a\.png was straightened by its calibration; give that with --camera"):
-        reread_photo(photo, "a.png", first.camera)
-    again = reread_photo(photo, "a.png", first.camera, file)
-    np.testing.assert_array_equal(again.pixels, first.pixels)
+        reread_photo(photo, "a.png", former)
+    np.testing.assert_array_equal(reread_photo(photo, "a.png", former, file).pixels, read_photo(photo, file).pixels)
 
 
 def test_pixels_that_stayed_need_no_camera_file(photo, tmp_path):

@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import shlex
 import shutil
 import signal
 import struct
@@ -22,7 +23,7 @@ import linecad.pipeline
 from linecad.cli.main import main
 from linecad.corrections.edits import Corrections
 from linecad.corrections.file import write_corrections
-from linecad.errors import ReconstructionError
+from linecad.errors import OutputError, ReconstructionError
 from linecad.io.scene_file import read_scene
 
 ROOT = Path(__file__).resolve().parents[3]
@@ -314,3 +315,89 @@ def test_detail_filters_every_file_and_the_summary(folder, capsys):
     assert main(["convert", str(ROOM), "-o", "b.json", "--fast", "--detail", "none", "--quiet"]) == 0
     assert read_scene(folder / "b.json").lines.role.tolist() == outlines != []
     assert capsys.readouterr().out.startswith(f"{len(outlines)} lines, ")
+
+
+def failing(capsys, *arguments):
+    """The one line that a conversion of the room ends with."""
+    assert main(["convert", str(ROOM), "--fast", "--quiet", *arguments]) == 1
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert len(err.splitlines()) == 1, err
+    return err.strip()
+
+
+def command_in(line):
+    return shlex.split(line.partition("go on with: linecad ")[2])
+
+
+def test_a_length_that_is_not_there_costs_no_second_solving(folder, capsys):
+    """The first command of each guide ended after all the work with nothing written."""
+    outputs = ["-o", "room.dxf", "-o", "room.json"]
+    said = failing(capsys, "--scale", "99999=3.5", *outputs, "--option", "roles=on")
+    assert "no line 99999" in said
+    assert [path.name for path in folder.iterdir()] == ["room.json"]
+    words = command_in(said)
+    assert words == ["export", "room.json", "--photo", str(ROOM), "--scale", "U,V:U2,V2=METRES", "--option", "roles=on",
+                     *outputs]  # fmt: skip
+    lines = json.loads(Path("room.json").read_text())["lines"]
+    (u, v), (x, y) = next(line["segment"] for line in lines if line["component"] == 0)
+    words[words.index("U,V:U2,V2=METRES")] = f"{u},{v}:{x},{y}=3.5"
+    assert main([*words, "--quiet"]) == 0
+    assert json.loads(Path("room.json").read_text())["metres_per_unit"] > 0
+    assert Path("room.dxf").exists()
+
+
+def test_a_scene_that_nobody_asked_for_is_kept_under_a_free_name(folder, capsys):
+    (folder / "room.json").write_text("something else")
+    said = failing(capsys, "--scale", "99999=3.5", "--detail", "none", "-o", "room.dxf")
+    assert sorted(path.name for path in folder.iterdir()) == ["room.2.json", "room.json"]
+    assert (folder / "room.json").read_text() == "something else"
+    assert command_in(said)[1] == "room.2.json"
+    assert command_in(said)[-4:] == ["--detail", "none", "-o", "room.dxf"]
+
+
+def test_an_output_that_cannot_be_written_leaves_the_others(folder, capsys, monkeypatch):
+    def refuse(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("exporters.mesh.write", refuse)
+    said = failing(capsys, "-o", "a.stl", "-o", "a.dxf", "-o", "a.ply")
+    assert said.startswith("linecad: a.stl was not written: no space is left for it")
+    assert "(1 more were not written)" in said
+    assert sorted(path.name for path in folder.iterdir()) == ["a.dxf", "a.json"]
+    assert command_in(said) == ["export", "a.json", "--photo", str(ROOM), "-o", "a.stl", "-o", "a.ply"]
+    monkeypatch.undo()
+    os.chdir(folder)
+    assert main([*command_in(said), "--quiet"]) == 0
+
+
+def test_a_scene_that_cannot_be_kept_either_is_said(folder, capsys, monkeypatch):
+    def refuse(*_):
+        raise OutputError("room.json was not written: no space is left for it; free some or choose another disk")
+
+    monkeypatch.setattr("linecad.outputs.write_scene", refuse)
+    said = failing(capsys, "--scale", "99999=3.5", "-o", "room.json")
+    assert "no line 99999" in said
+    assert said.endswith("the scene was not kept either: " + "room.json was not written: no space is left for it; "
+                         "free some or choose another disk")  # fmt: skip
+    assert list(folder.iterdir()) == []
+
+
+@pytest.mark.usefixtures("folder")
+def test_groups_and_the_main_one(capsys):
+    """A place on another group makes it component 0, and that alone is written."""
+    made = ["convert", str(ROOM), "--quiet"]
+    assert main([*made, "-o", "a.json"]) == 0
+    whole = read_scene("a.json").lines
+    assert whole.component.max() > 0
+    u, v = whole.segment[whole.component == 1][0].mean(axis=0)
+    assert main([*made, "--groups", "main", "-o", "b.json"]) == 0
+    assert read_scene("b.json").lines.id.tolist() == whole.id[whole.component == 0].tolist()
+    assert main(["export", "a.json", "--main", f"{u},{v}", "--groups", "main", "-o", "c.json", "--quiet"]) == 0
+    assert read_scene("c.json").lines.id.tolist() == whole.id[whole.component == 1].tolist()
+    assert main([*made, "--main", f"{u},{v}", "-o", "d.json"]) == 0
+    assert (read_scene("d.json").lines.component == 0).tolist() == (whole.component == 1).tolist()
+    capsys.readouterr()
+    said = failing(capsys, "--main", "1e6,1e6", "-o", "e.json")
+    assert "no line and no face stands at 1e+06,1e+06 px" in said
+    assert command_in(said) == ["export", "e.json", "--photo", str(ROOM), "--main", "U,V", "-o", "e.json"]

@@ -21,9 +21,24 @@ COURTYARD = SAMPLES / "courtyard.jpg"
 posix = pytest.mark.skipif(os.name == "nt", reason="signals, links and limits as on POSIX")
 
 
-def test_the_scene_file_is_never_overwritten(fails, folder, scene_file):
+@pytest.mark.parametrize("loss", [("--detail", "none"), ("--confidence", "0.5"), ("--groups", "main")])
+def test_the_scene_file_is_not_overwritten_by_a_part_of_it(fails, folder, scene_file, loss):
     shutil.copy(scene_file, folder)
-    assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json")
+    assert "is an input too" in fails("export", "room.json", "-o", "a.obj", "-o", "room.json", *loss)
+
+
+def test_a_scale_is_set_in_place(folder, scene_file):
+    shutil.copy(scene_file, folder)
+    line = json.loads(scene_file.read_text())["lines"][7]["id"]
+    assert main(["export", "room.json", "--scale", f"{line}=3", "-o", "room.json", "--quiet"]) == 0
+    before, after = (json.loads((where / "room.json").read_text()) for where in (scene_file.parent, folder))
+    assert (before["metres_per_unit"], after["lines"]) == (None, before["lines"])
+    assert after["metres_per_unit"] > 0
+
+
+def test_a_scale_that_cannot_be_set_in_place_changes_nothing(fails, folder, scene_file):
+    shutil.copy(scene_file, folder)
+    assert "no line 99999" in fails("export", "room.json", "--scale", "99999=3", "-o", "room.json")
 
 
 @pytest.mark.parametrize("text", ["", "{", "{}", "[1]", '{"format": "linecad-scene", "version": 99}', "\x00\xff"])
@@ -61,7 +76,7 @@ def test_formats_lists_every_option_with_its_default(capsys):
 @pytest.mark.parametrize(
     ("option", "words"),
     [
-        (["--scale", "12"], "is no length; write it like 12=3.5"),
+        (["--scale", "12"], "is no length; write it like 840,310:840,655=2.1 or 45237=3.5"),
         (["--scale", "=3"], "'' is neither the id of a line nor two px"),
         (["--scale", "12="], "'' is not a number"),
         (["--scale", "12=0"], "0 is not a positive number"),
@@ -71,6 +86,9 @@ def test_formats_lists_every_option_with_its_default(capsys):
         (["--scale", "1,2,3,4=2"], "neither the id of a line"),
         (["--scale", "1,2:3,x=2"], "'x' is not a number of px"),
         (["--scale", "1,2:3,nan=2"], "nan px lies outside every photo"),
+        (["--main", "12"], "'12' is no place in a photo; write it like 840,310"),
+        (["--main", "1,nan"], "nan px lies outside every photo"),
+        (["--groups", "some"], "invalid choice: 'some'"),
         (["--camera-height", "-2"], "-2 is not a number of zero or more"),
         (["--camera-height", "2", "--scale", "1=2"], "not allowed with"),
     ],

@@ -80,7 +80,7 @@ def test_commands_that_say_too_little(fails, arguments):
         ("a.dxf", "version=R12", "option version is 'R12', expected R2010 or R2018"),
         ("a.glb", "tube=on", "no option 'tube' for .glb, which has tubes"),
         ("a.step", "tubes=on", "no option 'tubes' for .step"),
-        ("a.png", "tubes=on", "for .png, which has no options"),
+        ("a.png", "tubes=on", "for .png, which has ids"),
         ("a.json", "tubes=on", "no option 'tubes' for the scene file, which has no options"),
     ],
 )
@@ -126,7 +126,7 @@ def test_the_help_of_convert_fits_one_screen(help_of):
     flags = set(re.findall(r"--[a-z-]+", text.split("options:")[1].split("example:")[0])) - {"--formats"}
     assert flags == {
         "--help", "--output", "--camera", "--focal", "--corrections", "--depth", "--scale", "--camera-height",
-        "--confidence", "--detail", "--fast", "--time-limit", "--option", "--quiet", "--verbose",
+        "--confidence", "--detail", "--groups", "--main", "--fast", "--time-limit", "--option", "--quiet", "--verbose",
     }  # fmt: skip
 
 

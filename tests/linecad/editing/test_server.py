@@ -59,11 +59,12 @@ class TestState:
         now = page.session.now()
         scene = now.model.scene
         plane = scene.planes[0]
-        first, second = [line for line in plane.lines if scene.lines.axis[line] == (plane.axis + 1) % 3][:2]
+        in_plane = np.isin(scene.lines.id, plane.lines) & (scene.lines.axis == (plane.axis + 1) % 3)
+        first, second = scene.lines.id[in_plane][:2].tolist()
         joined = with_lines(scene, scene.lines.id != second)
         row = int(np.flatnonzero(joined.lines.id == first)[0])
         pieces = [np.zeros((0, 2, 2))] * len(joined.lines)
-        pieces[row] = scene.lines.segment[[first, second]]
+        pieces[row] = scene.lines.segment[np.isin(scene.lines.id, [first, second])]
         joined = replace(joined, lines=replace(joined.lines, pieces=tuple(pieces)))
         document = document_of(replace(now, model=replace(now.model, scene=joined)), 1, True)
         segments = pieces[row].tolist()

@@ -67,6 +67,7 @@ def cameras(draw: st.DrawFn) -> Camera:
         source=draw(st.sampled_from(CAMERA_SOURCES)),
         distortion=tuple(draw(st.lists(numbers, max_size=14))),
         is_resampled=draw(st.booleans()),
+        taken_fy=draw(st.none() | st.floats(0.1, 1e5)),
     )
 
 
@@ -323,7 +324,7 @@ REQUIRED = [
     *(f"openings[0].{key}" for key in ("id", "plane", "kind", "u", "v")),
 ]
 OPTIONAL = [
-    *("camera.distortion", "camera.resampled"),
+    *("camera.distortion", "camera.resampled", "camera.taken_fy"),
     *("metres_per_unit", "scale_source", "planes[0].faces", "planes[0].faces[0].holes", "notes"),
     *("planes[0].faces[0].kind", "planes[0].faces[0].hidden"),
     *("solve.cuts", "solve.nodes", "intersections[0].reason"),
@@ -498,6 +499,8 @@ WRONG = [
     ("camera.distortion", [0.1, "0"], 'camera.distortion[1] is "0", expected a number'),
     ("camera.R_cam_from_world[0][0]", 1.001, "camera.R_cam_from_world is not a rotation (off by 0.002)"),
     ("camera.R_cam_from_world[0][0]", -1, "camera.R_cam_from_world is not a rotation"),
+    ("camera.taken_fy", 0, "camera.taken_fy is 0, expected a positive number"),
+    ("camera.taken_fy", "a", "camera.taken_fy is"),
     ("camera.resampled", 1, "camera.resampled is 1, expected true or false"),
     ("certainty", [], "certainty is a list of 0, expected an object"),
     ("certainty.quality", "excellent", 'certainty.quality is "excellent", expected one of good, doubtful, poor'),

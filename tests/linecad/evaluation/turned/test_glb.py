@@ -29,7 +29,8 @@ def rewritten(path, change, tmp_path):
 
 def test_another_reader_finds_the_same_triangles(glb, model):
     other = trimesh.load_scene(glb(), process=False)
-    meshes = [each for each in other.geometry.values() if isinstance(each, trimesh.Trimesh)]
+    placed = [(other.geometry[name], pose) for pose, name in map(other.graph.get, other.graph.nodes_geometry)]
+    meshes = [each.copy().apply_transform(pose) for each, pose in placed if isinstance(each, trimesh.Trimesh)]
     theirs = np.concatenate([each.triangles for each in meshes])
     assert sorted(map(tuple, theirs.reshape(len(theirs), -1).round(5).tolist())) == sorted(
         map(tuple, model.triangles.reshape(len(model.triangles), -1).round(5).tolist())
@@ -65,8 +66,11 @@ def test_faces_without_a_photo_are_lit_and_have_no_picture(glb):
 
 
 def test_a_mesh_that_two_nodes_name_comes_twice(glb, model, tmp_path):
+    places = []
+
     def twice(tree):
         node = next(each for each in tree["nodes"] if each.get("name") == "face_0001")
+        places.append(node["translation"])
         half = np.sqrt(0.5)
         tree["nodes"].append(
             {"mesh": node["mesh"], "translation": [0, 0, 5], "rotation": [0, half, 0, half], "scale": [2, 2, 2]}
@@ -75,7 +79,7 @@ def test_a_mesh_that_two_nodes_name_comes_twice(glb, model, tmp_path):
 
     found = read_glb(rewritten(glb(), twice, tmp_path))
     assert len(found.triangles) == len(model.triangles) + 2
-    once = model.triangles[np.ptp(model.triangles[:, :, 0], axis=1) == 0]  # the side wall
+    once = model.triangles[np.ptp(model.triangles[:, :, 0], axis=1) == 0] - places[0]  # the side wall, from its foot
     moved = 2 * np.stack([once[..., 2], once[..., 1], -once[..., 0]], axis=-1) + [0, 0, 5]
     new = [each for each in found.triangles.round(4).tolist() if each not in model.triangles.round(4).tolist()]
     assert sorted(new) == pytest.approx(np.array(sorted(moved.round(4).tolist())))
