@@ -69,7 +69,7 @@ _COMPONENTS = Option(
     "..._component_1 and so on for all but component 0",
 )  # fmt: skip
 _ORIGIN = Option(
-    "origin", ORIGINS[0], "z = 0 is the ground, where the scene has one, or the camera is the origin",
+    "origin", ORIGINS[0], "z = 0 is the ground, where the scale and the ground are known, or the camera is the origin",
     words=ORIGINS,
 )  # fmt: skip
 MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN, _COMPONENTS)

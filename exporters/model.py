@@ -1,7 +1,7 @@
 """What every format writes of a scene: lines in groups by axis and kind, flat faces with holes, all in metres.
 
 The axes are the scene's: right-handed, z up. The origin is at the camera, so that every coordinate is small enough for
-the float32 of glTF and USD; or straight below it on the ground, where the scene has one.
+the float32 of glTF and USD; or straight below it on the ground, where a length and the ground are known.
 """
 
 from dataclasses import dataclass
@@ -118,7 +118,7 @@ def build_model(
 
     `by_role` gives the lines of each role a group of their own, `by_band` those of each band, where the scene tells
     probabilities; `by_component` parts lines and faces by the components of the scene. `origin` is
-    one of ORIGINS: the ground is z = 0 where the scene has it.
+    one of ORIGINS: the ground is z = 0 where the scene has it and its scale is known.
     """
     ground = _ground_height(scene) if origin == ON_THE_GROUND else None
     eye = np.array([0.0, 0.0, 0.0 if ground is None else -ground])
@@ -140,12 +140,12 @@ def build_model(
 
 
 def _ground_height(scene: Scene) -> float | None:
-    """m from the camera up to the ground, so negative; None where the scene has no ground below it.
+    """m from the camera up to the ground, so negative; None where the scene tells no scale or no ground below it.
 
     Of several planes with faces of the ground the lowest counts, as where a camera's height is measured from.
     """
     ground = ground_of(scene.planes)
-    return None if ground is None else ground.offset * metres_per_unit(scene)
+    return None if ground is None or scene.metres_per_unit is None else ground.offset * scene.metres_per_unit
 
 
 def metres_per_unit(scene: Scene) -> float:

@@ -2,7 +2,7 @@
 
 Reads the file as docs/reference/scene-file.md promises it, without code of linecad, so that no mistake is made twice.
 Lengths are metres, 1 unit being 1 m where the scale is not known; pixels count from the top left corner of the photo.
-Where the scene has a ground, z = 0 is the ground.
+Where the scale and the ground are known, z = 0 is the ground.
 """
 
 import json
@@ -70,9 +70,9 @@ def build_expectation(scene, by_band=False, by_role=False):
 
 
 def _height(scene):
-    """m of the camera above the lowest ground; 0 where the scene tells no ground below it."""
+    """m of the camera above the lowest ground; 0 where the scene tells no scale or no ground below the camera."""
     heights = [
-        -plane["offset"] * (scene.get("metres_per_unit") or 1.0)
+        -plane["offset"] * (scene.get("metres_per_unit") or 0.0)
         for plane in scene["planes"]
         for face in plane.get("faces", [])
         if plane["axis"] == "z" and face.get("kind") == "ground"

@@ -31,11 +31,11 @@ def test_without_a_ground_the_camera_is_the_origin(document):
     assert build_expectation(document)["camera"]["eye"] == [0.0, 0.0, 0.0]
 
 
-def test_without_a_scale_a_unit_is_a_metre(document):
+def test_without_a_scale_a_unit_is_a_metre_and_the_camera_the_origin(document):
     document["metres_per_unit"] = None
     expected = build_expectation(document)
-    assert expected["camera"]["eye"] == [0.0, 0.0, 1.6]
-    assert {"id": 2, "axis": "z", "offset": 0.0} in expected["planes"]
+    assert expected["camera"]["eye"] == [0.0, 0.0, 0.0]
+    assert {"id": 2, "axis": "z", "offset": -1.6} in expected["planes"]
 
 
 def test_an_opening_has_its_faces_and_reveals_look_into_it(expected):

@@ -136,16 +136,9 @@ def test_the_lowest_of_several_grounds_counts(grounded):
     assert model.eye[2] == pytest.approx(0.5 - plane.offset)
 
 
-def test_the_ground_is_z_0_where_the_scale_is_free_too(grounded):
-    """Models without a scale hung below the grid of other programs."""
-    free = build_model(replace(grounded, metres_per_unit=None), origin="ground")
-    (ground,) = (face for face in free.faces if face.kind == "ground")
-    assert (ground.vertices[:, 2] == 0).all()
-    assert free.unit_note == f"{FREE_UNIT}; {ON_GROUND}"
-
-
-def test_without_a_ground_the_origin_stays_at_the_camera(grounded):
-    changed = replace(grounded, planes=())
+@pytest.mark.parametrize("change", [{"metres_per_unit": None}, {"planes": ()}])
+def test_without_a_scale_or_a_ground_the_origin_stays_at_the_camera(grounded, change):
+    changed = replace(grounded, **change)
     model, plain = build_model(changed, origin="ground"), build_model(changed)
     assert model.eye.tolist() == [0, 0, 0]
     assert model.points.tobytes() == plain.points.tobytes()
