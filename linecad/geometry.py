@@ -175,3 +175,31 @@ def ring_sides(rings: Iterable[Float]) -> Float:
     """Both ends (E, 2, 3) of each side of closed rings (V, 3), ring by ring; (0, 2, 3) for none."""
     sides = [np.stack([ring, np.roll(ring, -1, axis=0)], axis=1) for ring in rings]
     return np.concatenate([np.zeros((0, 2, 3)), *sides])
+
+
+def distances_to(points: Float, segments: Float) -> Float:
+    """How far (M, S) points (M, 3) are from segments (S, 2, 3)."""
+    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
+    off = points[:, None] - start
+    share = (off * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
+    away: Float = np.linalg.norm(off - np.clip(share, 0, 1)[..., None] * along, axis=2)
+    return away
+
+
+def gaps_between(segment: Float, others: Float) -> Float:
+    """How far (S,) a segment (2, 3) is from others (S, 2, 3) where it is nearest to each."""
+    ends = np.minimum(
+        distances_to(segment, others).min(axis=0),
+        distances_to(others.reshape(-1, 3), segment[None])[:, 0].reshape(-1, 2).min(axis=1),
+    )
+    along, beside = segment[1] - segment[0], others[:, 1] - others[:, 0]
+    across = np.cross(along, beside)
+    square = (across**2).sum(axis=1)
+    off = others[:, 0] - segment[0]
+    with np.errstate(divide="ignore", invalid="ignore"):  # parallel ones are nearest at an end
+        share = (np.cross(off, beside) * across).sum(axis=1) / square
+        other = (np.cross(off, along) * across).sum(axis=1) / square
+        apart = np.abs((off * across).sum(axis=1)) / np.sqrt(square)
+    inside = (share >= 0) & (share <= 1) & (other >= 0) & (other <= 1)
+    gaps: Float = np.where(inside, np.minimum(apart, ends), ends)
+    return gaps

@@ -20,6 +20,7 @@ from linecad.model.coplanar import join_planes
 from linecad.model.depth_evidence import depths_of, normals_of
 from linecad.model.face_lines import add_lines, without_repeats
 from linecad.model.faces import find_faces, with_roofs
+from linecad.model.finishing import finished
 from linecad.model.frame_crossings import clean_and_cross, inexact_crossings
 from linecad.model.frame_ends import closed_across, ends_that_meet_others
 from linecad.model.frames import (
@@ -34,14 +35,12 @@ from linecad.model.frames import (
 from linecad.model.groups import with_main_first
 from linecad.model.ids import with_ids_by_place
 from linecad.model.lifting import Lifted
-from linecad.model.merging import with_merged_lines
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet
-from linecad.model.ticks import without_ticks
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Opening, Plane, Scene, SolveReport
@@ -163,7 +162,7 @@ def build_scene(
         openings=openings,
         turns=graph.turns,
     )
-    scene = with_main_first(with_merged_lines(*without_ticks(scene, framed, sight), sight))
+    scene = with_main_first(finished(scene, framed, sight))
     last = (inexact_crossings(scene), *on_faces.notes(scene.lines))
     return with_ids_by_place(replace(scene, notes=(*scene.notes, *filter(None, last))))
 

@@ -5,12 +5,12 @@ upright line meets a level one of any frame where it stands in that one's plane:
 planes. Of all offsets that meet them those are taken that move the least.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import coo_array, csr_array, vstack
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, Turns, directions_of, level_axes
 from linecad.graph.connectivity import group_numbers
 from linecad.model.clean.clean import Cleaned
@@ -18,13 +18,14 @@ from linecad.model.clean.joining import with_ends
 from linecad.model.clean.offsets import Offsets, offsets_of, with_offsets
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import FREE, Strokes, strokes_of
-from linecad.model.frame_ends import closed_across
-from linecad.model.frames import FramedLines, clean_frames, sight_in
+from linecad.model.frame_ends import closed_across, missed_pairs, strokes_in_frames
+from linecad.model.frames import FramedLines, clean_frames, sight_in, without_rounding
 from linecad.scene import Intersections, Lines, Scene
 
 # Of the depth, by which a plane may move to meet others. Two nearly parallel walls ask uprights to move far along both.
 FARTHEST = 0.004
 EXACT = 1e-12  # of the depth; rounding
+HOLDS = 1e-11  # of the depth; rounding of several
 APART = 1e-9  # of the depth, from which crossings are told to be inexact
 PARALLEL = 1e-6  # sine; the pieces of one line have no crossing
 
@@ -44,14 +45,38 @@ def clean_and_cross(
 ) -> tuple[Cleaned, FramedLines]:
     """The lines cleaned within each frame, with exact crossings and closed ends across all; the photo's `width` in px.
 
-    Crossings are made exact before, so that cleaning finds what they make one, and again after it moved planes.
+    Crossings are made exact before, so that cleaning finds what they make one, and again after it moved planes: then
+    ends that nearly meet a line of another frame meet it too, where that asks no more.
     """
+    before = framed
     cleaned, framed = clean_frames(with_exact_crossings(framed, crossings, sight), crossings, sight, width)
-    return cleaned, closed_across(with_exact_crossings(framed, cleaned.intersections, sight), sight)
+    framed = closed_across(with_exact_crossings(framed, cleaned.intersections, sight), sight)
+    missed = missed_pairs(framed, sight)
+    framed = with_exact_crossings(framed, cleaned.intersections, sight, missed)
+    if framed.turns:  # planes that met one of another frame are one
+        moved = _moved(before, framed, cleaned.row, sight)
+        cleaned = replace(cleaned, shared=strokes_in_frames(framed, sight).number, moved=moved)
+    return cleaned, closed_across(framed, sight)
 
 
-def with_exact_crossings(framed: FramedLines, crossings: Intersections, sight: Sight) -> FramedLines:
-    """The lines, whose ids are their rows, with real crossings of two frames exact where no plane moves far for it."""
+def _moved(before: FramedLines, after: FramedLines, row: Int, sight: Sight) -> float:
+    """By which share of its depth the line moved that moved furthest, of lines that became those in their `row` (N,).
+
+    What went into a line of another frame is left out.
+    """
+    old, new = (strokes_in_frames(each, sight) for each in (before, after))
+    same = before.frame == after.frame[row]
+    share = np.linalg.norm(new.offset[row] - old.offset, axis=1)[same] / np.abs(old.depth[same])
+    return float(share.max(initial=0.0))
+
+
+def with_exact_crossings(
+    framed: FramedLines, crossings: Intersections, sight: Sight, missed: Int | None = None
+) -> FramedLines:
+    """The lines, whose ids are their rows, with real crossings of two frames exact where no plane moves far for it.
+
+    Pairs of rows that `missed` (P, 2) meet too, where no crossing has to go for it.
+    """
     if not framed.turns:
         return framed
     frames = [frame for frame in framed.frames if len(framed.of(frame))]
@@ -60,11 +85,20 @@ def with_exact_crossings(framed: FramedLines, crossings: Intersections, sight: S
     planes, first = _planes(framed, strokes, offsets)
     pairs = crossings.lines[crossings.real]
     pairs = pairs[framed.frame[pairs[:, 0]] != framed.frame[pairs[:, 1]]]
-    value = planes.value + _moves(_conditions(framed, planes, pairs), planes)
+    conditions = _conditions(framed, planes, pairs)
+    value = planes.value + _moves(conditions, planes, np.ones(conditions.shape[0], bool))
+    if missed is not None and len(missed):
+        planes = replace(planes, value=value)
+        parts = [_exact(conditions, planes), _conditions(framed, planes, missed)]
+        firm = np.repeat([True, False], [part.shape[0] for part in parts])
+        value = value + _moves(csr_array(vstack(parts)), planes, firm)
 
     def moved(lines: Lines, frame: int) -> Lines:
         old, start = offsets[frame], first[frame]
-        new = Offsets(old.axis, old.start, old.weight, old.nearest, old.lead, value[start : start + len(old.value)])
+        own = value[start : start + len(old.value)].copy()
+        for axis in range(3):
+            own[old.axis == axis] = without_rounding(own[old.axis == axis])
+        new = Offsets(old.axis, old.start, old.weight, old.nearest, old.lead, own)
         return with_ends(lines, with_offsets(strokes[frame], old, new))
 
     return framed.each(moved)
@@ -143,8 +177,17 @@ def _level_vectors(frame: int, turns: Turns) -> Float:
     return vectors
 
 
-def _moves(conditions: csr_array, planes: _Planes) -> Float:
-    """The least moves (C,) with which all conditions (R, C) hold that no plane has to move FARTHEST for."""
+def _exact(conditions: csr_array, planes: _Planes) -> csr_array:
+    """Those of the conditions (R, C) that hold."""
+    left = np.abs(conditions @ planes.value) / np.maximum(abs(conditions) @ planes.nearest, np.finfo(float).tiny)
+    return conditions[np.flatnonzero(left <= HOLDS)]
+
+
+def _moves(conditions: csr_array, planes: _Planes, firm: Bool) -> Float:
+    """The least moves (C,) with which all conditions (R, C) hold that no plane has to move FARTHEST for.
+
+    Those that are not `firm` (R,) hold where no other has to go for it.
+    """
     moves = np.zeros(len(planes.value))
     reach = abs(conditions) @ planes.nearest  # what is gained if each plane of a condition moves by its whole depth
     missed = np.abs(conditions @ planes.value) / np.maximum(reach, np.finfo(float).tiny)
@@ -155,12 +198,15 @@ def _moves(conditions: csr_array, planes: _Planes) -> Float:
     for number in np.unique(group).tolist():
         own = conditions[kept[group == number]]
         columns = np.unique(own.nonzero()[1])
-        moves[columns] = _least(own[:, columns].toarray(), planes, columns)
+        moves[columns] = _least(own[:, columns].toarray(), planes, columns, firm[kept[group == number]])
     return moves
 
 
-def _least(conditions: Float, planes: _Planes, columns: Int) -> Float:
-    """The least moves (K,) of the planes `columns` (K,), without the worst conditions (R, K) as long as one is far."""
+def _least(conditions: Float, planes: _Planes, columns: Int, firm: Bool) -> Float:
+    """The least moves (K,) of the planes `columns` (K,), without the worst conditions (R, K) as long as one is far.
+
+    Those that are `firm` (R,) go last.
+    """
     value, nearest = planes.value[columns], planes.nearest[columns]
     scale = nearest / np.sqrt(np.maximum(planes.weight[columns], 1.0))
     while len(conditions):
@@ -175,5 +221,6 @@ def _least(conditions: Float, planes: _Planes, columns: Int) -> Float:
             asks = left  # conditions that contradict each other
         else:
             return np.asarray(moves)
-        conditions = np.delete(conditions, int(asks.argmax()), axis=0)
+        gone = int(np.lexsort((np.abs(short), asks, ~firm))[-1])
+        conditions, firm = np.delete(conditions, gone, axis=0), np.delete(firm, gone)
     return np.zeros(len(columns))

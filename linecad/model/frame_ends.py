@@ -4,13 +4,14 @@ Two lines of different frames meet where a plane of each is one: level lines tha
 that stands in the plane of a level one. Where they would meet is a place on each, and the rest is as within a frame.
 """
 
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from itertools import permutations
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, directions_of, level_axes, partner
+from linecad.geometry import distances_to
 from linecad.model.clean.ends import MEETS, NEAR, SEVERAL, Pairs, close_ends, ends_that_meet, short_of
 from linecad.model.clean.joining import with_closed_ends, with_ends
 from linecad.model.clean.sight import Sight
@@ -18,6 +19,7 @@ from linecad.model.clean.strokes import FREE, Strokes, pairs_within, strokes_of
 from linecad.model.frames import FramedLines, sight_in
 
 STEEPEST = 3.0  # times as far along a line as away from the other, that an end goes to meet it at a small angle
+STANDS = 0.5  # of NEAR, between a line and one that stands on it at a small angle, and is not beside it
 
 
 def with_ends_closed(framed: FramedLines, sight: Sight) -> FramedLines:
@@ -45,28 +47,47 @@ def ends_that_meet_others(framed: FramedLines, sight: Sight) -> Bool:
     return ends_that_meet(lone, _across(framed, strokes))
 
 
-def ends_that_miss_others(framed: FramedLines, sight: Sight) -> Bool:
-    """Which ends (N, 2) meet no line, and nearly one of another frame."""
-    misses = np.zeros((len(framed.lines), 2), bool)
+@dataclass(frozen=True, eq=False)
+class Misses:
+    """Ends that nearly meet lines of another frame."""
+
+    misses: Bool  # (N, 2) which ends do so, and meet no line
+    hugs: Bool  # (N,) of lines with such an end, those that stand on a line and stay near it: no move closes them
+
+
+def ends_that_miss_others(framed: FramedLines, sight: Sight) -> Misses:
+    """Which ends meet no line, and nearly one of another frame."""
+    misses, hugs = np.zeros((len(framed.lines), 2), bool), np.zeros(len(framed.lines), bool)
     if not framed.turns:
-        return misses
+        return Misses(misses, hugs)
     lines = framed.in_world()
     limit = NEAR * np.abs(lines.ends @ sight.forward)
-    for row in range(len(lines)):
+    strokes = strokes_in_frames(framed, sight)
+    free = ~ends_that_meet(strokes, _across(framed, strokes))
+    for row in np.flatnonzero(free.any(axis=1)).tolist():
         others = np.flatnonzero((framed.frame != framed.frame[row]) & (lines.component == lines.component[row]))
         others = others[lines.axis[others] != lines.axis[row]]
-        misses[row] = _distance(lines.ends[row], lines.ends[others]) <= limit[row]
-    strokes = strokes_in_frames(framed, sight)
-    return misses & ~ends_that_meet(strokes, _across(framed, strokes))
+        away = distances_to(lines.ends[row], lines.ends[others]) / limit[row, :, None]  # (2, K)
+        misses[row] = free[row] & (away <= 1).any(axis=1)
+        hugs[row] = misses[row].any() and ((away <= 1).all(axis=0) & (away.min(axis=0) <= STANDS)).any()
+    return Misses(misses, hugs)
 
 
-def _distance(points: Float, segments: Float) -> Float:
-    """From each point (M, 3) to the nearest of segments (S, 2, 3); infinite where there is none."""
-    start, along = segments[:, 0], segments[:, 1] - segments[:, 0]
-    off = points[:, None] - start
-    share = (off * along).sum(axis=2) / np.maximum((along**2).sum(axis=1), np.finfo(float).tiny)
-    away = np.linalg.norm(off - np.clip(share, 0, 1)[..., None] * along, axis=2)
-    return np.asarray(away.min(axis=1, initial=np.inf))
+def missed_pairs(framed: FramedLines, sight: Sight) -> Int:
+    """Pairs (P, 2) of a line with an end that meets no line, and the line of another frame that it nearly meets."""
+    if not framed.turns:
+        return np.zeros((0, 2), np.int64)
+    lines, strokes = framed.in_world(), strokes_in_frames(framed, sight)
+    free = ~ends_that_meet(strokes, _across(framed, strokes))
+    limit, along = NEAR * np.abs(lines.ends @ sight.forward), directions_of(framed.turns)[lines.axis]
+    found = []
+    for row in np.flatnonzero(free.any(axis=1)).tolist():
+        others = np.flatnonzero((framed.frame != framed.frame[row]) & (lines.component == lines.component[row]))
+        steep = np.linalg.norm(np.cross(along[row], along[others]), axis=1) * STEEPEST >= 1
+        away = distances_to(lines.ends[row], lines.ends[others[steep]])
+        near = free[row] & (away.min(axis=1, initial=np.inf) <= limit[row])
+        found += [(row, int(others[steep][away[end].argmin()])) for end in np.flatnonzero(near).tolist()]
+    return np.array(found, np.int64).reshape(-1, 2)
 
 
 def strokes_in_frames(framed: FramedLines, sight: Sight) -> Strokes:

@@ -8,10 +8,13 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP
-from linecad.geometry import segment_coordinates
+from linecad.geometry import gaps_between, segment_coordinates
 from linecad.lines.details import TWIN
 from linecad.model.clean.ends import NEAR
 from linecad.scene import Lines
+
+LEAST_COMMON = 0.5  # of a piece, that must lie beside the edge in the photo
+MOST_OFF = 2.0  # times what parts two segments of one edge on average, at an end of the piece
 
 
 def edges_repeated(lines: Lines, frame: Int, forward: Float, width: float, spare: Bool | None = None) -> Int:
@@ -19,6 +22,9 @@ def edges_repeated(lines: Lines, frame: Int, forward: Float, width: float, spare
 
     `lines` are in the world, `frame` (N,) is that of each, `forward` (3,) the camera's z and `width` that of the photo,
     px. With `spare` (N,), the others stay as they are.
+
+    A piece may reach beyond the edge by as much as lies beside it: two walls that meet in a corner do not overlap in
+    the photo, but two detections of one edge do.
     """
     home = np.arange(len(lines))
     if not frame.any():
@@ -38,20 +44,24 @@ def edges_repeated(lines: Lines, frame: Int, forward: Float, width: float, spare
 
 
 def _lies_on(lines: Lines, row: int, others: Int, width: float) -> Bool:
-    """Which of the other lines (K,) the segment of a line lies on in the photo, from end to end."""
+    """Which of the other lines (K,) the segment of a line lies on in the photo over half of it, on average."""
     segments, twin = lines.segment[others], TWIN.px(width)
     along, off = segment_coordinates(lines.segment[row], segments[:, None])  # (K, 2)
     length = np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1)
-    lies: Bool = (np.abs(off) <= twin).all(axis=1) & (along.min(axis=1) >= -twin) & (along.max(axis=1) <= length + twin)
+    common = np.minimum(along.max(axis=1), length) - np.maximum(along.min(axis=1), 0.0)
+    # Noise turns a short segment, so that it crosses the edge: a corner or a second edge lies on one side of it.
+    size, crosses = np.abs(off), off[:, 0] * off[:, 1] < 0
+    mean = np.where(crosses, (off**2).sum(axis=1) / np.maximum(size.sum(axis=1), 1.0), size.sum(axis=1)) / 2
+    lies: Bool = (
+        (mean <= twin) & (size.max(axis=1) <= MOST_OFF * twin) & (common >= LEAST_COMMON * np.ptp(along, axis=1))
+    )
     return lies
 
 
 def _is_near(lines: Lines, row: int, others: Int, forward: Float) -> Bool:
-    """Which of the other lines (K,) pass the middle of a line in space."""
-    middle = lines.ends[row].mean(axis=0)
-    start = lines.ends[others, 0]
-    along = lines.ends[others, 1] - start
-    along = along / np.linalg.norm(along, axis=1)[:, None]
-    off = middle - start
-    away = np.linalg.norm(off - (off * along).sum(axis=1)[:, None] * along, axis=1)
-    return np.asarray(away <= NEAR * abs(float(middle @ forward)))
+    """Which of the other lines (K,) a line comes near to in space, anywhere along both.
+
+    Near the horizon lines of all level directions look alike, so that the pieces of an edge may part behind.
+    """
+    depth = abs(float(lines.ends[row].mean(axis=0) @ forward))
+    return np.asarray(gaps_between(lines.ends[row], lines.ends[others]) <= NEAR * depth)

@@ -13,6 +13,7 @@ import numpy as np
 
 from linecad.arrays import Float, Int, rows_of
 from linecad.directions import UP, Turns, components, directions_of, frame_axes, frame_of
+from linecad.geometry import depths_beside, world_rays
 from linecad.model.clean.clean import Cleaned, clean_lines
 from linecad.model.clean.joining import by_size, joined_crossings, with_pieces
 from linecad.model.clean.sight import Sight
@@ -149,12 +150,12 @@ def framed_lines(lines: Lines, crossings: Intersections, turns: Turns) -> Framed
     for frame in range(1, len(turns) + 1):
         own = np.flatnonzero(home == frame)
         for axis in frame_axes(frame):
-            offset[own, axis] = _without_rounding(offset[own, axis])
+            offset[own, axis] = without_rounding(offset[own, axis])
     offset[np.arange(len(lines)), lines.axis] = np.nan
     return in_frames(lines, offset, home, turns)
 
 
-def _without_rounding(values: Float) -> Float:
+def without_rounding(values: Float) -> Float:
     """The values (M,), those that rounding alone parts equal to the least of them."""
     order = np.argsort(values, kind="stable")
     ordered = values[order]
@@ -185,8 +186,8 @@ def clean_frames(
 ) -> tuple[Cleaned, FramedLines]:
     """The lines joined and closed within each frame (`linecad.model.clean.clean`), and the crossings of all.
 
-    What repeats an edge of another frame goes into it. Components are numbered by the size that they have then; the
-    photo is `width` px wide.
+    What repeats an edge of another frame goes into it, unless a person spoke of it. Components are numbered by the size
+    that they have then; the photo is `width` px wide.
     """
     if not framed.turns:
         cleaned = clean_lines(framed.lines, crossings, sight)
@@ -209,10 +210,12 @@ def clean_frames(
         frames.append(np.full(len(part.lines), frame))
         count += len(part.lines)
     every = FramedLines(together([part.lines for part in parts]), np.concatenate(frames), framed.turns)
-    home = edges_repeated(every.in_world(), every.frame, sight.forward, width)
+    spare = np.ones(count, bool)
+    spare[row[np.isin(framed.lines.id, crossings.lines[np.asarray(crossings.reason) == "annotated"])]] = False
+    home = edges_repeated(every.in_world(), every.frame, sight.forward, width, spare)
     kept = np.flatnonzero(home == np.arange(count))
     row = np.searchsorted(kept, home[row])
-    lines = replace(rows_of(with_pieces(every.lines, home), kept), id=np.arange(len(kept)))
+    lines = replace(rows_of(with_repeats(every, home, sight), kept), id=np.arange(len(kept)))
     shared, depth, reach = (
         np.concatenate([getattr(part, name) for part in parts])[kept] for name in ("shared", "depth", "reach")
     )
@@ -226,6 +229,27 @@ def clean_frames(
         reach=reach,
     )
     return cleaned, FramedLines(by_size(lines), every.frame[kept], framed.turns)
+
+
+def with_repeats(framed: FramedLines, home: Int, sight: Sight) -> Lines:
+    """The lines (N) with those that went into another, `home` (N,), among its pieces; it reaches as far as they do.
+
+    How far is told by the photo, since a piece of another frame has another direction in space. Where a line runs away
+    from the camera a pixel may be any length: it grows at either end by no more than its own.
+    """
+    lines = with_pieces(framed.lines, home)
+    ends = lines.ends.copy()
+    for row in np.flatnonzero(home != np.arange(len(lines))).tolist():
+        into = int(home[row])
+        axis, rotation = lines.axis[into], sight_in(sight, int(framed.frame[into]), framed.turns).rotation
+        rays = world_rays(framed.lines.segment[row], sight.matrix, rotation)
+        depth = depths_beside(rays, ends[into, :1].repeat(2, axis=0), axis.repeat(2))
+        order = np.argsort(ends[into, :, axis])
+        low, high = ends[into, order, axis]
+        place = (rays[:, axis] * depth)[depth > 0]
+        place = place[np.abs(place - (low + high) / 2) <= 1.5 * (high - low)]
+        ends[into, order, axis] = min(low, place.min(initial=low)), max(high, place.max(initial=high))
+    return replace(lines, ends=ends)
 
 
 def planes_of(framed: FramedLines, shared: Int) -> tuple[Plane, ...]:

@@ -18,12 +18,12 @@ from linecad.model.frames import FramedLines
 from linecad.scene import Lines, Scene
 
 
-def with_merged_lines(scene: Scene, framed: FramedLines, sight: Sight) -> Scene:
+def with_merged_lines(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scene, FramedLines]:
     """The scene with one line for those that are one to the last digit and overlap, or have a gap of less than NEAR.
 
-    `framed` are its lines, row by row. Of each such group the longest in the photo stays, by its id, and reaches as far
-    as all do; lines stay as they are of which a person said that they are two. What faces placed along an edge of
-    another frame goes into that.
+    `framed` are its lines, row by row, and come back so. Of each such group the longest in the photo stays, by its id,
+    and reaches as far as all do; lines stay as they are of which a person said that they are two. What faces placed
+    along an edge of another frame goes into that.
     """
     strokes = strokes_in_frames(framed, sight)
     strokes = replace(strokes, number=_uprights_as_one(framed, strokes))
@@ -36,12 +36,15 @@ def with_merged_lines(scene: Scene, framed: FramedLines, sight: Sight) -> Scene:
     home = home[edges_repeated(scene.lines, framed.frame, sight.forward, scene.camera.width, by_face)]
     kept = home == strokes.rows
     if kept.all():
-        return scene
-    lines = replace(framed, lines=with_ends(framed.lines, replace(strokes, reach=reach))).in_world()
+        return scene, framed
+    lines = _told_by_all(with_ends(framed.lines, replace(strokes, reach=reach)), home)
     crossings = joined_crossings(scene.intersections, lines.id, home, len(home))
     crossings = replace(crossings, lines=lines.id[crossings.lines])
-    found = with_lines(replace(scene, lines=_told_by_all(lines, home), intersections=crossings), kept)
-    return replace(found, lines=by_size(found.lines))
+    framed = replace(framed, lines=lines)
+    found = with_lines(replace(scene, lines=framed.in_world(), intersections=crossings), kept)
+    framed = framed.of_rows(np.flatnonzero(kept))
+    framed = replace(framed, lines=by_size(framed.lines))
+    return replace(found, lines=framed.in_world()), framed
 
 
 def _uprights_as_one(framed: FramedLines, strokes: Strokes) -> Int:

@@ -16,12 +16,18 @@ from linecad.model.clean.joining import by_size
 from linecad.model.clean.settling import at_outlines, outlines_of
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import Strokes, strokes_of
-from linecad.model.frame_ends import ends_that_meet_others, ends_that_miss_others, with_ends_closed
+from linecad.model.frame_ends import (
+    ends_that_meet_others,
+    ends_that_miss_others,
+    strokes_in_frames,
+    with_ends_closed,
+)
 from linecad.model.frames import FramedLines, in_frame, sight_in
 from linecad.scene import DETAIL, Lines, Scene
 
 LONGEST = 2 * NEAR  # of the depth; whatever its one end meets, the other end of a longer line is no near miss of it
 LEAST_FREE = 0.2  # of the depth; a shorter line that only a face placed is none where both of its ends are in the air
+LONGEST_BEFORE = 0.05  # of the depth; a shorter detail that ends just before or behind a line is not worth its gap
 MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by then
 
 
@@ -29,8 +35,8 @@ def without_ticks(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scen
     """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
 
     Lines stay that a person said something about, and that alone connect others. Planes go that only ticks showed, and
-    components that were nothing else, but for component 0; a note counts the ticks. `framed` are the lines of the
-    scene, row by row: what they meet and miss is looked for among those of their frame.
+    components that were nothing else, but for component 0. `framed` are the lines of the scene, row by row: what they
+    meet and miss is looked for among those of their frame.
     """
     outlines = outlines_of(scene.planes)
     found = scene
@@ -41,15 +47,13 @@ def without_ticks(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scen
         found = with_lines(found, ~ticks)
         framed = with_ends_closed(framed.of_rows(np.flatnonzero(~ticks)), sight)
         found = replace(found, lines=framed.in_world())
-    gone = len(scene.lines) - len(found.lines)
-    if gone == 0:
+    if len(found.lines) == len(scene.lines):
         return scene, framed
     shown = {plane.id for plane in scene.planes if not plane.lines}
     planes = tuple(plane for plane in found.planes if plane.lines or plane.faces or plane.id in shown)
     crossings = replace(found.intersections, in_tree=_spanning(found, ~found.intersections.in_tree))
-    note = f"{gone} stubs of detail that end nowhere are left out"
     lines = by_size(found.lines)
-    found = replace(found, lines=lines, intersections=crossings, planes=planes, notes=(*scene.notes, note))
+    found = replace(found, lines=lines, intersections=crossings, planes=planes)
     return found, replace(framed, lines=replace(framed.lines, component=lines.component))
 
 
@@ -78,12 +82,16 @@ def _ticks(scene: Scene, framed: FramedLines, outlines: Float, sight: Sight) -> 
     crossings = scene.intersections
     said = np.unique(crossings.lines[np.asarray(crossings.reason) == "annotated"])
     ticks, others = np.zeros(len(framed.lines), bool), ends_that_meet_others(framed, sight)
-    missed = ends_that_miss_others(framed, sight).any(axis=1)
+    missed = ends_that_miss_others(framed, sight)
     for frame in framed.frames:
         rows, seen = framed.of(frame), sight_in(sight, frame, scene.turns)
         there = in_frame(outlines, frame, scene.turns)
         ticks[rows] = _ticks_among(rows_of(framed.lines, rows), others[rows], there, seen)
-    ticks |= missed & np.asarray(framed.lines.by_face) & (framed.lines.role == DETAIL)
+    length = np.linalg.norm(np.diff(framed.lines.ends, axis=1)[:, 0], axis=1)
+    spare = np.asarray(framed.lines.by_face) | (
+        length < LONGEST_BEFORE * np.abs(strokes_in_frames(framed, sight).depth)
+    )
+    ticks |= ((missed.misses.any(axis=1) & spare) | missed.hugs) & (framed.lines.role == DETAIL)
     return ticks & ~np.isin(scene.lines.id, said)
 
 
@@ -92,10 +100,10 @@ def _ticks_among(lines: Lines, others: Bool, outlines: Float, sight: Sight) -> B
     strokes = strokes_of(lines, sight.forward)
     meets = ends_that_meet(strokes) | others
     ticks: Bool = (np.ptp(strokes.reach, axis=1) < LONGEST * np.abs(strokes.depth)) & ~meets.all(axis=1)
-    ticks &= lines.role == DETAIL
+    ticks &= (lines.role == DETAIL) | np.asarray(lines.by_face)  # without its short edges a face is as it was
     ends_well = meets[ticks] | (at_outlines(strokes.of(ticks), outlines, sight) & ~_misses(strokes, ticks))
     ticks[ticks] = ~ends_well.all(axis=1)
-    return ticks | _hanging(lines, strokes, meets, outlines, sight)
+    return ticks | _hanging(lines, strokes, meets, outlines, sight) | _before_others(lines, strokes, meets)
 
 
 def _hanging(lines: Lines, strokes: Strokes, meets: Bool, outlines: Float, sight: Sight) -> Bool:
@@ -106,6 +114,12 @@ def _hanging(lines: Lines, strokes: Strokes, meets: Bool, outlines: Float, sight
     hangs = np.zeros(len(lines), bool)
     hangs[own] = ends_that_miss(strokes, meets)[own].any(axis=1) | (is_short & ~ends_well.any(axis=1))
     return hangs
+
+
+def _before_others(lines: Lines, strokes: Strokes, meets: Bool) -> Bool:
+    """Which short details (N,) end before or behind a line of a parallel plane, where no move of an end closes them."""
+    is_short: Bool = np.ptp(strokes.reach, axis=1) < LONGEST_BEFORE * np.abs(strokes.depth)
+    return is_short & (lines.role == DETAIL) & ends_that_miss(strokes, meets).any(axis=1)
 
 
 def _misses(strokes: Strokes, chosen: Bool) -> Bool:

@@ -16,6 +16,8 @@ from linecad.geometry import (
     central_camera,
     depths_beside,
     directions_to,
+    distances_to,
+    gaps_between,
     homogeneous,
     plane_normals,
     project,
@@ -174,3 +176,30 @@ def test_a_segment_reaches_across_a_point_on_it_and_not_across_one_beyond(seed):
     found = reach_across(ends, np.column_stack([points, np.ones(8)]) * weight[:, None])
     assert np.diag(found).tolist() == [False, False, True, True, True, True, False, False]
     assert not reach_across(ends, np.array([[1.0, 2.0, 0.0]])).any()  # nothing reaches what is at infinity
+
+
+def coordinates(count):
+    return st.lists(small, min_size=3 * count, max_size=3 * count).map(lambda each: np.array(each).reshape(count, 3))
+
+
+@given(points=coordinates(2), segment=coordinates(2))
+def test_the_distance_to_a_segment_is_the_least_of_its_points(points, segment):
+    along = segment[0] + np.linspace(0, 1, 2001)[:, None] * (segment[1] - segment[0])
+    least = np.linalg.norm(points[:, None] - along, axis=2).min(axis=1)
+    np.testing.assert_allclose(distances_to(points, segment[None])[:, 0], least, atol=1e-2)
+    assert (distances_to(points, segment[None])[:, 0] <= least + 1e-9).all()
+
+
+@given(segment=coordinates(2), other=coordinates(2))
+def test_the_gap_between_segments_is_the_least_between_their_points(segment, other):
+    share = np.linspace(0, 1, 301)[:, None]
+    along = segment[0] + share * (segment[1] - segment[0])
+    least = distances_to(along, other[None]).min()
+    found = gaps_between(segment, other[None])[0]
+    assert least - 0.04 <= found <= least + 1e-9
+
+
+def test_the_gap_is_found_between_crossing_parallel_and_far_segments():
+    segment = np.array([[-1.0, 0, 0], [1, 0, 0]])
+    others = np.array([[[0, -1, 0.5], [0, 1, 0.5]], [[0, 0.25, 0], [5, 0.25, 0]], [[2, 0, 0], [3, 0, 0]]])
+    np.testing.assert_allclose(gaps_between(segment, others), [0.5, 0.25, 1.0])

@@ -9,9 +9,10 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from linecad.directions import components, directions_of
+from linecad.geometry import project
 from linecad.model.clean.sight import Sight
-from linecad.model.frame_crossings import FARTHEST, inexact_crossings, with_exact_crossings
-from linecad.model.frames import FramedLines
+from linecad.model.frame_crossings import FARTHEST, clean_and_cross, inexact_crossings, with_exact_crossings
+from linecad.model.frames import FramedLines, in_frame
 from linecad.scene import Scene, SolveReport
 
 TURNS = (0.5,)
@@ -88,6 +89,25 @@ def test_conditions_that_contradict_each_other_lose_the_worst(lines, crossings, 
     assert sorted(gaps < 1e-12) == [False, True]
 
 
+def test_ends_that_miss_meet_where_no_crossing_has_to_go_for_it(lines, crossings, sight):
+    rows = [beam(1.0), beam(1.03), beam(1.0), beam(1.085), beam(2.0), beam(2.03)]
+    before = framed_of(lines, rows, [0, 1, 0, 1, 0, 1])
+    pairs = crossings([(0, 1)])
+    missed = np.array([(2, 3), (5, 4)])
+    after = with_exact_crossings(before, pairs, sight, missed).lines.ends[:, 0, Z]
+    assert after[0] == pytest.approx(after[1], abs=1e-12)  # beams 0 and 2 are one plane, which cannot reach both
+    assert abs(after[2] - after[3]) > 1e-3
+    assert after[4] == pytest.approx(after[5], abs=1e-12)
+    real = with_exact_crossings(before, pairs, sight).lines.ends[:, 0, Z]
+    assert abs(real[4] - real[5]) > 1e-3
+
+
+def test_planes_of_a_frame_that_meet_one_of_another_are_one_to_the_last_digit(lines, crossings, sight):
+    rows = [beam(0.3 + 1 / 3), beam(0.64), beam(0.65), beam(0.66)]
+    found = with_exact_crossings(framed_of(lines, rows, [0, 1, 0, 0]), crossings([(0, 1), (1, 2), (1, 3)]), sight).lines
+    assert len(set(found.ends[[0, 2, 3], 0, Z].tolist())) == 1
+
+
 def test_crossings_that_are_not_real_move_nothing(lines, crossings, sight):
     before = framed_of(lines, [beam(1.0), beam(1.02)], [0, 1])
     after = with_exact_crossings(before, crossings([(0, 1)], real=False), sight)
@@ -144,3 +164,40 @@ def test_what_stays_apart_is_counted(lines, crossings, camera, rotation):
     assert inexact_crossings(scene).startswith("1 of 2 real crossings join lines of two frames that stay apart")
     assert "at most 0.2% of the depth" in inexact_crossings(scene)
     assert inexact_crossings(replace(scene, intersections=crossings([(0, 2)]))) == ""
+
+
+def test_what_cleaning_and_crossing_moved_is_told(lines, crossings, camera, sight):
+    """Two pieces of one beam, one that crosses it in the turned frame, and one there that only ends near it."""
+    there = in_frame(np.array([0.0, DEPTH, 0.5]), 1, TURNS)
+    along, _, up = np.eye(3)
+    rows = [
+        (X, (-2, DEPTH, 0.5), (-0.9, DEPTH, 0.5)), (X, (-1, DEPTH, 0.5), (0.02, DEPTH, 0.5)),
+        (X, there + 0.03 * up, there + along + 0.03 * up),
+        (X, (-2, DEPTH, 1.5), (0, DEPTH, 1.5)), (X, there + 1.04 * up, there + along + 1.04 * up),
+    ]  # fmt: skip
+    before = framed_of(lines, rows, [0, 0, 1, 0, 1])
+    cleaned, after = clean_and_cross(before, crossings([(0, 1), (1, 2)]), sight, camera.width)
+    assert len(after.lines) == 4
+    assert cleaned.row[0] == cleaned.row[1]
+    start, end = after.in_world().ends[cleaned.row[[2, 4]], 0], after.in_world().ends[cleaned.row[[1, 3]], 1]
+    np.testing.assert_allclose(start, end, atol=1e-12)
+    farthest = np.abs(after.lines.ends[cleaned.row, 0, Z] - before.lines.ends[:, 0, Z]) / DEPTH
+    assert cleaned.moved == pytest.approx(farthest.max(), rel=0.2)
+    level = cleaned.shared[:, Z]
+    assert len(set(level.tolist())) == 4  # a plane of each frame at both heights
+
+
+def test_a_piece_of_which_a_person_spoke_stays_apart(lines, crossings, camera, sight):
+    turns = (0.1,)
+    start = np.array([-1.0, DEPTH, 0.0])
+    turned = in_frame(np.stack([start, start + 1.5 * directions_of(turns)[3]]), 1, turns)
+    rows = [(X, (-2, DEPTH, 0), (2, DEPTH, 0)), (X, *turned), (Z, (-2, DEPTH, -1), (-2, DEPTH, 1))]
+    rows = lines(rows)
+    seen = project(
+        np.stack([rows.ends[0], [start, start + 1.5 * directions_of(turns)[3]]]), camera.matrix, sight.rotation
+    )
+    rows = replace(rows, segment=np.concatenate([seen, rows.segment[2:]]))
+    for reason, left in (("", 2), ("annotated", 3)):
+        framed = FramedLines(rows, np.array([0, 1, 0]), turns)
+        found = clean_and_cross(framed, crossings([(0, 1), (0, 2)], reason=reason), sight, camera.width)[1]
+        assert len(found.lines) == left

@@ -10,6 +10,7 @@ from linecad.model.frame_ends import (
     closed_across,
     ends_that_meet_others,
     ends_that_miss_others,
+    missed_pairs,
     strokes_in_frames,
     with_ends_closed,
 )
@@ -47,9 +48,9 @@ def test_an_end_near_a_line_of_another_frame_goes_there(corner, sight, short):
     np.testing.assert_allclose(after.lines.ends[0, 1], CORNER, atol=1e-12)
     np.testing.assert_allclose(after.lines.ends[1], before.lines.ends[1], atol=1e-12)
     assert ends_that_meet_others(before, sight).tolist() == [[False, False], [short < 0, False]]
-    assert ends_that_miss_others(before, sight).tolist() == [[False, True], [short > 0, False]]
+    assert ends_that_miss_others(before, sight).misses.tolist() == [[False, True], [short > 0, False]]
     assert ends_that_meet_others(after, sight).tolist() == [[False, True], [True, False]]
-    assert not ends_that_miss_others(after, sight).any()
+    assert not ends_that_miss_others(after, sight).misses.any()
 
 
 @pytest.mark.parametrize(("short", "height"), [(0.3, 0.0), (0.06, 0.01)])
@@ -61,7 +62,8 @@ def test_an_end_that_is_far_or_higher_stays(corner, sight, short, height):
 def test_lines_of_two_components_do_not_meet(corner, sight):
     before = corner(0.06, component=[0, 1])
     np.testing.assert_array_equal(closed_across(before, sight).lines.ends, before.lines.ends)
-    assert not ends_that_miss_others(before, sight).any()
+    assert not ends_that_miss_others(before, sight).misses.any()
+    assert len(missed_pairs(before, sight)) == 0
 
 
 def test_at_a_small_angle_an_end_goes_further_but_not_any_way(lines, sight):
@@ -102,4 +104,20 @@ def test_with_one_frame_ends_close_within_it_alone(lines, sight):
     assert closed_across(only, sight) is only
     assert with_ends_closed(only, sight).lines.ends[0, 1].tolist() == [1, DEPTH, 0]
     assert not ends_that_meet_others(only, sight).any()
-    assert not ends_that_miss_others(only, sight).any()
+    assert not ends_that_miss_others(only, sight).misses.any()
+    assert len(missed_pairs(only, sight)) == 0
+
+
+def test_pairs_that_miss_are_those_whose_planes_are_apart(corner, sight):
+    assert missed_pairs(corner(0.06, 0.04), sight).tolist() == [[0, 1], [1, 0]]
+    assert len(missed_pairs(corner(0.0), sight)) == 0
+    assert len(missed_pairs(corner(0.0, 0.2), sight)) == 0
+
+
+@pytest.mark.parametrize(("height", "length", "hugs"), [(0.0, 0.4, True), (0.0, 0.8, False), (0.08, 0.3, False)])
+def test_a_line_hugs_one_that_it_stands_on_and_does_not_leave(lines, sight, height, length, hugs):
+    turns = (0.2,)
+    there = in_frame(CORNER + height * np.array([0, 0, 1.0]), 1, turns)
+    rows = [(X, (-2, DEPTH, 0), (2, DEPTH, 0)), (X, there, there + length * ALONG)]
+    found = ends_that_miss_others(FramedLines(lines(rows), np.array([0, 1]), turns), sight)
+    assert found.hugs.tolist() == [False, hugs]

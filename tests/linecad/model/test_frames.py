@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from linecad.directions import components, directions_of, frame_axes
-from linecad.model.frames import FramedLines, framed_lines, in_frame, in_frames, planes_in
+from linecad.geometry import project
+from linecad.model.clean.sight import Sight
+from linecad.model.frames import FramedLines, framed_lines, in_frame, in_frames, planes_in, with_repeats
 from linecad.scene import Face, Lines, Plane
 
 TURNS = (0.4, -0.2)
@@ -119,3 +121,26 @@ def test_lines_of_a_scene_are_in_their_frames_and_what_is_equal_there_is_so_to_t
     assert found.lines.axis.tolist() == [0, 2, 0, 2, 1, 0]
     only = framed_lines(replace(own, axis=np.minimum(AXIS, 2)), crossings(pairs), ())
     assert not only.frame.any()
+
+
+def test_an_edge_reaches_as_far_as_its_pieces_of_another_frame_in_the_photo(camera, rotation):
+    turns = (0.1,)
+    along = directions_of(turns)[3]
+    level = np.array([1.0, 10, 0])  # on the horizon, where the photo shows one line
+    piece, edge = np.stack([level, level + 2 * along]), np.array([[-3.0, 10, 0], [2, 10, 0]])
+    far = np.array([[-3.0, 10, 0], [9, 10, 0]])
+    for ends, low, high in ((edge, -3, None), (edge[::-1], -3, None), (far, -3, 9)):
+        seen = project(np.stack([ends, piece]), camera.matrix, rotation)
+        two = Lines(
+            id=np.arange(2), axis=np.array([0, 3]), segment=seen, ends=np.stack([ends, piece]),
+            is_boundary=np.zeros(2, bool), component=np.zeros(2, int), confidence=np.full(2, "weak"),
+        )  # fmt: skip
+        found = with_repeats(
+            in_frames(two, np.full((2, 5), np.nan), np.array([0, 1]), turns), np.array([0, 0]),
+            Sight.of(camera, rotation, None),
+        )  # fmt: skip
+        tip = piece[1] * (10 / piece[1, 1])  # where its ray meets the wall of the edge
+        np.testing.assert_allclose(np.sort(found.ends[0, :, 0]), [low, high or tip[0]], atol=1e-6)
+        np.testing.assert_array_equal(found.ends[0, :, 1:], ends[:, 1:])
+        assert (found.ends[0, 0, 0] < found.ends[0, 1, 0]) == (ends[0, 0] < ends[1, 0])
+        assert len(found.pieces[0]) == 2

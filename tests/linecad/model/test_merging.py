@@ -36,7 +36,10 @@ def merged(lines, crossings, camera, rotation):
             intersections=crossings(list(pairs), **told), planes=(Plane(0, Y, DEPTH, tuple(range(len(rows))), ()),),
             solve=SolveReport("SCIP 10.0", "bodies", "optimal", 0, 0, 0),
         )  # fmt: skip
-        return scene, with_merged_lines(scene, framed, Sight.of(camera, rotation, None))
+        found, rows_left = with_merged_lines(scene, framed, Sight.of(camera, rotation, None))
+        assert rows_left.lines.id.tolist() == found.lines.id.tolist()
+        np.testing.assert_array_equal(rows_left.in_world().ends, found.lines.ends)
+        return scene, found
 
     return merge
 

@@ -46,12 +46,11 @@ def drawn(lines, crossings, camera, rotation):
     return draw
 
 
-def test_a_tick_goes_with_its_crossing_and_a_note_counts_it(drawn):
+def test_a_tick_goes_with_its_crossing(drawn):
     _, found = drawn([tick(0.07), tick(0.3, 1)])
     assert found.lines.id.tolist() == [0, 1, 3]
     assert found.intersections.lines.tolist() == [[0, 1], [0, 3]]
     assert found.planes[0].lines == (0, 1, 3)
-    assert found.notes == ("before", "1 stubs of detail that end nowhere are left out")
 
 
 def test_a_scene_without_ticks_is_the_scene_as_it_is(drawn):
@@ -62,6 +61,33 @@ def test_a_scene_without_ticks_is_the_scene_as_it_is(drawn):
 def test_a_short_line_between_two_lines_is_none(drawn):
     before, found = drawn([tick(0.07), (X, (-1, DEPTH, 0.07), (1, DEPTH, 0.07))])
     assert found is before
+
+
+@pytest.mark.parametrize(
+    ("behind", "height", "ids"), [(0.05, 0.3, [0, 1]), (0.05, 0.8, [0, 1, 2]), (0.5, 0.3, [0, 1, 2])]
+)
+def test_a_short_detail_just_before_or_behind_a_line_goes(drawn, behind, height, ids):
+    for off in (behind, -behind):
+        _, found = drawn([(Z, (0, DEPTH + off, 0), (0, DEPTH + off, height))])
+        assert found.lines.id.tolist() == ids
+
+
+def test_a_short_edge_that_only_a_face_placed_goes_whatever_it_is_for(drawn):
+    for by_face, ids in ((True, [0, 1]), (False, [0, 1, 2])):
+        _, found = drawn([tick(0.07)], roles=["outline"] * 3, by_face=by_face)
+        assert found.lines.id.tolist() == ids
+
+
+@pytest.mark.parametrize(("length", "left"), [(0.4, [0, 1]), (0.9, [0, 1, 2])])
+def test_a_line_that_stands_on_one_of_another_frame_and_stays_near_it_goes(drawn, camera, rotation, length, left):
+    scene, _ = drawn([SILL])
+    turns, ends = (0.2,), scene.lines.ends.copy()
+    start = in_frame(np.array([0, DEPTH, 0]), 1, turns)
+    ends[2] = [start, start + length * np.array([1.0, 0, 0])]
+    framed = FramedLines(replace(scene.lines, ends=ends), np.array([0, 0, 1]), turns)
+    scene = replace(scene, lines=framed.in_world(), planes=(), turns=turns)
+    found, _ = without_ticks(scene, framed, Sight.of(camera, rotation, None))
+    assert found.lines.id.tolist() == left
 
 
 @pytest.mark.parametrize(("roles", "reason"), [(["outline"] * 3, ""), (None, "annotated")])
@@ -151,7 +177,7 @@ def test_details_that_a_face_placed_hang_nowhere(drawn, row, stays):
 
 
 def test_a_tick_of_a_turned_wall_goes_as_it_would_in_the_first(drawn, camera, rotation):
-    scene, straight = drawn([tick(0.07), tick(0.3, 1), (X, (0, DEPTH, 0.3), (0.995, DEPTH, 0.3))])
+    scene, straight = drawn([tick(0.07), tick(0.6, 1), (X, (0, DEPTH, 0.6), (0.995, DEPTH, 0.6))])
     turns = (0.4,)
     frame = np.ones(len(scene.lines), np.int64)
     framed = FramedLines(scene.lines, frame, turns)
