@@ -18,8 +18,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from exporters.beside import NOTHING, Beside, write_with_side_files
-from exporters.drawings.sizes import FIT, SCALES, SIZES
-from exporters.model import ORIGINS, build_model
+from exporters.format_options import (
+    DPI,
+    IDS,
+    INSTANCES,
+    MODEL_OPTIONS,
+    ORIGIN,
+    SEWN,
+    SHEET,
+    TEXTURES,
+    THICKNESS,
+    TUBES,
+    UNDERLAY,
+    UP,
+    VERSION,
+)
+from exporters.model import build_model
 from exporters.options import Option, Value, read_options
 from exporters.textures.pages import PAGE_NAME, Textures
 from linecad.errors import OutputError
@@ -53,60 +67,6 @@ class Format(NamedTuple):
     extra: Extra | None = None  # what must be installed for it beside linecad
 
 
-_THICKNESS = Option(
-    "wall-thickness", 0.3, "how thick walls are taken to be, in metres: the photo shows their faces alone",
-    least=0.01, most=5.0,
-)  # fmt: skip
-_BANDS = Option(
-    "probability", False, "layers and groups of lines by how sure their depth is: ..._sure, ..._likely, ..._guess"
-)
-_ROLES = Option(
-    "roles", False, "layers and groups of lines by what they are drawn for: ..._opening for sides of openings, "
-    "..._detail for bars, panes, joints and courses",
-)  # fmt: skip
-_COMPONENTS = Option(
-    "components", False, "layers and groups of lines and faces by the groups of lines that hang together: "
-    "..._component_1 and so on for all but component 0",
-)  # fmt: skip
-_ORIGIN = Option(
-    "origin", ORIGINS[0], "z = 0 is the ground, where the scale and the ground are known, or the camera is the origin",
-    words=ORIGINS,
-)  # fmt: skip
-MODEL_OPTIONS = (_BANDS, _ROLES, _ORIGIN, _COMPONENTS)
-_INSTANCES = Option(
-    "instances", False, "equal windows and doors as one shape placed many times, in GLB and USD with the texture of "
-    "the one that the photo shows best, in STEP and USD without names by id",
-)  # fmt: skip
-_VERSION = Option("version", "R2010", "the release of AutoCAD that the file is for", words=("R2010", "R2018"))
-_SEWN = Option("sewn", False, "faces that share edges as shells in one part, which costs the names of the faces")
-_TUBES = Option("tubes", False, "lines as thin tubes, which renderers show, instead of as lines, which they do not")
-
-_IDS = Option("ids", False, "the ids of lines on them in the picture, in place of the marks of crossings")
-_UP = Option("up", "y", "what is up in an OBJ: y as most programs take it, or z as FreeCAD does", words=("y", "z"))
-
-_ON = Option("textures", True, "the photo on the faces, where it is at hand")
-_SIZE = Option("texture-size", 4096, "the most texels a side of a picture of textures", least=256, most=16384)
-_FILL = Option(
-    "texture-fill", "own", "what is painted where a tree, a car or the like hides a face: its own colours and grain, "
-    "or plain grey",
-    words=("own", "grey"),
-)  # fmt: skip
-TEXTURES = (_ON, _SIZE, _FILL)
-
-_FACADE = Option("facade", 0, "what is drawn, level in a plan: 0 is the largest facade, and so on", least=0, most=9999)
-_SCALE = Option(
-    "drawing-scale", FIT, "the scale of the drawing, or the largest usual one that fits on the paper",
-    words=(FIT, *(f"1:{each}" for each in SCALES)),
-)  # fmt: skip
-_PAPER = Option(
-    "paper", FIT, "the size of the sheet, or the smallest that the scale fits on, A3 without a scale",
-    words=(FIT, *SIZES),
-)  # fmt: skip
-_DPI = Option("dpi", 200, "the resolution of the photo on the paper", least=10, most=2400)
-UNDERLAY = Option("underlay", True, "the rectified photo beneath the lines, where it is at hand")
-DRAWING_SCALE, PAPER, FACADE = _SCALE.key, _PAPER.key, _FACADE.key
-_SHEET = (_FACADE, _SCALE, _PAPER)
-
 _PAGES = Beside(folder=".textures", part=PAGE_NAME)
 _PICTURE = Beside(folder=".pictures", part=PAGE_NAME)
 _WORLD_FILE = Beside(library="w", keeps_name=True)  # `a.tifw`: that is how readers find it
@@ -114,19 +74,19 @@ _PAGES_AND_MATERIALS = Beside(folder=".textures", part=PAGE_NAME, library=".mtl"
 
 FORMATS: dict[str, Format] = {
     ".dxf": Format(
-        "exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(_VERSION, *MODEL_OPTIONS)
+        "exporters.dxf", "lines on layers, faces and their outlines", "metres", options=(VERSION, *MODEL_OPTIONS)
     ),
     ".step": Format(
         "exporters.step.write",
         "lines and faces as named and coloured parts",
         "millimetres",
-        options=(_SEWN, _INSTANCES, *MODEL_OPTIONS),
+        options=(SEWN, INSTANCES, *MODEL_OPTIONS),
     ),
     ".ifc": Format(
         "exporters.ifc.write",
         "IFC 4: walls with windows and doors, storeys, ground, lines",
         "metres",
-        options=(_THICKNESS, *MODEL_OPTIONS),
+        options=(THICKNESS, *MODEL_OPTIONS),
         extra=Extra("ifc", "ifcopenshell"),
     ),
     ".3dm": Format(
@@ -147,72 +107,72 @@ FORMATS: dict[str, Format] = {
         "exporters.gltf.write",
         "lines, faces, camera for viewers and Blender",
         "metres",
-        options=(_TUBES, _INSTANCES, *MODEL_OPTIONS, *TEXTURES),
+        options=(TUBES, INSTANCES, *MODEL_OPTIONS, *TEXTURES),
     ),
     ".usda": Format(
         "exporters.usd.write",
         "a USD stage as text: lines, faces, camera",
         "metres",
-        options=(_INSTANCES, *MODEL_OPTIONS, *TEXTURES),
+        options=(INSTANCES, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES,
     ),
     ".usdc": Format(
         "exporters.usd.write",
         "a USD stage, compact: lines, faces, camera",
         "metres",
-        options=(_INSTANCES, *MODEL_OPTIONS, *TEXTURES),
+        options=(INSTANCES, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES,
     ),
     ".usdz": Format(
         "exporters.usd.write",
         "a USD stage as a package: lines, faces, camera",
         "metres",
-        options=(_INSTANCES, *MODEL_OPTIONS, *TEXTURES),
+        options=(INSTANCES, *MODEL_OPTIONS, *TEXTURES),
     ),
     ".obj": Format(
         "exporters.obj",
         "faces as triangles, and lines",
         "metres",
-        options=(_UP, *MODEL_OPTIONS, *TEXTURES),
+        options=(UP, *MODEL_OPTIONS, *TEXTURES),
         beside=_PAGES_AND_MATERIALS,
     ),
-    ".ply": Format("exporters.mesh", "faces as triangles", "metres", options=(_ORIGIN,)),
-    ".stl": Format("exporters.mesh", "faces as triangles", "metres", options=(_ORIGIN,)),
+    ".ply": Format("exporters.mesh", "faces as triangles", "metres", options=(ORIGIN,)),
+    ".stl": Format("exporters.mesh", "faces as triangles", "metres", options=(ORIGIN,)),
     ".fspy": Format(
         "exporters.fspy.write",
         "the photo with its camera, to correct in fSpy",
         "metres",
         shows_photo=True,
         needs_photo=True,
-        options=(_ORIGIN,),
+        options=(ORIGIN,),
     ),
     ".png": Format(
         "exporters.picture.scene",
         "the photo with its lines, and three views of them in space",
         "pixels",
         shows_photo=True,
-        options=(_IDS,),
+        options=(IDS,),
     ),
     ".elevation.svg": Format(
         "exporters.drawings.elevation",
         "a facade from the front, to scale, with dimensions",
         "millimetres",
         shows_photo=True,
-        options=(*_SHEET, _DPI, UNDERLAY),
+        options=(*SHEET, DPI, UNDERLAY),
     ),
     ".elevation.pdf": Format(
         "exporters.drawings.elevation",
         "the elevation as a page to print",
         "millimetres",
         shows_photo=True,
-        options=(*_SHEET, _DPI, UNDERLAY),
+        options=(*SHEET, DPI, UNDERLAY),
     ),
     ".elevation.dxf": Format(
         "exporters.drawings.elevation",
         "the elevation in metres, with its sheet in paper space",
         "metres",
         shows_photo=True,
-        options=(*_SHEET, _DPI, UNDERLAY),
+        options=(*SHEET, DPI, UNDERLAY),
         beside=_PICTURE,
     ),
     ".elevation.tif": Format(
@@ -221,15 +181,15 @@ FORMATS: dict[str, Format] = {
         "pixels",
         shows_photo=True,
         needs_photo=True,
-        options=(*_SHEET, _DPI),
+        options=(*SHEET, DPI),
         beside=_WORLD_FILE,
     ),
     ".plan.svg": Format(
-        "exporters.drawings.plan", "walls from above and the camera, to scale", "millimetres", options=_SHEET
+        "exporters.drawings.plan", "walls from above and the camera, to scale", "millimetres", options=SHEET
     ),
-    ".plan.pdf": Format("exporters.drawings.plan", "the plan as a page to print", "millimetres", options=_SHEET),
+    ".plan.pdf": Format("exporters.drawings.plan", "the plan as a page to print", "millimetres", options=SHEET),
     ".plan.dxf": Format(
-        "exporters.drawings.plan", "the plan in metres, with its sheet in paper space", "metres", options=_SHEET
+        "exporters.drawings.plan", "the plan in metres, with its sheet in paper space", "metres", options=SHEET
     ),
 }
 

@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import exporters.formats
-from exporters.formats import SCENE_FILE, TEXTURES, UNDERLAY, Format, find_format, options_for
+from exporters.format_options import TEXTURES, UNDERLAY
+from exporters.formats import SCENE_FILE, Format, find_format, options_for
 from exporters.options import Value
 from linecad.errors import LinecadError, OutputError, UnwrittenError
 from linecad.io.files import check_output

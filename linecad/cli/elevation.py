@@ -91,7 +91,7 @@ def run(parsed: argparse.Namespace) -> int:
 def _chosen(parsed: argparse.Namespace, scene: "Scene") -> "dict[str, Value]":
     """What arguments say of the options of drawings. Raises OutputError for a plane that is no facade."""
     from exporters.drawings.facades import number_of_plane
-    from exporters.formats import DRAWING_SCALE, FACADE, PAPER
+    from exporters.format_options import DRAWING_SCALE, FACADE, PAPER
     from exporters.model import build_model
 
     number = parsed.facade if parsed.plane is None else number_of_plane(build_model(scene), parsed.plane)

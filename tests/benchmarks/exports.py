@@ -17,7 +17,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from exporters.formats import FORMATS, TEXTURES
+from exporters.format_options import TEXTURES
+from exporters.formats import FORMATS
 from linecad.io.scene_file import write_scene
 from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from exporters.drawings.choice import Choice
-from exporters.formats import FORMATS, MODEL_OPTIONS, TEXTURES, export, options_for
+from exporters.format_options import MODEL_OPTIONS, TEXTURES
+from exporters.formats import FORMATS, export, options_for
 from exporters.options import Option, read_options
 from linecad.errors import OutputError
 
@@ -88,7 +89,7 @@ def test_an_option_of_a_format_that_is_not_written_is_refused():
     assert options_for([Path("a.glb"), Path("b.DXF")], ["tubes=on"]) == {"tubes": True}
     with pytest.raises(OutputError, match=r"no option 'tubes' for \.dxf, which has version"):
         options_for([Path("b.dxf")], ["tubes=on"])
-    with pytest.raises(OutputError, match=r"for \.png, which has no options"):
+    with pytest.raises(OutputError, match=r"for \.png, which has ids"):
         options_for([Path("b.png")], ["tubes=on"])
 
 

@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from exporters.formats import FORMATS, TEXTURES, export
+from exporters.format_options import TEXTURES
+from exporters.formats import FORMATS, export
 from exporters.model import build_model
 from exporters.textures.behind import PLAIN, fill_behind
 from exporters.textures.build import build_textures

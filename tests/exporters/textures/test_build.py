@@ -21,7 +21,8 @@ from pxr import Usd, UsdGeom, UsdShade, UsdUtils, UsdValidation
 from exporters import formats
 from exporters.beside import NOTHING
 from exporters.faces import signed_area
-from exporters.formats import FORMATS, TEXTURES, export
+from exporters.format_options import TEXTURES
+from exporters.formats import FORMATS, export
 from exporters.model import build_model
 from exporters.textures.build import build_textures
 from exporters.textures.layout import MARGIN, TEXELS_PER_PIXEL, build_layout, seen_part, view_of

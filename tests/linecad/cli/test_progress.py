@@ -18,7 +18,7 @@ def test_progress_goes_to_stderr_a_line_a_stage(scene_file, capsys):
     assert main(["export", str(scene_file), "-o", "a.stl", "-o", "b.json"]) == 0
     out, err = capsys.readouterr()
     assert out == ""
-    assert err.splitlines() == ["reading the scene", "writing a.stl", "writing b.json"]
+    assert err.splitlines() == ["reading the scene", "writing b.json", "writing a.stl"]  # the scene first
 
 
 @pytest.mark.usefixtures("folder")
