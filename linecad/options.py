@@ -69,7 +69,7 @@ class Options:
     faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     # Draw the edges of faces and what lies on them also where no crossing placed it; where bodies are placed.
     face_lines: bool = True
-    roofs: bool = False  # look for sloped planes before the sky; few are found, and not all of these are roofs
+    roofs: bool = True  # look for roofs between the eaves of walls and the sky
     # How a depth map that is given with the photo is read (linecad.depth); they mean nothing without one.
     depth_kind: DepthKind | None = None  # None: as the file tells, else the one that makes walls flat
     depth_array: str | None = None  # which array of an .npz; None: found by its name
