@@ -250,8 +250,8 @@ SWITCHES: tuple[Switch, ...] = (
            "wrong ones", _switched),
     Switch("face-lines", "on", "on or off", "also draw edges of faces and lines on them that no crossing placed (not "
            "with gain and paper)", _switched),
-    Switch("roofs", "off", "on or off", "look for sloped roofs before the sky: few are found, and a scene file with "
-           "one has version 2", _switched),
+    Switch("roofs", "on", "on or off", "look for sloped roofs between walls and the sky; a scene file with one has "
+           "version 2", _switched),
     Switch("largest-component", "off", "on or off", "only the largest connected group of lines", _switched),
     Switch("depth-kind", "as the file tells", _listed(DEPTH_KINDS), "what the depth map measures: along the optical "
            "axis, along the ray of a pixel, 1 / z but for its scale, or but for scale and shift; where the file does "

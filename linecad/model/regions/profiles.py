@@ -27,6 +27,7 @@ BLURRED = 7  # samples by which the smooth sky may end before what it borders on
 LEVEL = 1.5  # samples by which a ridge may be off its height
 HIDDEN = 0.3  # of what is above the line in a column; more of other walls hide what is there
 BESIDE = 2  # samples at a border that are of neither side
+NEARLY_NONE = 0.02  # of the samples of a wall
 LEAST_TOLD = 20  # samples on each side whose colours are compared
 
 
@@ -73,6 +74,10 @@ class Wall:
         """Heights (...) of points of the wall on rays (..., K)."""
         height: Float = self.offset * rays[..., UP] / rays[..., self.axis]
         return height
+
+    def foot(self, shown: Shown) -> float:
+        """The height down to which nearly all of it is seen."""
+        return float(np.quantile(self.heights(shown.raster.rays[self.is_shown.ravel()]), NEARLY_NONE))
 
     def point(self, ray: Float, shown: Shown) -> Float:
         """(3,) world, of the wall on the ray (K,) of a pixel."""

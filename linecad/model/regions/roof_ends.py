@@ -19,7 +19,8 @@ ON_LINE = 2.0  # px at NORMAL_WIDTH; a segment so near to a line is on it
 NORMAL_WIDTH = 1280.0  # px
 ASTRAY = np.sin(np.radians(4.0))  # of a segment on it
 LEAST_TURN = np.sin(np.radians(7.0))  # in the photo, between it and the eave
-UPRIGHT = np.sin(np.radians(3.0))  # of a segment, against the upright: the corner of a wall is no end of a roof
+ALONG = np.sin(np.radians(3.0))  # of a segment, against the axes across the eave: edges of walls are no ends of roofs
+LEAST_SEEN = 0.3  # of such a line, before which nothing stands
 STEPS = 100  # in which coverage is counted
 AT_BORDER = 3  # columns from the border of the photo, where what it shows goes on
 BEYOND = 0.1  # of the photo's width, by which it does at least
@@ -80,10 +81,10 @@ def _line(profile: Profile, raw: Float, shown: Shown, end: int) -> tuple[Float |
     eave, ridge = profile.eave[[0, -1]], profile.ridge[[0, -1]]
     points = vanishing_points(shown.view.camera.matrix, components(shown.view.rotation, shown.view.turns))
     length = lengths(raw[:, 1] - raw[:, 0])
-    (sine,) = angles_to(raw, points[UP : UP + 1])
+    sine = angles_to(raw, points[[UP, profile.wall.axis]]).min(axis=0)
     along = (eave[1] - eave[0]) / lengths(eave[1] - eave[0])
     turn = np.abs(_cross(along, raw[:, 1] - raw[:, 0])) / np.maximum(length, 1e-9)
-    chosen = raw[(length >= LEAST_PIECE * width) & (sine > UPRIGHT) & (turn > LEAST_TURN)]
+    chosen = raw[(length >= LEAST_PIECE * width) & (sine > ALONG) & (turn > LEAST_TURN)]
     if len(chosen) == 0:
         return None, None
     feet, tops = _meets(chosen, eave), _meets(chosen, ridge)
@@ -97,7 +98,8 @@ def _line(profile: Profile, raw: Float, shown: Shown, end: int) -> tuple[Float |
     near &= (beyond >= -AT_EAVE * width) & (beyond <= last + outside * width)
     best, covered = None, COVERED
     for row in np.flatnonzero(near).tolist():
-        share, own = _covered(feet[row], tops[row], raw, length, shown, profile)
+        seen = _seen(profile, shown, _may_be(profile, shown, end, feet[row]))
+        share, own = _covered(np.stack([feet[row], tops[row]]), raw, length, shown, seen)
         if share > covered:
             best, covered = _fitted(raw[own]), share
     return (None, None) if best is None else (_meets(best[None], eave)[0], _meets(best[None], ridge)[0])
@@ -119,8 +121,16 @@ def _meets(segments: Float, line: Float) -> Float:
     return np.asarray(line[0] + share[:, None] * along)
 
 
-def _covered(foot: Float, top: Float, raw: Float, length: Float, shown: Shown, profile: Profile) -> tuple[float, Bool]:
-    """Share of what is seen of a line on which segments lie, and which they are (N,)."""
+def _seen(profile: Profile, shown: Shown, likely: tuple[End, ...]) -> Int:
+    """Labels that do not hide such an end: beyond a valley the next wall's roof is seen."""
+    surfaces, wall = shown.labels.surfaces, profile.wall
+    beyond = [k for k, surface in enumerate(surfaces) if surface.axis == wall.along and likely == ("valley",)]
+    return np.array([*wall.numbers, *beyond, shown.labels.sky, shown.labels.clutter])
+
+
+def _covered(line: Float, raw: Float, length: Float, shown: Shown, seen: Int) -> tuple[float, Bool]:
+    """Share of what is seen of a line (2, 2), foot and top, on which segments lie, and which they are (N,)."""
+    foot, top = line
     width = shown.view.camera.width
     size = float(lengths(top - foot))
     if size < LEAST_PIECE * width:
@@ -134,12 +144,11 @@ def _covered(foot: Float, top: Float, raw: Float, length: Float, shown: Shown, p
     steps = (np.arange(STEPS) + 0.5) / STEPS
     covered: Bool = np.asarray(((places[:, :1] <= steps) & (steps <= places[:, 1:])).any(axis=0))
     pixels = foot + steps[:, None] * (top - foot)
-    label = shown.at(shown.label, pixels)
-    hidden = (label < shown.labels.sky) & ~np.isin(label, profile.wall.numbers)
+    hidden = ~np.isin(shown.at(shown.label, pixels), seen)
     size_of_photo = [width, shown.view.camera.height]
     hidden |= ((pixels < 0) | (pixels > size_of_photo)).any(axis=1)
-    hidden &= ~covered
-    return float(covered.sum() / max((~hidden).sum(), 1)), own
+    share = (covered & ~hidden).sum() / max((~hidden).sum(), 1)
+    return float(share if (~hidden).mean() >= LEAST_SEEN else 0.0), own
 
 
 def _may_be(profile: Profile, shown: Shown, end: int, foot: Float) -> tuple[End, ...]:

@@ -37,6 +37,7 @@ MOST_UPRIGHTS = 0.2  # pixels of upright edges a sample of a roof: dormers have 
 MOST_PLANTS = 0.2  # of what is above the eave
 LEAST_RIDGE = 0.7  # of the columns between the ends of a ridge in which it is seen
 LEAST_SEEN = 0.5  # of the columns of a wall, of those in which nothing hides what is above it
+LEAST_GUESSED = 0.25  # of the height of the wall below, of what no end tells to be a roof: parapets are less
 SEEN_AT = np.tan(np.radians(32.0))  # of a slope that a roof must be seen at up to its ridge, for the usual one
 GRAZING = 0.95  # of the tangent of its slope, at which a roof is hardly seen
 LEAST_AREA = 0.0015  # of the photo, as of other faces
@@ -178,7 +179,8 @@ def _sketched(profile: Profile, sketch: Sketch, shown: Shown) -> _Sketched | Non
     left, right = (find_end(profile, sketch.raw, shown, end) for end in (0, 1))
     told = slope_of(left.slopes, right.slopes)
     seen_at = profile.high / abs(profile.wall.offset)
-    if told is None and (seen_at > SEEN_AT or left.is_upright or right.is_upright):
+    is_low = profile.high - profile.low < LEAST_GUESSED * (profile.low - profile.wall.foot(shown))
+    if left.is_upright or right.is_upright or (told is None and (seen_at > SEEN_AT or is_low)):
         return None
     slope = USUAL if told is None else told
     outline = shapely.Polygon(np.array([left.foot, left.top, right.top, right.foot]))

@@ -11,7 +11,6 @@ from hypothesis import strategies as st
 
 from linecad.directions import directions_of
 from linecad.geometry import central_camera, project
-from linecad.line_graph import Segments
 from linecad.model.faces import find_faces, with_roofs
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
@@ -89,9 +88,8 @@ def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER
     raster = take_raster(NO_LINES, CAMERA, rotation, photo)
     flat = [part for cell in cells for part in partition.polygons_of(cell)]
     label = np.array([number for number, cell in enumerate(cells) for _ in partition.polygons_of(cell)])
-    surfaces = [
-        Surface("wall", 1, DISTANCE, np.zeros(0, np.int64), 0), Surface("ground", 2, GROUND, np.zeros(0, np.int64), None),
-    ]  # fmt: skip
+    none = np.zeros(0, np.int64)
+    surfaces = [Surface("wall", 1, DISTANCE, none, 0), Surface("ground", 2, GROUND, none, None)]
     costs = np.zeros((len(flat), 4), np.int64)
     borders = Borders(np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
     cell = partition.draw(flat, raster.shape, raster.step)
@@ -192,7 +190,8 @@ def test_tiles_taller_than_the_wall_below_them_are_none():
 
 def _shortened(made, low):
     """The labels with the wall cut off a little below a line (2, 2)."""
-    (house, *others), below = made.labels.cells, shapely.Polygon([*(low + [0, 20]), *(low[::-1] + [0, 900])])
+    (house, *others), down = made.labels.cells, np.array([0.0, 1.0])
+    below = shapely.Polygon(np.concatenate([low + 20 * down, low[::-1] + 900 * down]))
     cells = [*partition.polygons_of(house.difference(below)), *others, *partition.polygons_of(house & below)]
     label = np.array([0, *made.labels.label[1:], 1])
     raster = take_raster(NO_LINES, CAMERA, made.rotation, made.photo)
