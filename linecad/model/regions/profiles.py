@@ -128,6 +128,7 @@ class Profile:
     rise: float  # samples from the line to the ridge
     depth: float  # samples from the line down to where the wall ends, BELOW at most
     contrast: float  # 0 to 1, of the colours above and below the line
+    before_sky: float  # the same of what is above the line and of the sky above that
     uprights: tuple[float, float]  # pixels of upright edges a sample, above and below
     plants: float  # share of what is above
 
@@ -165,14 +166,15 @@ def look_over(wall: Wall, pixel: Float, shown: Shown) -> Profile | None:
         while 0 <= place < count and outside[place] and not seen[place]:
             is_ridge[place] = True
             place += way
-    above, below = columns.sides(np.flatnonzero(is_ridge & is_open), top)
-    if min(len(above), len(below)) < LEAST_TOLD:
+    above, below, beyond = columns.sides(np.flatnonzero(is_ridge & is_open), top)
+    if min(len(above), len(below), len(beyond)) < LEAST_TOLD:
         return None
     shade, upright, plants = shown.raster.shade, shown.raster.votes[:, UP], shown.raster.plants
     return Profile(
         wall, low, high, columns.eave, ridge, first, last, is_open, is_ridge,
         np.where((seen & has_top)[:, None], columns.pixels[rows, BELOW + top], np.nan),
         float(np.median(top[is_ridge & is_open])), columns.down(is_ridge & is_open), _contrast(shade, above, below),
+        _contrast(shade, above, beyond),
         (float(upright[above].mean()), float(upright[below].mean())), float(plants[above].mean()),
     )  # fmt: skip
 
@@ -267,15 +269,17 @@ class _Columns:
         above = self.shown.at(self.shown.sky, pixels + (BLURRED + 1) * up)
         return np.asarray(above & ~self.shown.at(self.shown.sky, pixels - BESIDE * up))
 
-    def sides(self, columns: Int, top: Int) -> tuple[Int, Int]:
-        """The samples above the line in some columns, up to the sky, and as many of the wall below it."""
+    def sides(self, columns: Int, top: Int) -> tuple[Int, Int, Int]:
+        """The samples above the line in some columns, up to the sky, as many of the wall below it, and of the sky."""
         place = np.arange(REACH)
         own, height = self.sample[columns], top[columns, None]
         above = own[:, BELOW:][(place >= BESIDE) & (place <= height - BESIDE)]
         under = own[:, :BELOW][:, ::-1]
         is_wall = self.wall.is_shown.ravel()[under] & self.is_inside[columns, :BELOW][:, ::-1]
         place = np.arange(BELOW)
-        return above, under[(place >= 1) & (place <= np.maximum(height, 2 * BESIDE)) & is_wall]
+        sky = self.is_inside[columns, BELOW:] & (np.arange(REACH) > height + BLURRED)
+        beyond = own[:, BELOW:][sky & (np.arange(REACH) <= 2 * height + BLURRED)]
+        return above, under[(place >= 1) & (place <= np.maximum(height, 2 * BESIDE)) & is_wall], beyond
 
     def down(self, chosen: Bool) -> float:
         """How many samples the wall goes down from the line, in the middle of the chosen columns (J,)."""

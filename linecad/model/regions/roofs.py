@@ -33,6 +33,7 @@ LEAST_RISE, LEAST_SHARE = 6.0, 0.1  # samples from eave to ridge, and the share 
 MOST_RISE = 1.5  # times the wall below, as far as that is looked at, from eave to ridge
 LEAST_CONTRAST = 0.45  # bits, of the colours of roof and wall
 NEARLY = 0.85  # of the most contrast above a wall; lines with so much part it too
+LEAST_BEFORE_SKY = 0.7  # bits, of those of roof and sky: roofs have 0.97 and more, clouds taken for walls 0.46
 MOST_UPRIGHTS = 0.2  # pixels of upright edges a sample of a roof: dormers have some, storeys of a wall more
 MOST_PLANTS = 0.2  # of what is above the eave
 LEAST_RIDGE = 0.7  # of the columns between the ends of a ridge in which it is seen
@@ -153,6 +154,7 @@ def _may_be_roof(profile: Profile) -> bool:
         and is_seen
         and max(LEAST_RISE, LEAST_SHARE * profile.depth) <= profile.rise <= MOST_RISE * profile.depth
         and profile.contrast >= LEAST_CONTRAST
+        and profile.before_sky >= LEAST_BEFORE_SKY
         and profile.uprights[0] <= MOST_UPRIGHTS
         and profile.plants <= MOST_PLANTS
     )

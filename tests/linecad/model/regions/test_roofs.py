@@ -162,6 +162,10 @@ def test_what_has_the_colour_of_the_wall_is_wall():
     assert build(colours=(PLASTER, PLASTER)).found() == ()
 
 
+def test_what_has_the_colour_of_the_sky_is_a_cloud():
+    assert build(colours=(SKY, PLASTER)).found() == ()
+
+
 @pytest.mark.parametrize("reach", [(-9.0, -3.0), (2.0, 9.0)])
 def test_a_storey_of_another_colour_is_no_roof(reach):
     """It ends upright before the sky, where a roof beside the camera would lean away from the end of its wall."""
