@@ -69,7 +69,7 @@ class Options:
     faint: bool = False  # a second look for faint segments: more depths, and more wrong ones
     # Draw the edges of faces and what lies on them also where no crossing placed it; where bodies are placed.
     face_lines: bool = True
-    roofs: bool = False  # look for sloped planes before the sky; few are found, and not all of these are roofs
+    roofs: bool = True  # look for roofs between the eaves of walls and the sky
     # How a depth map that is given with the photo is read (linecad.depth); they mean nothing without one.
     depth_kind: DepthKind | None = None  # None: as the file tells, else the one that makes walls flat
     depth_array: str | None = None  # which array of an .npz; None: found by its name
@@ -250,8 +250,8 @@ SWITCHES: tuple[Switch, ...] = (
            "wrong ones", _switched),
     Switch("face-lines", "on", "on or off", "also draw edges of faces and lines on them that no crossing placed (not "
            "with gain and paper)", _switched),
-    Switch("roofs", "off", "on or off", "look for sloped roofs before the sky: few are found, and a scene file with "
-           "one has version 2", _switched),
+    Switch("roofs", "on", "on or off", "look for sloped roofs between walls and the sky; a scene file with one has "
+           "version 2", _switched),
     Switch("largest-component", "off", "on or off", "only the largest connected group of lines", _switched),
     Switch("depth-kind", "as the file tells", _listed(DEPTH_KINDS), "what the depth map measures: along the optical "
            "axis, along the ray of a pixel, 1 / z but for its scale, or but for scale and shift; where the file does "

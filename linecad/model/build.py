@@ -140,11 +140,11 @@ def build_scene(
     holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
     whole = planes
     planes, openings = _opened(planes, holes.openings, view, graph.turns)
-    on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections)
+    on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections, regions.roofs)
     drawn = closed_across(_drawn(on_faces.lines, whole, holes.openings, sight), sight)
     framed, planes = without_repeats(drawn, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
-    roofed = with_roofs(planes, regions.roofs, lines, view.camera, view.frame.rotation, graph.turns)
+    roofed = with_roofs(planes, regions.roofs, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
     ends = cleaned.note(on_faces.kept, on_faces.lines.lines, drawn.lines)
     notes = [*_notes(view, graph, solution, found, depth_map), ends, *regions.notes, *holes.notes]

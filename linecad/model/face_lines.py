@@ -21,7 +21,9 @@ from linecad.model.on_faces.better import better_faces
 from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
 from linecad.model.on_faces.posts import standing
+from linecad.model.on_faces.roofed import on_roofs
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
+from linecad.model.regions.roofs import Roof
 from linecad.scene import Camera, Intersections, Lines, Plane
 
 UNKNOWN = 0.5  # the probability of a plane that no line shows
@@ -64,7 +66,7 @@ class LinesOnFaces:
                 f"{added} more lines lie on faces: their edges, and what is seen on them and no crossing placed"
             )
         if put:
-            where = "lie on a face in the photo or stand on its ground"
+            where = "lie on a face in the photo or stand on its ground or roofs"
             notes.append(f"{put} lines in doubtful places {where}, and were put there")
         return tuple(notes)
 
@@ -76,12 +78,13 @@ def add_lines(
     camera: Camera,
     sight: Sight,
     crossings: Intersections,
+    roofs: tuple[Roof, ...] = (),
 ) -> LinesOnFaces:
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
     The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
-    whose foot the photo shows on the ground stand there, but for lines of which a person said something at one of their
-    `crossings`. Nothing changes where `details` are None.
+    whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these, but for lines of
+    which a person said something at one of their `crossings`. Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))
@@ -89,6 +92,8 @@ def add_lines(
     seen = SeenFaces.of(planes, camera, rotation, turns)
     better = better_faces(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
     nearer, below = standing(framed.in_world(), seen)
+    farther, carrying = on_roofs(framed.in_world(), roofs, seen, rotation)
+    nearer, below = np.where(below == NO_FACE, farther, nearer), np.where(below == NO_FACE, carrying, below)
     said = crossings.lines[np.asarray(crossings.reason) == "annotated"]
     better[said], below[said] = NO_FACE, NO_FACE
     better[below != NO_FACE] = NO_FACE

@@ -56,7 +56,7 @@ def find_faces(
         if number >= labels.sky:
             continue
         surface = labels.surfaces[number]
-        seen = _beside(_before(whole, surface, depth, camera, axes), regions.roofs)
+        seen = _beside(_before(whole, surface, depth, camera, axes), number, regions.roofs)
         for region in polygons_of(seen, LEAST_AREA * area):
             hidden = polygons_of(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
             hidden = [piece for part in hidden for piece in without_holes(part)]  # a hidden part is one ring
@@ -87,17 +87,18 @@ def _before(region: shapely.Polygon, surface: Surface, depth: float, camera: Cam
     return shapely.intersection(region, positive_part(frame, near))
 
 
-def _beside(region: shapely.Geometry, roofs: tuple[Roof, ...]) -> shapely.Geometry:
-    """The part of a region that is no roof."""
-    return shapely.difference(region, shapely.union_all([roof.polygon for roof in roofs])) if roofs else region
+def _beside(region: shapely.Geometry, number: int, roofs: tuple[Roof, ...]) -> shapely.Geometry:
+    """The part of a region of surface `number` that is neither a roof nor above the eave of one that it carries."""
+    taken = [roof.polygon for roof in roofs] + [roof.hood for roof in roofs if number in roof.walls]
+    return shapely.difference(region, shapely.union_all(taken)) if roofs else region
 
 
 def with_roofs(
-    planes: tuple[Plane, ...], roofs: tuple[Roof, ...], lines: Lines, camera: Camera, rotation: Float, turns: Turns
+    planes: tuple[Plane, ...], roofs: tuple[Roof, ...], camera: Camera, rotation: Float, turns: Turns
 ) -> tuple[Plane, ...]:
-    """The planes with one more for each roof, which has its eave and a face where the photo shows it.
+    """The planes with one more for each roof, which has a face for each part of it that the photo shows.
 
-    The numbers of planes and faces go on; `lines` are those that the roofs were found over.
+    The numbers of planes and faces go on.
     """
     number = max([plane.id for plane in planes], default=-1) + 1
     count = max([face.id for plane in planes for face in plane.faces], default=-1) + 1
@@ -105,11 +106,17 @@ def with_roofs(
     for roof in roofs:
         normal = roof.normal(turns)
         offset = float(normal @ roof.eave)
-        rays = world_rays(roof.outline, camera.matrix, rotation)
-        depth = offset / (rays @ normal)
-        face = Face(count, rays * depth[:, None], kind="roof")
-        found.append(Plane(number, roof.axis, offset, (int(lines.id[roof.line]),), (face,), roof.tilt))
-        number, count = number + 1, count + 1
+        faces = []
+        for part in polygons_of(roof.polygon):
+            rings = [
+                rays * (offset / (rays @ normal))[:, None]
+                for ring in (part.exterior, *part.interiors)
+                for rays in (world_rays(shapely.get_coordinates(ring)[:-1], camera.matrix, rotation),)
+            ]
+            faces.append(Face(count, rings[0], tuple(rings[1:]), kind="roof"))
+            count += 1
+        found.append(Plane(number, roof.axis, offset, (), tuple(faces), roof.tilt))
+        number += 1
     return tuple(found)
 
 

@@ -24,6 +24,7 @@ class SeenFaces:
     polygon: NDArray[np.object_]  # (F,) px
     camera: Camera
     axes: Float  # (3, K) directions in the camera frame
+    turns: Turns = ()  # of further frames
 
     @classmethod
     def of(cls, planes: tuple[Plane, ...], camera: Camera, rotation: Float, turns: Turns = ()) -> "SeenFaces":
@@ -32,7 +33,7 @@ class SeenFaces:
         polygons = np.array([_seen(face, camera, rotation) for _, face in faces], object)
         shapely.prepare(polygons)
         planes, shown = (tuple(each) for each in zip(*faces, strict=True)) if faces else ((), ())
-        return cls(planes, shown, polygons, camera, components(rotation, turns))
+        return cls(planes, shown, polygons, camera, components(rotation, turns), turns)
 
     def at(self, pixels: Float) -> Int:
         """The face (M,) that each pixel (M, 2) shows, NO_FACE for none."""

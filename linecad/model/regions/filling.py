@@ -19,7 +19,7 @@ from linecad.model.regions.evidence import sums
 from linecad.model.regions.labelling import UNIT, Labels
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
-from linecad.model.regions.roofs import Roof
+from linecad.model.regions.roofs import Roof, notes_on
 from linecad.model.regions.segments import View
 from linecad.model.regions.wall_ends import Ends, ends_of_walls
 from linecad.scene import Camera
@@ -43,15 +43,15 @@ class Filled:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """How sure it is that no other labels are better, and how far the road lies below the pavement, for people."""
+        """How sure labels and slopes are, and how far the road lies below the pavement, for people."""
         cells = f"faces: what each of the {len(self.labels.costs)} parts of the photo shows"
         proof = f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"
         if self.labels.gap == 0:
             proof = f"{cells} is proven best for its costs"
         if self.drop is None:
-            return (proof,)
+            return (proof, *notes_on(self.roofs))
         step = f"a kerb puts the road {self.drop:.1%} of the camera's height below the ground that walls stand on"
-        return proof, f"faces: {step}"
+        return proof, f"faces: {step}", *notes_on(self.roofs)
 
 
 def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:

@@ -55,4 +55,4 @@ def find_regions(
     filled = with_hidden(filled, raster)
     if look.sketch is None:
         return filled
-    return replace(filled, roofs=find_roofs(look.sketch, lines, heaven, raster, view))
+    return replace(filled, roofs=find_roofs(look.sketch, filled.labels, heaven, raster, view))

@@ -1,69 +1,102 @@
-"""Roofs of made houses: what outlines them, and the slope that follows."""
+"""Roofs of made houses in painted photos: where they are, how they slope, and what is none."""
 
 from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
 import pytest
+import shapely
 from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.directions import directions_of
 from linecad.geometry import central_camera, project
-from linecad.model.faces import with_roofs
+from linecad.model.faces import find_faces, with_roofs
+from linecad.model.regions import partition
+from linecad.model.regions.cuts import Borders
 from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.filling import Filled
+from linecad.model.regions.labelling import Labels
+from linecad.model.regions.profiles import Shown, Wall
 from linecad.model.regions.raster import take_raster
-from linecad.model.regions.roofs import Sketch, find_roofs
+from linecad.model.regions.roofs import Sketch, find_roofs, notes_on
 from linecad.model.regions.segments import View
+from linecad.model.regions.slopes import ERROR, SPREAD, USUAL, Slope, slope_of, slopes_by
+from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Lines, Plane
 
 WIDTH, HEIGHT = 960, 720
 CAMERA = Camera(WIDTH, HEIGHT, central_camera(700.0, WIDTH, HEIGHT), "file")
-DISTANCE, EAVE, LEFT, RIGHT, RUN = 20.0, 3.0, -4.0, 5.0, 5.0  # m
-SEEN = 0.3  # rad, of which the camera looks past the house
+DISTANCE, EAVE, GROUND, LEFT, RIGHT, RUN = 20.0, 3.0, -2.0, -6.0, 9.0, 5.0  # m
+SEEN = 0.1  # rad, of which the camera looks past the house
+SKY, TILES, PLASTER, PAVING = (200, 220, 245), (110, 50, 40), (205, 195, 170), (90, 90, 95)
+NO_LINES = Lines(
+    id=np.zeros(0, int), axis=np.zeros(0, int), segment=np.zeros((0, 2, 2)), ends=np.zeros((0, 2, 3)),
+    is_boundary=np.zeros(0, bool), component=np.zeros(0, int), confidence=np.zeros(0, "U9"),
+)  # fmt: skip
+
+
+def turned(turn):
+    c, s = np.cos(turn), np.sin(turn)
+    return np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]) @ [[c, -s, 0], [s, c, 0], [0, 0, 1]]
 
 
 @dataclass(frozen=True, eq=False)
 class Made:
-    """A roof over an eave along x, before a camera that is turned."""
+    """A house in a painted photo."""
 
     rotation: np.ndarray
-    corners: np.ndarray  # (4, 3): left eave, left ridge, right ridge, right eave
-    pixels: np.ndarray  # (4, 2)
+    corners: np.ndarray  # (4, 3) of the roof: left eave, left ridge, right ridge, right eave
+    pixels: np.ndarray  # (4, 2) of these
+    photo: np.ndarray
+    labels: Labels  # which call the roof a part of the wall
+    seed: np.ndarray
     sketch: Sketch
-    lines: Lines
-    heaven: Heaven
+
+    @property
+    def view(self):
+        return View(CAMERA, self.rotation, self.photo)
 
     def found(self, **changes):
-        """The roofs, with other lines, another sketch or another sky."""
-        given = {"sketch": self.sketch, "lines": self.lines, "heaven": self.heaven} | changes
-        raster = take_raster(given["lines"], CAMERA, self.rotation, None)
-        return find_roofs(given["sketch"], given["lines"], given["heaven"], raster, View(CAMERA, self.rotation, None))
+        """The roofs, with something changed."""
+        made = replace(self, **changes)
+        raster = take_raster(NO_LINES, CAMERA, made.rotation, made.photo)
+        heaven = Heaven(made.seed, is_sky=bool(made.seed.any()), is_ceiling=False)
+        return find_roofs(made.sketch, made.labels, heaven, raster, made.view)
 
 
-def build(degrees=40.0, turn=SEEN, off=0.0, verges=2):
-    """A roof that rises away from the camera; its house is turned by `off` against the axes."""
-    c, s = np.cos(turn), np.sin(turn)
-    rotation = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]) @ [[c, -s, 0], [s, c, 0], [0, 0, 1]]
-    rise = RUN * np.tan(np.radians(degrees))
-    corners = np.array(
-        [[LEFT, 0, EAVE], [LEFT, RUN, EAVE + rise], [RIGHT, RUN, EAVE + rise], [RIGHT, 0, EAVE]], np.float64
-    )
-    c, s = np.cos(off), np.sin(off)
-    corners = corners @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + [0, DISTANCE, 0]
-    pixels = project(corners, CAMERA.matrix, rotation)
-    level, sides = pixels[[[0, 3], [1, 2]]], pixels[[[0, 1], [3, 2]]][:verges]
-    lines = Lines(
-        id=np.array([7]), axis=np.array([0]), segment=level[:1], ends=corners[[[0, 3]]],
-        is_boundary=np.zeros(1, bool), component=np.zeros(1, int), confidence=np.full(1, "supported"),
-    )  # fmt: skip
-    raster = take_raster(lines, CAMERA, rotation, None)
-    house = np.zeros(raster.shape, np.uint8)
-    outline = np.rint(raster.samples_of(np.array([*pixels, pixels[3] + [0, HEIGHT], pixels[0] + [0, HEIGHT]])))
-    cv2.fillPoly(house, [outline.astype(np.int32)], 1)
-    heaven = Heaven((house == 0).ravel(), is_sky=True, is_ceiling=False)
-    sketch = Sketch(np.concatenate([level, sides]), level, np.array([0, 0]))
-    return Made(rotation, corners, pixels, sketch, lines, heaven)
+def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER), top=None):
+    """A house whose roof ends in verges or hips, or by the roof's corners `top` (2, 3) at the ridge."""
+    rotation, rise = turned(SEEN), RUN * np.tan(np.radians(degrees))
+    inwards = RUN if hips else 0.0
+    left, right = reach
+    if top is None:
+        top = [[left + inwards, DISTANCE + RUN, EAVE + rise], [right - inwards, DISTANCE + RUN, EAVE + rise]]
+    corners = np.array([[left, DISTANCE, EAVE], *top, [right, DISTANCE, EAVE]])
+    feet = np.array([[right, DISTANCE, GROUND], [left, DISTANCE, GROUND]])
+    pixels, feet = project(corners, CAMERA.matrix, rotation), project(feet, CAMERA.matrix, rotation)
+    frame = shapely.box(-0.5, -0.5, WIDTH - 0.5, HEIGHT - 0.5)
+    roof, wall = shapely.Polygon(pixels), shapely.Polygon([pixels[0], pixels[3], *feet])
+    house = shapely.union_all([roof, wall]).intersection(frame)
+    horizon = project(np.array([[-3.0, 10, 0], [3.0, 10, 0]]), CAMERA.matrix, rotation)[:, 1].mean()
+    below = shapely.box(-0.5, horizon, WIDTH - 0.5, HEIGHT - 0.5).difference(house)
+    cells = [house, below, frame.difference(house).difference(below)]
+    photo = np.full((HEIGHT, WIDTH, 3), SKY, np.uint8)
+    for shape, colour in ((below, PAVING), (wall, colours[1]), (roof, colours[0])):
+        for part in partition.polygons_of(shape):
+            cv2.fillPoly(photo, [np.rint(shapely.get_coordinates(part.exterior)).astype(np.int32)], colour)
+    raster = take_raster(NO_LINES, CAMERA, rotation, photo)
+    flat = [part for cell in cells for part in partition.polygons_of(cell)]
+    label = np.array([number for number, cell in enumerate(cells) for _ in partition.polygons_of(cell)])
+    none = np.zeros(0, np.int64)
+    surfaces = [Surface("wall", 1, DISTANCE, none, 0), Surface("ground", 2, GROUND, none, None)]
+    costs = np.zeros((len(flat), 4), np.int64)
+    borders = Borders(np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
+    cell = partition.draw(flat, raster.shape, raster.step)
+    labels = Labels(surfaces, flat, cell, label, np.zeros((raster.size, 4)), costs, borders)
+    level, ends = pixels[[[0, 3], [1, 2]]], pixels[[[0, 1], [3, 2]]]
+    sketch = Sketch(np.concatenate([level, ends]), level[:1], np.array([0]))
+    return Made(rotation, corners, pixels, photo, labels, (label == 2)[cell], sketch)
 
 
 @pytest.fixture(scope="module")
@@ -71,91 +104,123 @@ def made():
     return build()
 
 
-@given(st.floats(27, 58), st.floats(-0.4, 0.4), st.integers(1, 2))
-def test_the_slope_is_that_of_the_roof(degrees, turn, verges):
-    made = build(degrees, turn, verges=verges)
+def told(*degrees):
+    """The slope that so many ends and what is usual tell together, degrees, where all ends are seen equally well."""
+    weight = np.array([SPREAD**-2, *(len(degrees) * [ERROR**-2])])
+    return weight @ [np.degrees(USUAL), *degrees] / weight.sum()
+
+
+@pytest.mark.parametrize("hips", [False, True])
+@pytest.mark.parametrize("degrees", [35.0, 50.0])
+def test_a_roof_has_its_place_and_its_slope(degrees, hips):
+    made = build(degrees, hips)
     (roof,) = made.found()
-    assert (roof.axis, roof.line, roof.has_both) == (1, 0, verges == 2)
-    assert np.degrees(roof.slope) == pytest.approx(degrees, abs=1e-6)
-    normal = np.cross(made.corners[3] - made.corners[0], made.corners[1] - made.corners[0])
-    assert roof.normal(()) == pytest.approx(normal / np.linalg.norm(normal), abs=1e-9)
-    assert roof.normal(()) @ roof.eave == pytest.approx(roof.normal(()) @ made.corners[0], abs=1e-6)
+    truth = shapely.Polygon(made.pixels)
+    assert roof.polygon.intersection(truth).area > 0.95 * roof.polygon.union(truth).area
+    assert roof.is_told
+    assert np.degrees(roof.slope) == pytest.approx(told(degrees, degrees), abs=1.0)
+    assert roof.eave[1:] == pytest.approx([DISTANCE, EAVE], rel=1e-6)
 
 
-@pytest.mark.parametrize("off", [-0.05, 0.05])
-def test_one_verge_errs_to_each_side_where_a_house_is_turned_off_the_axes_and_two_hardly(off):
-    made = build(off=off)
-    ends = made.sketch.raw
-    single = [made.found(sketch=replace(made.sketch, raw=np.array([*ends[:2], verge])))[0] for verge in ends[2:]]
-    (both,) = made.found()
-    assert sorted(np.sign([np.degrees(roof.slope) - 40 for roof in single])) == [-1, 1]
-    worst = max(abs(np.degrees(roof.slope) - 40) for roof in single)
-    assert abs(np.degrees(both.slope) - 40) < worst / 3
+@given(
+    st.floats(25, 60), st.floats(-0.4, 0.4), st.sampled_from(["verge", "hip", "valley"]), st.sampled_from([1.0, -1.0])
+)
+def test_each_end_tells_its_slope_exactly(made, degrees, turn, end, inwards):
+    rotation, along = turned(turn), {"verge": 0.0, "hip": inwards, "valley": -inwards}[end]
+    foot = np.array([2.0, DISTANCE, EAVE])
+    top = foot + 4.0 * np.array([along, 1.0, np.tan(np.radians(degrees))])
+    pixels = project(np.stack([foot, top]), CAMERA.matrix, rotation)
+    shown = Shown(take_raster(NO_LINES, CAMERA, rotation, None), View(CAMERA, rotation, None), made.labels, made.seed)
+    wall = Wall(1, DISTANCE, (0,), np.zeros((1, 1), bool))
+    (slope,) = slopes_by(*pixels, inwards, wall, shown, (end,))
+    assert np.degrees(slope.angle) == pytest.approx(degrees, abs=1e-6)
 
 
-def test_without_a_verge_there_is_no_roof(made):
-    assert made.found(sketch=replace(made.sketch, raw=made.sketch.raw[:2])) == ()
+def test_what_an_end_is_follows_from_the_other_end():
+    left = [Slope(np.radians(30), ERROR, "verge"), Slope(np.radians(50), ERROR, "hip")]
+    right = [Slope(np.radians(31), ERROR, "verge"), Slope(np.radians(62), ERROR, "hip")]
+    assert np.degrees(slope_of(left, right)) == pytest.approx(told(30, 31))
+    assert np.degrees(slope_of(left, [])) == pytest.approx(told(50))
+    assert slope_of([], []) is None
 
 
-def test_a_verge_of_which_little_is_seen_makes_no_roof(made):
-    verge = made.sketch.raw[2]
-    half = np.stack([verge[0], verge[0] + 0.5 * (verge[1] - verge[0])])
-    assert made.found(sketch=replace(made.sketch, raw=np.array([*made.sketch.raw[:2], half]))) == ()
+def test_a_roof_whose_ends_the_photo_does_not_show_has_the_usual_slope_and_says_so():
+    made = build(reach=(-40.0, 40.0))
+    made = replace(made, sketch=replace(made.sketch, raw=made.sketch.raw[:2]))
+    (roof,) = made.found()
+    assert not roof.is_told
+    assert roof.slope == USUAL
+    assert notes_on([roof, roof]) == (
+        "faces: 2 roofs are given a usual slope of 45 degrees: the photo shows no end of it that would tell",
+    )
+    assert notes_on([replace(roof, is_told=True)]) == ()
+    reach = roof.polygon.bounds
+    assert (reach[0], reach[2]) == pytest.approx((-0.5, WIDTH - 0.5))
 
 
-def test_a_verge_in_pieces_is_one(made):
-    start, end = made.sketch.raw[2]
-    pieces = [np.stack([start + a * (end - start), start + b * (end - start)]) for a, b in ((0, 0.4), (0.5, 1))]
-    assert len(made.found(sketch=replace(made.sketch, raw=np.array([*made.sketch.raw[:2], *pieces])))) == 1
+def test_what_has_the_colour_of_the_wall_is_wall():
+    assert build(colours=(PLASTER, PLASTER)).found() == ()
 
 
-def test_without_sky_above_the_ridge_there_is_no_roof(made):
-    assert made.found(heaven=replace(made.heaven, seed=np.zeros_like(made.heaven.seed))) == ()
-    assert made.found(heaven=Heaven(np.zeros_like(made.heaven.seed), is_sky=False, is_ceiling=False)) == ()
+def test_what_has_the_colour_of_the_sky_is_a_cloud():
+    assert build(colours=(SKY, PLASTER)).found() == ()
 
 
-def test_what_the_sky_is_seen_through_is_no_roof(made):
-    assert made.found(heaven=replace(made.heaven, seed=np.ones_like(made.heaven.seed))) == ()
+@pytest.mark.parametrize("reach", [(-9.0, -3.0), (2.0, 9.0)])
+def test_a_storey_of_another_colour_is_no_roof(reach):
+    """It ends upright before the sky, where a roof beside the camera would lean away from the end of its wall."""
+    top = [[reach[0], DISTANCE, EAVE + 2.5], [reach[1], DISTANCE, EAVE + 2.5]]
+    assert build(reach=reach, top=top).found() == ()
 
 
-def test_an_eave_whose_place_is_a_guess_needs_both_verges(made):
-    weak = replace(made.lines, confidence=np.full(1, "weak"))
-    assert len(made.found(lines=weak)) == 1
-    assert made.found(lines=weak, sketch=replace(made.sketch, raw=made.sketch.raw[:3])) == ()
+def test_without_sky_there_is_no_roof(made):
+    assert made.found(seed=np.zeros_like(made.seed)) == ()
 
 
-def test_the_corner_of_a_wall_is_no_verge(made):
-    """A castle had a false roof between the foot of a pilaster, a corner of its wall and its ridge."""
-    corners = np.array([[LEFT, DISTANCE, EAVE], [LEFT, DISTANCE, EAVE + 4], [RIGHT, DISTANCE, EAVE + 4]])
-    foot, top, beyond = project(corners, CAMERA.matrix, made.rotation)
-    lines = np.array([made.pixels[[0, 3]], [top, beyond], [foot, top]])
-    assert made.found(sketch=Sketch(lines, lines[:2], np.array([0, 0]))) == ()
+def test_a_roof_without_a_level_line_below_it_is_not_found(made):
+    assert made.found(sketch=Sketch(made.sketch.raw[1:], np.zeros((0, 2, 2)), np.zeros(0, np.int64))) == ()
 
 
-def test_an_eave_much_shorter_than_its_ridge_makes_no_roof(made):
-    start, end = made.lines.segment[0]
-    short = np.array([start, start + 0.25 * (end - start)])
-    assert made.found(lines=replace(made.lines, segment=short[None])) == ()
-
-
-def test_a_gable_before_the_sky_is_no_roof():
-    """Its verges lean together in the plane of a wall: the ridge between them has no length."""
+def test_tiles_taller_than_the_wall_below_them_are_none():
+    """A strip of shop windows is no wall that carries all the storeys above it."""
     made = build()
-    apex = (made.pixels[1] + made.pixels[2]) / 2
-    raw = np.array([[made.pixels[0], made.pixels[3]], [made.pixels[0], apex], [made.pixels[3], apex]])
-    assert made.found(sketch=Sketch(raw, raw[:1], np.array([0]))) == ()
+    low = made.pixels[[0, 3]] + [0.0, 60.0]
+    sketch = replace(made.sketch, raw=np.array([low, *made.sketch.raw[1:]]), whole=low[None])
+    photo = made.photo.copy()
+    strip = np.array([*made.pixels[[0, 3]], *low[::-1]])
+    cv2.fillPoly(photo, [np.rint(strip).astype(np.int32)], TILES)
+    assert made.found(sketch=sketch, photo=photo, labels=_shortened(made, low)) == ()
 
 
-def test_a_roof_becomes_a_plane_with_a_face_where_the_photo_shows_it(made):
-    wall = Plane(3, 1, DISTANCE, (7,))
-    planes = with_roofs((wall,), made.found(), made.lines, CAMERA, made.rotation, ())
-    assert planes[0] is wall
-    assert (planes[1].id, planes[1].axis, planes[1].lines) == (4, 1, (7,))
-    (face,) = planes[1].faces
+def _shortened(made, low):
+    """The labels with the wall cut off a little below a line (2, 2)."""
+    (house, *others), down = made.labels.cells, np.array([0.0, 1.0])
+    below = shapely.Polygon(np.concatenate([low + 20 * down, low[::-1] + 900 * down]))
+    cells = [*partition.polygons_of(house.difference(below)), *others, *partition.polygons_of(house & below)]
+    label = np.array([0, *made.labels.label[1:], 1])
+    raster = take_raster(NO_LINES, CAMERA, made.rotation, made.photo)
+    return replace(made.labels, cells=cells, label=label, cell=partition.draw(cells, raster.shape, raster.step))
+
+
+def test_the_wall_ends_at_the_eave_and_the_roof_begins_there(made):
+    wall = Plane(3, 1, DISTANCE, ())
+    lines = replace(NO_LINES, id=np.array([0]), axis=np.array([0]), segment=made.sketch.whole,
+                    ends=made.corners[[[0, 3]]], is_boundary=np.zeros(1, bool), component=np.zeros(1, int),
+                    confidence=np.full(1, "supported"))  # fmt: skip
+    labels = replace(made.labels, surfaces=[replace(made.labels.surfaces[0], plane=3), made.labels.surfaces[1]])
+    filled = Filled(labels, shapely.Polygon(), made.found())
+    planes = with_roofs(
+        find_faces((wall,), lines, filled, CAMERA, made.rotation), filled.roofs, CAMERA, made.rotation, ()
+    )
+    roof = planes[-1]
+    assert (roof.id, roof.axis, roof.lines) == (max(plane.id for plane in planes), 1, ())
+    (face,) = roof.faces
     assert face.kind == "roof"
-    nearest = np.linalg.norm(face.outline[:, None] - made.corners, axis=2).min(axis=0)
-    assert nearest == pytest.approx(np.zeros(4), abs=1e-6)
-    assert planes[1].along_normal(face.outline, ()) == pytest.approx(np.full(4, planes[1].offset))
+    assert roof.along_normal(face.outline, ()) == pytest.approx(np.full(len(face.outline), roof.offset))
+    (front,) = planes[0].faces
+    assert front.outline[:, 2].max() == pytest.approx(EAVE, rel=1e-3)
+    low = face.outline[np.argsort(face.outline[:, 2])[:2]]
+    assert np.abs(front.outline[:, None] - low).max(axis=2).min(axis=0) == pytest.approx(np.zeros(2), abs=1e-6)
 
 
 def test_the_normal_of_a_plane_of_a_further_frame_is_turned_from_its_axis():
