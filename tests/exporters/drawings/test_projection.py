@@ -25,7 +25,7 @@ def rectangle(x, y, width, height, depth, slope=0.0):
     normal = np.array([-slope, -1.0, 0.0]) / np.hypot(slope, 1.0)
     return FlatFace(
         id=0, kind="wall", thing="wall", plane=0, axis=1, tilt=0.0, direction=-normal, offset=float(-normal @ ring[0]),
-        normal=normal, in_plane=(0, 2), rings=(ring,), hidden=(), opening=None,
+        normal=normal, in_plane=(0, 2), rings=(ring,), hidden=(), component=0, opening=None,
     )  # fmt: skip
 
 
