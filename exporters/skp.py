@@ -19,7 +19,7 @@ from openskp.create import ComponentDefinitionBuilder, SkpBuilder, SkpWriteError
 from exporters.colours import RGB, face_colour, line_colour
 from exporters.faces import FlatFace
 from exporters.identity import identity_of
-from exporters.model import LineGroup, Model
+from exporters.model import LineGroup, Model, in_component
 from exporters.triangulation import checked_polygon
 from linecad.arrays import Float
 from linecad.directions import axis_name
@@ -109,7 +109,7 @@ class _Drawing:
 
 
 def _layer(face: FlatFace) -> str:
-    return f"{'faces' if face.opening is None else 'openings'}_{face.kind}"
+    return in_component(f"{'faces' if face.opening is None else 'openings'}_{face.kind}", face.component)
 
 
 def _inches(points: Float) -> list[list[float]]:

@@ -4,6 +4,7 @@ Like running.py this is written into the add-on for Blender and the macro for Fr
 """
 
 import json
+import math
 import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from exporters.addons.running import AddonError, Request
 
 BANDS = (("sure", 0.9), ("likely", 0.5), ("guess", 0.0))  # words and the smallest probability of each
 BAND_NOT_TOLD = "not told"
+SAME_HEIGHT = 1e-6  # of the scene's size, as linecad.scene has it: corners of one eave, in one wall
 ROLES = {"outline": "outlines", "opening": "openings", "detail": "details"}
 GROUPINGS = (
     ("axis", "Axis", "by the axis that they run along"),
@@ -130,17 +132,39 @@ def _line(told: dict[str, Any], metres: float) -> Line:
 
 
 def _faces(top: dict[str, Any], lines: Mapping[int, Line]) -> dict[int, Face]:
-    """A face is as sure as the surest line of its plane; parts of an opening are as sure as its wall."""
+    """A face is as sure as the surest line of its plane; parts of an opening and roofs are as sure as their wall."""
     surest: dict[int, float | None] = {}
     for plane in top["planes"]:
         told = [lines[line].probability for line in plane["lines"]]
         surest[plane["id"]] = max((each for each in told if each is not None), default=None)
+    surest |= {plane["id"]: surest[_carrier(plane, top)] for plane in top["planes"] if plane.get("tilt")}
     wall = {opening["id"]: opening["plane"] for opening in top.get("openings", ())}
     return {
         face["id"]: Face(face.get("kind", ""), surest[wall.get(face.get("opening"), plane["id"])])
         for plane in top["planes"]
         for face in plane["faces"]
     }
+
+
+def _carrier(roof: dict[str, Any], top: dict[str, Any]) -> int:
+    """The id of the wall in which the eave of a sloped plane lies, its own where there is none."""
+    corners = [corner for face in roof["faces"] for corner in face["outline"]]
+    if not corners:
+        return int(roof["id"])
+    turn = (0.0, *top.get("turns", ()))[roof.get("frame") or 0] + (math.pi / 2 if roof["axis"] == "y" else 0.0)
+    low = min(corner[2] for corner in corners)
+    size = max((abs(value) for line in top["lines"] for end in line["ends"] for value in end), default=1.0)
+    eave = [corner for corner in corners if corner[2] <= low + SAME_HEIGHT * size]
+    along = [corner[0] * math.cos(turn) + corner[1] * math.sin(turn) for corner in eave]
+    walls = {
+        max(abs(each - plane["offset"]) for each in along): plane["id"]
+        for plane in top["planes"]
+        if (plane["axis"], plane.get("frame") or 0) == (roof["axis"], roof.get("frame") or 0)
+        and not plane.get("tilt")
+        and plane["lines"]
+    }
+    nearest = min(walls, default=math.inf)
+    return int(walls[nearest] if nearest <= SAME_HEIGHT * size else roof["id"])
 
 
 def groups_of(parts: Mapping[str, Mapping[str, str]], by: str) -> dict[str, list[str]]:

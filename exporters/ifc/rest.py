@@ -11,7 +11,7 @@ from exporters.colours import face_colour, face_colour_name, line_colour
 from exporters.faces import FlatFace
 from exporters.ifc.document import Document, Entity
 from exporters.ifc.walls import add_filling
-from exporters.model import LineGroup
+from exporters.model import LineGroup, in_component
 from exporters.openings import Fitting
 from linecad.directions import axis_name
 
@@ -36,7 +36,9 @@ def add_surface(document: Document, place: Entity, face: FlatFace) -> Entity:
     """A face that is of no opening."""
     item = document.surface([face])
     document.paint(item, face_colour_name(face.kind), face_colour(face.kind))
-    shape = document.shape("SurfaceModel", item, layer=_LAYER.get(face.kind, "other faces"))
+    shape = document.shape(
+        "SurfaceModel", item, layer=in_component(_LAYER.get(face.kind, "other faces"), face.component)
+    )
     named = {"Tag": face.name, "ObjectPlacement": document.place(place), "Representation": shape}
     key = f"face {face.id}"
     if face.kind in ("window", "door"):
@@ -49,7 +51,7 @@ def add_loose_fitting(document: Document, place: Entity, fitting: Fitting) -> En
     """A window or a door whose wall has no face: its own faces, where they are."""
     item = document.surface(fitting.faces)
     document.paint(item, fitting.kind, face_colour(fitting.kind))
-    shape = document.shape("SurfaceModel", item, layer=_LAYER[fitting.kind])
+    shape = document.shape("SurfaceModel", item, layer=in_component(_LAYER[fitting.kind], fitting.faces[0].component))
     panes = [face for face in fitting.faces if face.kind != "reveal"]
     return add_filling(
         document, fitting.kind, f"{fitting.kind} {fitting.id}", fitting.label, _size(panes or fitting.faces),

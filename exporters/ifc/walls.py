@@ -14,6 +14,7 @@ from exporters.colours import face_colour
 from exporters.faces import FlatFace
 from exporters.ifc.document import Document, Entity, Metres, Value, X
 from exporters.ifc.voids import Side, Void
+from exporters.model import in_component
 from exporters.triangulation import checked_polygon
 from linecad.errors import OutputError
 
@@ -42,7 +43,7 @@ def add_wall(
         face.label,
         Tag=face.name,
         ObjectPlacement=document.place(place, side.origin, side.along),
-        Representation=document.shape("SweptSolid", body, layer="walls"),
+        Representation=document.shape("SweptSolid", body, layer=in_component("walls", face.component)),
         PredefinedType="NOTDEFINED",
     )
     document.make_of(wall, "wall, not known of what")
@@ -91,7 +92,9 @@ def add_opening(document: Document, wall: Entity, side: Side, void: Void, thickn
         (width, height),
         Tag=f"opening_{fitting.id:04d}",
         ObjectPlacement=document.place(place, x=X),
-        Representation=document.shape("SweptSolid", body, layer=f"{fitting.kind}s"),
+        Representation=document.shape(
+            "SweptSolid", body, layer=in_component(f"{fitting.kind}s", fitting.faces[0].component)
+        ),
     )
     document.fill(opening, filling)
     return filling

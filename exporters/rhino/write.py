@@ -18,7 +18,7 @@ from exporters.camera import principal_point
 from exporters.colours import RGB, face_colour, line_colour
 from exporters.faces import FlatFace
 from exporters.identity import identity_of
-from exporters.model import LineGroup, Model
+from exporters.model import LineGroup, Model, in_component
 from exporters.rhino.archive import without_dates
 from exporters.rhino.faces import build_brep, build_mesh
 from linecad.directions import axis_name
@@ -79,7 +79,7 @@ class _Drawing:
         self._file.Objects.AddMesh(build_mesh(face), self._of_face(face, _MESHES, "mesh"))
 
     def _of_face(self, face: FlatFace, parent: str, key: str) -> rhino3dm.ObjectAttributes:
-        layer = self._layer(f"{parent}_{face.kind}", face_colour(face.kind), parent)
+        layer = self._layer(in_component(f"{parent}_{face.kind}", face.component), face_colour(face.kind), parent)
         words = {"id": str(face.id), "face": face.name, "kind": face.kind, "plane": str(face.plane)}
         if face.opening is not None:
             words["opening"] = str(face.opening)

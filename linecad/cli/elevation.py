@@ -12,7 +12,7 @@ from linecad.cli.arguments import (
     add_option,
     identity,
 )
-from linecad.cli.checks import check_outputs, check_some
+from linecad.cli.checks import check_kept, check_outputs, check_some
 from linecad.cli.progress import ProgressDisplay
 
 if TYPE_CHECKING:
@@ -63,6 +63,7 @@ def run(parsed: argparse.Namespace) -> int:
     check_some(parsed.output)
     from exporters.formats import drawing_format
     from exporters.options import read_options
+    from linecad.camera.reread import find_beside
     from linecad.confidence import keep_probable
     from linecad.io.scene_file import read_scene
     from linecad.model.choice import keep_drawn
@@ -75,6 +76,7 @@ def run(parsed: argparse.Namespace) -> int:
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
+        check_kept(parsed.output, [find_beside(scene.photo, parsed.scene)])
         if parsed.known is not None:
             scene = set_scale(scene, parsed.known)  # first, because the known line itself may be left out
         if parsed.confidence is not None:

@@ -15,7 +15,7 @@ from linecad.cli.arguments import (
     add_scale,
     wanted_of,
 )
-from linecad.cli.checks import check_outputs, check_some
+from linecad.cli.checks import check_kept, check_outputs, check_some
 from linecad.cli.progress import ProgressDisplay
 from linecad.errors import OutputError
 
@@ -57,6 +57,7 @@ def run(parsed: argparse.Namespace) -> int:
     if parsed.scene is None:
         raise OutputError("no scene file was given; name the .json that `linecad convert` wrote")
     check_some(parsed.output)
+    from linecad.camera.reread import find_beside
     from linecad.io.scene_file import read_scene
     from linecad.outputs import PhotoOfScene, format_values, pixels_for, write_outputs
 
@@ -68,6 +69,7 @@ def run(parsed: argparse.Namespace) -> int:
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         show.stage("reading the scene")
         scene = read_scene(parsed.scene)
+        check_kept(parsed.output, [find_beside(scene.photo, parsed.scene)])
         scene = wanted.of(scene)
         photo = PhotoOfScene(parsed.photo, parsed.camera, parsed.scene)
         pixels = pixels_for(scene, parsed.output, values, photo, show.note)

@@ -106,8 +106,7 @@ def find_ground(scene: Scene) -> Plane:
     below = [plane for plane in scene.planes if plane.axis == 2 and plane.offset < 0 and own & set(plane.lines)]
     if not below:
         raise ScaleError(
-            "component 0 has no horizontal plane below the camera that could be the ground; "
-            "give a length with --scale instead"
+            "component 0 has no horizontal plane below the camera that could be the ground; give a known length instead"
         )
     ground = min(below, key=lambda plane: plane.offset)
     lowest = scene.lines.ends[scene.lines.component == 0, :, 2].min(axis=1)
@@ -115,7 +114,7 @@ def find_ground(scene: Scene) -> Plane:
     if lower > STRAY_LINES:
         raise ScaleError(
             f"the lowest horizontal plane, {ground.id} (z = {ground.offset:.4g}), is not the ground: {lower} lines "
-            f"reach below it, down to z = {lowest.min():.4g}; give a length with --scale instead"
+            f"reach below it, down to z = {lowest.min():.4g}; give a known length instead"
         )
     return ground
 
@@ -132,13 +131,14 @@ def _line_length(scene: Scene, line: int) -> float:
         last = f"has ids up to {scene.lines.id.max()}" if len(scene.lines) else "has no lines"
         raise ScaleError(
             f"the scene has no line {line}, it {last}; name two places in the photo, U,V:U2,V2=METRES, or see the ids "
-            "in a picture with --option ids=on"
+            "in a picture by `linecad export` with --option ids=on"
         )
     component = int(scene.lines.component[rows[0]])
     if component != 0:
         raise ScaleError(
             f"line {line} belongs to component {component}, whose own scale is a guess; "
-            "choose a line of component 0, or make its group that one with --main U,V, a place on it in the photo"
+            "choose a line of component 0, or make its group that one by `linecad export` with --main U,V, a place on "
+            "it in the photo"
         )
     start, end = scene.lines.ends[rows[0]]
     return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
@@ -184,6 +184,8 @@ def _plane_under(scene: Scene, rays: Float) -> Plane:
     own = _own_lines(scene)
     hit: list[set[int]] = [set(), set()]
     planes = {plane.id: plane for plane in scene.planes if own & set(plane.lines)}
+    roofs = {roof for roof, wall in scene.walls_of_roofs.items() if wall in planes}
+    planes |= {plane.id: plane for plane in scene.planes if plane.id in roofs}
     for plane, face in scene.faces:
         if plane.id in planes:
             for number in range(2):

@@ -6,11 +6,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from linecad.arrays import Float, check_unique, freeze
-from linecad.directions import Turns, count_of
+from linecad.directions import Turns, components, count_of
 from linecad.scene.camera import Camera, Certainty
 from linecad.scene.lines import Intersections, Lines
 from linecad.scene.reports import DepthMapReport, SolveReport
 from linecad.scene.surfaces import Face, Opening, Plane
+
+SAME_HEIGHT = 1e-6  # of the scene's size, within which corners lie on one eave and in one wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,14 +64,33 @@ class Scene:
         return (*self.notes, *([f"scale: {self.scale_source}"] if self.scale_source else []))
 
     @property
+    def walls_of_roofs(self) -> dict[int, int]:
+        """The plane of the wall that carries each sloped plane, by ids; none for one whose eave lies in no wall."""
+        size = float(np.abs(self.lines.ends).max(initial=1.0))
+        found = {}
+        for roof in self.planes:
+            corners = np.concatenate([face.outline for face in roof.faces if roof.tilt] or [np.zeros((0, 3))])
+            if len(corners):
+                eave = corners[corners[:, 2] <= corners[:, 2].min() + SAME_HEIGHT * size]
+                along = components(eave, self.turns)[:, roof.axis]
+                walls = [plane for plane in self.planes if plane.axis == roof.axis and not plane.tilt and plane.lines]
+                off = [float(np.abs(along - wall.offset).max()) for wall in walls]
+                if off and min(off) <= SAME_HEIGHT * size:
+                    found[roof.id] = walls[int(np.argmin(off))].id
+        return found
+
+    @property
     def components_of_planes(self) -> dict[int, int]:
         """The component that most lines of a plane are of, by the id of the plane; 0 where it has none.
 
-        What shows the ground is of component 0, since all stand on it.
+        What shows the ground is of component 0, since all stand on it; a roof is of that of the wall that carries it.
         """
         component = dict(zip(self.lines.id.tolist(), self.lines.component.tolist(), strict=True))
+        walls, lines = self.walls_of_roofs, {plane.id: plane.lines for plane in self.planes}
         counts = {
-            plane.id: Counter(() if plane.shows_ground else (component[line] for line in plane.lines))
+            plane.id: Counter(
+                () if plane.shows_ground else (component[line] for line in lines[walls.get(plane.id, plane.id)])
+            )
             for plane in self.planes
         }
         return {plane: min(count, key=lambda c: (-count[c], c), default=0) for plane, count in counts.items()}

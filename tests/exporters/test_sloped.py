@@ -10,11 +10,15 @@ import pytest
 import trimesh
 from pxr import Usd
 
+from exporters.addons.told import read_scene_file
 from exporters.formats import export
 from exporters.model import build_model
 from exporters.textures.layout import build_layout, view_of
 from exporters.triangulation import triangulate
+from linecad.confidence import keep_probable
 from linecad.geometry import world_rays
+from linecad.io.scene_file import write_scene
+from linecad.model.groups import keep_main
 from linecad.scene import Face, Plane
 
 PITCH = np.radians(40.0)
@@ -124,3 +128,35 @@ def test_a_ray_through_its_outline_meets_it(roofed):
     rays = world_rays(pixels[:, :2] / pixels[:, 2:], roofed.camera.matrix, roofed.rotation)
     depth = plane.offset / plane.along_normal(rays, ())
     assert rays * depth[:, None] == pytest.approx(outline)
+
+
+def carrying(roofed):
+    return roofed.planes[0].id
+
+
+def test_a_roof_is_of_the_wall_that_its_eave_lies_in(roofed):
+    assert roofed.walls_of_roofs == {77: carrying(roofed)}
+    lower = replace(roofed.planes[-1], faces=(Face(55, roofed.planes[-1].faces[0].outline - [0, 0.1, 0], kind="roof"),))
+    normal = lower.normal(roofed.turns)
+    lower = replace(lower, offset=float(normal @ lower.faces[0].outline[0]))
+    assert replace(roofed, planes=(*roofed.planes[:-1], lower)).walls_of_roofs == {}  # before the wall
+
+
+def test_a_roof_goes_with_its_wall(roofed):
+    """It hung in the air where its wall was not sure enough, or of another component."""
+    own = np.isin(roofed.lines.id, roofed.planes[0].lines)
+    told = replace(roofed.lines, probability=np.where(own, 0.2, 0.9), component=np.where(own, 4, 0))
+    scene = replace(roofed, lines=told)
+    assert 77 in {plane.id for plane in keep_probable(scene, 0.1).planes}
+    left = {plane.id for plane in keep_probable(scene, 0.5).planes}
+    assert carrying(roofed) not in left
+    assert 77 not in left
+    assert scene.components_of_planes[77] == scene.components_of_planes[carrying(roofed)] == 4
+    assert 77 not in {plane.id for plane in keep_main(scene).planes}
+
+
+def test_the_add_ons_hide_a_roof_with_its_wall(roofed, tmp_path):
+    own = np.isin(roofed.lines.id, roofed.planes[0].lines)
+    scene = replace(roofed, lines=replace(roofed.lines, probability=np.where(own, 0.25, 0.75)))
+    write_scene(scene, tmp_path / "a.json")
+    assert read_scene_file(tmp_path / "a.json").faces[55].probability == 0.25

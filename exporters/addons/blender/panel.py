@@ -143,6 +143,7 @@ class LINECAD_OT_convert(bpy.types.Operator):  # type: ignore[misc]  # noqa: N80
 
     def cancel(self, context: Any) -> None:
         """Blender itself ends the operator, such as to load another file."""
+        _at_work.pop("convert", None)
         self.running.end()
         context.window_manager.event_timer_remove(self.timer)
         context.workspace.status_text_set(None)

@@ -65,6 +65,15 @@ def test_a_photo_is_decoded_in_srgb(picture, tmp_path):
     assert np.abs(decode_image(tmp_path / "a.png").pixels.astype(int) - (30, 220, 60)).max() <= 3
 
 
+@pytest.mark.parametrize("mode", ["RGBA", "P"])
+def test_transparent_pixels_and_palettes_are_converted_too(picture, mode):
+    """They kept the numbers of their profile, without a word."""
+    found, notes = in_srgb(loaded(picture.quantize(2) if mode == "P" else picture.convert(mode), swapped()))
+    assert notes == []
+    assert np.abs(np.asarray(found.convert("RGB"), int) - (30, 220, 60)).max() <= 3
+    assert found.mode == ("RGBA" if mode == "RGBA" else "RGB")
+
+
 def test_grey_pictures_stay_as_they_are():
     image = Image.new("L", (64, 64), 90)
     image.info["icc_profile"] = srgb()

@@ -337,3 +337,15 @@ def test_detail_chooses_the_lines_of_every_file(folder, drawn, given, roles):
 @pytest.mark.usefixtures("drawn")
 def test_a_detail_that_is_none_of_the_words_is_wrong_usage(fails):
     assert "'some'" in fails("export", "drawn.json", "-o", "a.json", "--detail", "some", code=2)
+
+
+@pytest.mark.parametrize("command", ["export", "elevation"])
+def test_the_photo_of_the_scene_is_not_written_over(folder, scene_file, capsys, command):
+    """A picture of the scene took the place of the photo beside it."""
+    name = "room.png" if command == "export" else "room.tif"
+    scene = json.loads(scene_file.read_text()) | {"photo": name}
+    (folder / "own.json").write_text(json.dumps(scene))
+    (folder / name).write_bytes(b"the only one")
+    assert main([command, "own.json", "-o", name, "--quiet"]) == 1
+    assert "is an input too and would be lost" in capsys.readouterr().err
+    assert (folder / name).read_bytes() == b"the only one"

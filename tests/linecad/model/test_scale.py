@@ -185,7 +185,7 @@ def test_a_ground_that_is_upright_or_above_the_camera_is_none(scene, axis, sign)
 
 
 def test_without_a_horizontal_plane_below_the_camera_there_is_no_ground(scene):
-    with pytest.raises(ScaleError, match="give a length with --scale"):
+    with pytest.raises(ScaleError, match="give a known length"):
         set_scale(with_planes(scene, scene.planes[0], scene.planes[2]), CameraHeight(1.6))
 
 
