@@ -100,12 +100,20 @@ def write_outputs(
 def keep_scene(scene: Scene, outputs: Sequence[Path]) -> Path:
     """Write the scene file of a scene whose `outputs` could not all be written, and return its path.
 
-    It is the one among them, else it lies beside the first, under a name that no file has. Raises OutputError.
+    It is the one among them, else it lies beside the first output whose folder takes it, else in the current folder,
+    under a name that no file has. Raises the OutputError of the first of these places where none takes it.
     """
     named = [path for path in outputs if _is_scene_file(path)]
-    path = named[0] if named else _free_name(outputs[0])
-    write_scene(scene, path)
-    return path
+    beside = [_free_name(path) for path in [*outputs, Path(outputs[0].name)]]
+    errors: list[OutputError] = []
+    for path in dict.fromkeys([*named, *beside]):
+        try:
+            write_scene(scene, path)
+        except OutputError as error:
+            errors.append(error)
+        else:
+            return path
+    raise errors[0]
 
 
 def _free_name(output: Path) -> Path:

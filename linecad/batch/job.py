@@ -1,5 +1,6 @@
 """A job, its outcome, and what an executor of jobs can do: what passes between the parts of a batch."""
 
+from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal, Protocol, get_args
@@ -55,10 +56,13 @@ class Job:
         beside = [place for path, row in self._exports() for place in row.places(path)]
         return [*beside, *self.outputs, self.thumbnail]
 
-    def made(self) -> list[Path]:
-        """All files of the photo that are there: what others refer to comes first."""
-        beside = [file for path, row in self._exports() for file in row.found(path)]
-        return [*beside, *self.outputs, self.thumbnail]
+    def made(self, unwritten: Collection[Path] = ()) -> list[Path]:
+        """All files of the photo that are there: what others refer to comes first.
+
+        Outputs that are `unwritten` are not among them, whatever an earlier batch left there and beside them.
+        """
+        beside = [file for path, row in self._exports() if path not in unwritten for file in row.found(path)]
+        return [*beside, *(path for path in self.outputs if path not in unwritten), self.thumbnail]
 
     def may_make(self, file: str) -> bool:
         """Whether a file, relative to the folder, is one that this job may make."""

@@ -10,7 +10,7 @@ from linecad.batch.job import Figures, Job, Outcome
 from linecad.batch.record import options_hash
 from linecad.batch.thumbnail import write_thumbnail
 from linecad.camera.photo import Photo
-from linecad.errors import InputError, LinecadError, PhotoError
+from linecad.errors import InputError, LinecadError, OutputError, PhotoError, UnwrittenError
 from linecad.outputs import write_outputs
 from linecad.scene import Scene
 
@@ -56,7 +56,10 @@ def _do(job: Job) -> Outcome:
         wanted = job.conversion.wanted.of(scene)
     except LinecadError as error:
         return _kept(job, photo, scene, error)
-    write_outputs(wanted, photo.pixels, job.outputs, job.conversion.values)
+    try:
+        write_outputs(wanted, photo.pixels, job.outputs, job.conversion.values)
+    except UnwrittenError as error:
+        return _without(job, photo, wanted, error)
     _write_thumbnail(job, photo, wanted)
     return Outcome("done", figures=_figures(wanted), files=_sizes(job, job.made()))
 
@@ -66,8 +69,23 @@ def _kept(job: Job, photo: Photo, scene: Scene, error: LinecadError) -> Outcome:
     files = [path for path in job.outputs if path.suffix == SCENE_FILE]
     write_outputs(scene, photo.pixels, files, {})
     _write_thumbnail(job, photo, scene)
-    told = f"; the whole scene is kept in {files[0].name}, for linecad export" if files else ""
-    return Outcome("failed", f"{error}{told}", files=_sizes(job, [*files, job.thumbnail]))
+    return Outcome("failed", f"{error}{_told('whole scene', files)}", files=_sizes(job, [*files, job.thumbnail]))
+
+
+def _without(job: Job, photo: Photo, scene: Scene, error: UnwrittenError) -> Outcome:
+    """Some outputs cannot be written: the others are there, the scene file among them if the batch makes one."""
+    files = job.made(error.unwritten)
+    try:
+        _write_thumbnail(job, photo, scene)
+    except OutputError:  # a disk that is full takes no picture either, and `error` says so
+        files.remove(job.thumbnail)
+    kept = [path for path in job.outputs if path.suffix == SCENE_FILE and path in files]
+    return Outcome("failed", f"{error}{_told('scene', kept)}", files=_sizes(job, files))
+
+
+def _told(what: str, files: list[Path]) -> str:
+    """Where the scene of a photo that failed is kept, if it is."""
+    return f"; the {what} is kept in {files[0].name}, for linecad export" if files else ""
 
 
 def _write_thumbnail(job: Job, photo: Photo, scene: Scene | None) -> None:

@@ -32,6 +32,8 @@ def test_what_it_made_is_found_with_what_others_refer_to_first(job):
         "p.new.lib", "p.new.parts/part-1.bin", "p.new.parts/part-2.bin",
         "p.json", "p.dxf", "p.new", "thumbnails/p.jpg",
     ]  # fmt: skip
+    without = [str(path.relative_to(job.folder)) for path in job.made([job.folder / "p.new"])]
+    assert without == ["p.json", "p.dxf", "thumbnails/p.jpg"]
 
 
 @pytest.mark.parametrize(

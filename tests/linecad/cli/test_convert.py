@@ -24,7 +24,7 @@ from linecad.cli.main import main
 from linecad.corrections.edits import Corrections
 from linecad.corrections.file import write_corrections
 from linecad.errors import OutputError, ReconstructionError
-from linecad.io.scene_file import read_scene
+from linecad.io.scene_file import read_scene, write_scene
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "samples"
@@ -369,6 +369,28 @@ def test_an_output_that_cannot_be_written_leaves_the_others(folder, capsys, monk
     monkeypatch.undo()
     os.chdir(folder)
     assert main([*command_in(said), "--quiet"]) == 0
+
+
+def test_a_scene_is_kept_beside_another_output_where_its_own_folder_takes_no_file(folder, capsys, monkeypatch):
+    """A folder that was there at the start, and took no file when the photo was solved, cost the whole solving."""
+
+    def refuse(scene, path):
+        if path.parent.name == "locked":
+            raise OutputError(f"{path} was not written: writing there is not allowed; choose another folder")
+        write_scene(scene, path)
+
+    for name in ("locked", "ok"):
+        (folder / name).mkdir()
+    outputs = ["-o", "locked/room.json", "-o", "ok/facade.dxf"]
+    monkeypatch.setattr("linecad.outputs.write_scene", refuse)
+    said = failing(capsys, *outputs)
+    assert said.startswith("linecad: locked/room.json was not written: writing there is not allowed")
+    assert "; the scene is kept in ok/facade.json, go on with: " in said
+    assert command_in(said) == ["export", "ok/facade.json", "--photo", str(ROOM), *outputs[:2]]
+    assert sorted(path.name for path in folder.rglob("*.*")) == ["facade.dxf", "facade.json"]
+    monkeypatch.setattr("linecad.outputs.write_scene", write_scene)
+    assert main([*command_in(said), "--quiet"]) == 0
+    assert Path("locked/room.json").read_bytes() == Path("ok/facade.json").read_bytes()
 
 
 def test_a_scene_that_cannot_be_kept_either_is_said(folder, capsys, monkeypatch):
