@@ -15,6 +15,7 @@ import shapely
 from exporters.colours import RGB
 from exporters.faces import FlatFace
 from exporters.identity import identity_of
+from exporters.model import metres_per_unit
 from linecad.arrays import Float
 from linecad.scene import Scene
 
@@ -44,6 +45,7 @@ class Document:
 
     def __init__(self, scene: Scene) -> None:
         self.file = ifcopenshell.file(schema="IFC4")
+        self.unit = metres_per_unit(scene)  # m
         self._ids = identity_of(scene)
         self._key: dict[int, str] = {}  # of each rooted entity, by its number in the file
         self._members: dict[tuple[str, int], list[Entity]] = {}  # of relations by kind and number of what relates them
@@ -188,12 +190,14 @@ class Document:
             self._materials[material] = self.add("IfcMaterial", material), []
         self._materials[material][1].append(element)
 
-    def classify(self, element: Entity, kind: str, name: str, words: Mapping[str, str]) -> None:
-        """Make an element one of a type, which is of a kind and made with the first element of its name."""
-        if name not in self._types:
-            key = f"type {len(self._types)}"  # the name may tell sizes, which follow the scale
-            self._types[name] = self.add_rooted(kind, key, name, **words), []
-        self._types[name][1].append(element)
+    def classify(self, element: Entity, kind: str, what: str, name: str, words: Mapping[str, str]) -> None:
+        """Make an element one of the type `what`, which is of a kind and made with the first element of it.
+
+        The name may tell sizes in metres; `what` must not, since ids do not follow the scale.
+        """
+        if what not in self._types:
+            self._types[what] = self.add_rooted(kind, f"type {what}", name, **words), []
+        self._types[what][1].append(element)
 
     def describe(self, thing: Entity, name: str, values: Mapping[str, Value]) -> None:
         """Give a thing a set of properties; tuples are lists of words."""

@@ -107,7 +107,8 @@ def add_filling(
     made_as, words = ("IfcWindow", WINDOW) if kind == "window" else ("IfcDoor", DOOR)
     made = document.add_rooted(made_as, key, name, OverallWidth=size[0], OverallHeight=size[1], **words, **named)
     document.make_of(made, f"{kind}, not known of what")
-    document.classify(made, f"{made_as}Type", f"{kind} {size[0]:.3f} x {size[1]:.3f} m", words)
+    what = "{} {:.4g} x {:.4g}".format(kind, *(each / document.unit for each in size))
+    document.classify(made, f"{made_as}Type", what, f"{kind} {size[0]:.3f} x {size[1]:.3f} m", words)
     return made
 
 

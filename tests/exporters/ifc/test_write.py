@@ -308,4 +308,6 @@ def test_global_ids_differ_and_outlive_a_scale_that_becomes_known(row, scene, tm
     first = identities(saved(row, tmp_path))
     assert len(set(first)) == len(first)
     assert identities(saved(replace(row, metres_per_unit=2.0), tmp_path, **{"wall-thickness": 0.4})) == first
+    # Sizes that millimetres cannot tell apart were one type then.
+    assert identities(saved(replace(row, metres_per_unit=1e-4), tmp_path)) == first
     assert set(identities(saved(scene, tmp_path))).isdisjoint(first)
