@@ -216,12 +216,24 @@ def find_format(path: Path) -> Format:
 
 
 def drawing_format(path: Path, is_plan: bool) -> Format:
-    """The format of a drawing by the last suffix of `path`; OutputError where drawings have no such format."""
+    """The format of a drawing by the last suffix of `path`.
+
+    Raises OutputError where drawings have no such format, or where the name says the other kind of drawing, for
+    `export` would write that one into it.
+    """
     kind, suffix = ".plan" if is_plan else ".elevation", path.suffix.lower()
     if kind + suffix not in FORMATS:
         known = ", ".join(each.removeprefix(kind) for each in FORMATS if each.startswith(kind))
         found = f"unknown suffix {suffix}" if suffix else "no suffix"
         raise OutputError(f"{path.name}: {found} for {'a plan' if is_plan else 'an elevation'}; use {known}")
+    stem = Path(path.stem)
+    name = f"{stem.stem}{kind}{suffix}"
+    if is_plan and stem.suffix.lower() == ".elevation":
+        raise OutputError(
+            f"{path.name}: the name says an elevation, --plan draws a plan; leave it out, or write {name}"
+        )
+    if not is_plan and stem.suffix.lower() == ".plan":
+        raise OutputError(f"{path.name}: the name says a plan, which --plan draws; add it, or write {name}")
     return FORMATS[kind + suffix]
 
 

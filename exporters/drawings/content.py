@@ -10,7 +10,7 @@ from exporters.drawings.records import DETAILS, OPENINGS, OUTLINES, Layer, Unit
 from exporters.model import Model, metres_per_unit
 from linecad.arrays import Bool, Float, Text
 from linecad.directions import UP, directions_of, partner
-from linecad.scene import DETAIL, OPENING, OUTLINE, QUALITIES, Opening
+from linecad.scene import DETAIL, OPENING, OUTLINE, QUALITIES, Opening, Plane
 
 LAYER_OF: dict[str, Layer] = {OUTLINE: OUTLINES, OPENING: OPENINGS, DETAIL: DETAILS}
 
@@ -38,17 +38,20 @@ def lines_of(model: Model) -> DrawnLines:
 def guessed_planes(model: Model) -> set[int]:
     """Ids of planes that no line shows, or whose lines are guesses in the median; none where the scene does not tell.
 
-    A plane without lines follows from where the lines of others end, and is a guess only where others are told.
+    A plane without lines follows from where the lines of others end, and is a guess only where others are told. Lines
+    that are left out of the drawing count as well.
     """
     lines = model.scene.lines
-    if not len(lines.probability):
+    if not len(lines.probability) and all(plane.told is None for plane in model.scene.planes):
         return set()
     told = dict(zip(lines.id.tolist(), np.asarray(lines.probability).tolist(), strict=True))
-    return {
-        plane.id
-        for plane in model.scene.planes
-        if not plane.lines or float(np.median([told[line] for line in plane.lines])) < LEAST[LIKELY]
-    }
+
+    def median(plane: Plane) -> float:
+        if plane.told is not None:
+            return plane.told
+        return float(np.median([told[line] for line in plane.lines])) if plane.lines else 0.0
+
+    return {plane.id for plane in model.scene.planes if median(plane) < LEAST[LIKELY]}
 
 
 def corners_of(opening: Opening, model: Model) -> Float:

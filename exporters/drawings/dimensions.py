@@ -37,9 +37,10 @@ class Measured:
     """What is measured of a facade, in drawing metres."""
 
     width: Span
-    height: Span
+    height: Span  # of its walls
     columns: tuple[Span, ...]  # of openings, from left to right; none overlap
     rows: tuple[Span, ...]  # from below
+    top: float  # of the roof above it; that of its walls where none is
 
 
 def distinct_spans(spans: Iterable[Span]) -> tuple[Span, ...]:
@@ -59,9 +60,12 @@ def chains_across(measured: Measured) -> list[list[float]]:
 
 
 def chains_up(measured: Measured) -> list[list[float]]:
-    """Places along y of the chains beside the drawing, from the nearest: openings, storeys (sill to sill), overall."""
+    """Places along y of the chains beside the drawing, the nearest first: openings and eave, storeys, overall."""
+    low, eave = measured.height
     sides = [side for span in measured.rows for side in span]
-    return _chains(measured.height, sides, [low for low, _ in measured.rows])
+    if measured.top > eave:
+        sides.append(eave)
+    return _chains((low, measured.top), sides, [low for low, _ in measured.rows])
 
 
 def _chains(whole: Span, sides: Sequence[float], repeated: Sequence[float]) -> list[list[float]]:
@@ -148,9 +152,9 @@ def points_of(dimension: Dimension) -> Float:
 
 
 def build_levels(measured: Measured, view: View, unit: Unit) -> tuple[list[Stroke], list[Label]]:
-    """Marks to the left of a view, on the paper, of zero, sills, heads and the top: as many as stand apart."""
+    """Marks to the left of a view, on the paper, of top, zero, eave, foot, sills, heads: what stands apart."""
     left = view.corner[0] - _LEVEL_GAP
-    heights = [measured.height[1], 0.0, measured.height[0], *(at for span in measured.rows for at in span)]
+    heights = [measured.top, 0.0, *reversed(measured.height), *(at for span in measured.rows for at in span)]
     strokes: list[Stroke] = []
     labels: list[Label] = []
     taken: list[float] = []

@@ -43,7 +43,7 @@ from exporters.textures.rectify import Pixels
 from exporters.triangulation import checked_polygon
 from linecad.arrays import Bool, Float
 from linecad.directions import UP
-from linecad.scene import OPENING, Opening, ground_of
+from linecad.scene import OPENING, SAME_HEIGHT, Opening, ground_of
 
 _AROUND = 0.08  # of the facade's larger side, that is drawn beside and above it
 # Of the distance of the camera from the facade: what lies so little behind a face is on it, but for rounding. A larger
@@ -71,13 +71,14 @@ def build_elevation(model: Model, choice: Choice, photo: Pixels | None = None) -
         checked_polygon(face)
     projection = front_of(facade, model)
     width, height = extents_of(facade, projection)
-    box = _box(width, height)
+    roofs = _roofs(model, projection)
+    box = _box(width, height, roofs)
     fitted = fit((box[2] - box[0], box[3] - box[1]), BORDERS, choice.paper, choice.drawing_scale, is_metric(model))
     view = place_view(box, fitted)
     shown = shown_faces(model.faces, projection, _section(projection, model))
     unit = unit_of(model, width[1] - width[0])
     strokes, guessed = _strokes(model, projection, shown, box)
-    measured = measure(model, facade, projection)
+    measured = measure(model, facade, projection, roofs)
     marks, heights = build_levels(measured, view, unit)
     corner = (measured.width[1], measured.height[0])
     dimensions = spread(build_dimensions(chains_across(measured), chains_up(measured), corner, view), view, unit)
@@ -132,20 +133,39 @@ def extents_of(facade: Facade, projection: Projection) -> tuple[tuple[float, flo
     return (x0, x1), (y0, y1)
 
 
-def measure(model: Model, facade: Facade, projection: Projection) -> Measured:
-    """What is dimensioned of a facade: itself, and the rows and columns of its openings."""
+def _roofs(model: Model, projection: Projection) -> Float:
+    """(V, 2) drawing metres, the corners of the roofs whose eave, the lowest of their edges, is on the facade.
+
+    `Scene.walls_of_roofs` does not do: to it a wall whose lines are all left out carries no roof.
+    """
+    near = SAME_HEIGHT * float(np.linalg.norm(np.ptp(model.points, axis=0)))
+    corners = [np.zeros((0, 2))]
+    for face in model.faces:
+        if face.kind == "roof":
+            flat = projection(face.rings[0])
+            eave = flat[flat[:, 1] - flat[:, 1].min() < near]
+            if len(eave) > 1 and (np.abs(eave[:, 2]) < near).all():
+                corners.append(flat[:, :2])
+    return np.concatenate(corners)
+
+
+def measure(model: Model, facade: Facade, projection: Projection, roofs: Float) -> Measured:
+    """What is dimensioned of a facade: itself, the rows and columns of its openings, the top of its roofs (V, 2)."""
     own = [opening for opening in model.scene.openings if opening.plane == facade.plane]
     flat = [projection(corners_of(opening, model))[:, :2] for opening in own]
     across = [(float(each[:, 0].min()), float(each[:, 0].max())) for each in flat]
     up = [(float(each[:, 1].min()), float(each[:, 1].max())) for each in flat]
-    return Measured(*extents_of(facade, projection), distinct_spans(across), distinct_spans(up))
+    width, height = extents_of(facade, projection)
+    top = max([height[1], *roofs[:, 1].tolist()])
+    return Measured(width, height, distinct_spans(across), distinct_spans(up), top)
 
 
-def _box(width: tuple[float, float], height: tuple[float, float]) -> Box:
-    """What is drawn: the facade and what is about it, down to the ground."""
+def _box(width: tuple[float, float], height: tuple[float, float], roofs: Float) -> Box:
+    """What is drawn: the facade with the corners (V, 2) of its roofs and what is about it, down to the ground."""
     side = max(width[1] - width[0], height[1] - height[0])
-    low, high = min(height[0], 0.0), max(height[1], 0.0)
-    return (width[0] - _AROUND * side, low, width[1] + _AROUND * side, high + _AROUND * side)
+    corners = np.array([(width[0], min(height[0], 0.0)), (width[1], max(height[1], 0.0)), *roofs])
+    (left, low), (right, high) = corners.min(axis=0).tolist(), corners.max(axis=0).tolist()
+    return (left - _AROUND * side, low, right + _AROUND * side, high + _AROUND * side)
 
 
 def _strokes(model: Model, projection: Projection, shown: list[Shown], box: Box) -> tuple[list[Stroke], list[str]]:

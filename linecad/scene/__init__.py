@@ -15,7 +15,7 @@ from linecad.scene.camera import Camera, Certainty
 from linecad.scene.lines import Intersections, Lines
 from linecad.scene.reports import DepthMapReport, SolveReport
 from linecad.scene.surfaces import Face, Opening, Plane, ground_of
-from linecad.scene.whole import Scene
+from linecad.scene.whole import SAME_HEIGHT, Scene
 from linecad.scene.words import (
     AXES,
     CAMERA_SOURCES,
@@ -52,6 +52,7 @@ __all__ = [
     "QUALITIES",
     "REASONS",
     "ROLES",
+    "SAME_HEIGHT",
     "Camera",
     "CameraSource",
     "Certainty",

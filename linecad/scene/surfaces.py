@@ -43,6 +43,8 @@ class Plane:
     lines: tuple[int, ...]  # ids of the lines in it
     faces: tuple[Face, ...] = ()
     tilt: float = 0.0  # rad, between 0 and pi; 0 of planes along the directions, else of a roof
+    # The median probability of all its lines, where `keep_drawn` left some out; None elsewhere, and in no file.
+    told: float | None = None
 
     def __post_init__(self) -> None:
         if not 0 <= self.tilt < np.pi or (self.tilt and self.axis == UP):

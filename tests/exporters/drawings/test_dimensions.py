@@ -45,7 +45,7 @@ def test_of_spans_that_overlap_the_more_frequent_one_stays():
 
 @given(spans, spans)
 def test_every_dimension_is_a_difference_of_coordinates_and_a_chain_adds_up_to_the_whole(across, up):
-    measured = Measured((0.0, 20.0), (0.2, 19.0), distinct_spans(across), distinct_spans(up))
+    measured = Measured((0.0, 20.0), (0.2, 19.0), distinct_spans(across), distinct_spans(up), 19.0)
     view = view_of(measured)
     made = build_dimensions(chains_across(measured), chains_up(measured), (20.0, 0.2), view)
     known = {
@@ -67,15 +67,15 @@ def test_every_dimension_is_a_difference_of_coordinates_and_a_chain_adds_up_to_t
 
 
 def test_a_facade_with_a_row_of_windows_has_chains_of_openings_of_bays_and_overall():
-    measured = Measured((0.0, 12.0), (0.0, 8.0), ((1.0, 2.0), (5.0, 6.0)), ((1.0, 2.5), (4.0, 5.5)))
+    measured = Measured((0.0, 12.0), (0.0, 8.0), ((1.0, 2.0), (5.0, 6.0)), ((1.0, 2.5), (4.0, 5.5)), 8.0)
     assert chains_across(measured) == [[0.0, 1.0, 2.0, 5.0, 6.0, 12.0], [0.0, 1.5, 5.5, 12.0], [0.0, 12.0]]
     assert chains_up(measured) == [[0.0, 1.0, 2.5, 4.0, 5.5, 8.0], [0.0, 1.0, 4.0, 8.0], [0.0, 8.0]]
-    plain = Measured((0.0, 12.0), (0.0, 8.0), (), ())
+    plain = Measured((0.0, 12.0), (0.0, 8.0), (), (), 8.0)
     assert (chains_across(plain), chains_up(plain)) == ([[0.0, 12.0]], [[0.0, 8.0]])
 
 
 def test_a_dimension_is_drawn_between_its_places_and_says_its_length():
-    measured = Measured((0.0, 3.456), (0.0, 2.0), (), ())
+    measured = Measured((0.0, 3.456), (0.0, 2.0), (), (), 2.0)
     view = view_of(measured)
     across, up = build_dimensions(chains_across(measured), chains_up(measured), (3.456, 0.0), view)
     for each, length in ((across, 3.456), (up, 2.0)):
@@ -88,7 +88,7 @@ def test_a_dimension_is_drawn_between_its_places_and_says_its_length():
 
 
 def test_texts_wider_than_their_dimension_stand_beyond_it_every_second_one_of_a_row():
-    measured = Measured((0.0, 5.0), (0.0, 2.0), ((1.0, 1.2), (1.4, 1.6)), ())
+    measured = Measured((0.0, 5.0), (0.0, 2.0), ((1.0, 1.2), (1.4, 1.6)), (), 2.0)
     view = view_of(measured)
     made = spread(build_dimensions(chains_across(measured)[:1], [], (5.0, 0.0), view), view, METRES)
     assert [round(each.length, 3) for each in made] == [1.0, 0.2, 0.2, 0.2, 3.4]
@@ -96,14 +96,14 @@ def test_texts_wider_than_their_dimension_stand_beyond_it_every_second_one_of_a_
 
 
 def test_places_that_paper_cannot_tell_apart_make_no_dimension():
-    measured = Measured((0.0, 5.0), (0.0, 2.0), ((0.01, 2.0), (3.0, 4.99)), ())
+    measured = Measured((0.0, 5.0), (0.0, 2.0), ((0.01, 2.0), (3.0, 4.99)), (), 2.0)
     view = view_of(measured)
     made = build_dimensions(chains_across(measured)[:1], [], (5.0, 0.0), view)
     assert [(each.start[0], each.end[0]) for each in made] == [(0.0, 2.0), (2.0, 3.0), (3.0, 5.0)]
 
 
 def test_levels_say_their_height_above_zero_at_their_height():
-    measured = Measured((0.0, 5.0), (0.5, 9.0), (), ((2.0, 4.0),))
+    measured = Measured((0.0, 5.0), (0.5, 9.0), (), ((2.0, 4.0),), 9.0)
     view = View((-1.0, 0.0, 6.0, 10.0), (40.0, 90.0), 20.0)
     strokes, labels = build_levels(measured, view, METRES)
     assert {label.text for label in labels} == {"±0.00", "+0.50", "+2.00", "+4.00", "+9.00"}
@@ -114,7 +114,7 @@ def test_levels_say_their_height_above_zero_at_their_height():
 
 
 def test_levels_that_would_cover_each_other_are_left_out():
-    measured = Measured((0.0, 5.0), (0.0, 9.0), (), ((8.95, 8.99),))
+    measured = Measured((0.0, 5.0), (0.0, 9.0), (), ((8.95, 8.99),), 9.0)
     _, labels = build_levels(measured, View((-1.0, 0.0, 6.0, 10.0), (40.0, 90.0), 20.0), METRES)
     assert [label.text for label in labels] == ["+9.00", "±0.00"]
 

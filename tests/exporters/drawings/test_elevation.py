@@ -11,6 +11,7 @@ from exporters.drawings.records import DETAILS, FACES, GROUND, OPENINGS, OUTLINE
 from exporters.model import build_model
 from linecad.directions import directions_of, partner
 from linecad.errors import OutputError
+from linecad.model.choice import keep_drawn
 from linecad.scene import Certainty, Face, Opening, Plane
 
 SIDES = [(1.5, 4.8), (4.8, 4.8), (8.4, 4.8)]  # lower left corners of the three windows of 1.2 x 1.6 m
@@ -204,3 +205,41 @@ def test_another_facade_is_drawn_from_its_own_front(scene):
     assert np.isclose(whole, 6.0)
     assert "plane" in side.title
     assert side.title.startswith("Elevation of facade 1 ")
+
+
+def under_roof(scene, before=0.0):
+    """The wall of 12 by 8 m under a roof that rises 5 m over 5 m, from 0.5 m left of it to 2 m right of it."""
+    pitch = np.radians(45.0)
+    outline = np.array([(-0.5, 0, 0), (14, 0, 0), (12, 5, 5), (0, 5, 5)]) + np.array([6.5, 15.0 - before, 8.0 - 5.2])
+    tilt = pitch + np.pi / 2
+    offset = float(np.array([0, np.cos(tilt), np.sin(tilt)]) @ outline[0])
+    roof = Plane(77, 1, offset, (), (Face(55, outline, kind="roof"),), tilt)
+    return replace(scene, planes=(*scene.planes, roof))
+
+
+def test_the_roof_above_its_eave_is_drawn_and_measured(facade):
+    drawing = elevation(under_roof(facade))
+    around = 0.08 * 12
+    assert np.allclose(drawing.view.box, [-0.5 - around, 0.0, 14 + around, 13 + around])
+    assert frozenset({(0.0, 13.0), (12.0, 13.0)}) in segments(on(drawing, FACES))
+    up = [float(drawing.unit.text(each.length)) for each in drawing.dimensions if each.is_upright]
+    assert up == [4.8, 1.6, 1.6, 5.0, 13.0]
+    levels = {label.text for label in drawing.labels if label.layer.name == "LEVELS"}
+    assert levels == {"±0.00", "+4.80", "+6.40", "+8.00", "+13.00"}
+    across = [each.length for each in drawing.dimensions if not each.is_upright]
+    assert np.isclose(across[-1], 12.0)  # the width is that of the walls
+
+
+def test_a_roof_is_drawn_above_a_wall_whose_lines_are_left_out(facade):
+    roofed = under_roof(replace(facade, lines=replace(facade.lines, role=["detail"] * len(facade.lines))))
+    bare = keep_drawn(roofed, "none")
+    assert len(bare.lines) == 0
+    assert elevation(bare).view.box == elevation(roofed).view.box
+    assert elevation(bare).view.box[3] > 13
+
+
+def test_a_roof_on_another_plane_changes_nothing(drawing, facade):
+    other = elevation(under_roof(facade, before=-0.01), drawing_scale="1:50")
+    assert other.view.box == drawing.view.box
+    places = [[(each.start, each.end) for each in one.dimensions] for one in (other, drawing)]
+    assert places[0] == places[1]

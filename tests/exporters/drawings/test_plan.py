@@ -1,11 +1,14 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from exporters.drawings.choice import Choice
+from exporters.drawings.content import guessed_planes
 from exporters.drawings.plan import build_plan
 from exporters.drawings.records import CAMERA, OPENINGS, WALLS
 from exporters.model import build_model
+from linecad.model.choice import keep_drawn
 
 
 def plan_of(scene, **chosen):
@@ -50,6 +53,25 @@ def test_walls_of_guesses_are_dashed_and_counted(scene, told):
     assert all(stroke.layer.is_dashed for stroke in on(drawing, WALLS))
     assert any("walls, whose place is probably wrong" in label.text for label in drawing.labels)
     assert not any(stroke.layer.is_dashed for stroke in on(plan_of(scene), WALLS))
+
+
+@pytest.mark.parametrize("probability", [0.9, 0.2])
+@pytest.mark.parametrize("detail", ["openings", "none"])
+def test_walls_whose_lines_are_left_out_as_details_are_as_sure_as_with_them(scene, told, detail, probability):
+    lines = replace(told.lines, probability=np.full(len(told.lines), probability))
+    whole = replace(scene, lines=replace(lines, role=["detail"] * (len(lines) - 1) + ["outline"]))
+    drawn = keep_drawn(whole, detail)
+    assert len(drawn.lines) == 1
+    own = [{stroke.layer.name for stroke in on(plan_of(each), WALLS)} for each in (whole, drawn)]
+    assert own[0] == own[1]
+    assert guessed_planes(build_model(drawn)) == guessed_planes(build_model(whole))
+
+
+def test_walls_are_as_sure_as_their_details_where_no_line_stays(scene, told):
+    lines = replace(told.lines, probability=np.full(len(told.lines), 0.2), role=["detail"] * len(told.lines))
+    drawn = keep_drawn(replace(scene, lines=lines), "none")
+    assert len(drawn.lines) == 0
+    assert all(stroke.layer.is_dashed for stroke in on(plan_of(drawn), WALLS))
 
 
 def test_the_plan_measures_the_facade_and_the_way_to_the_camera(plan):

@@ -49,6 +49,13 @@ def test_the_plan_is_drawn(beside):
     assert any(text.startswith("Plan, facade 0 ") for text in texts(beside / "plan.svg"))
 
 
+def test_names_that_say_their_kind_twice_are_taken(beside):
+    assert main(["elevation", "room.json", "-o", "a.plan.svg", "--plan", "--quiet"]) == 0
+    assert main(["elevation", "room.json", "-o", "a.elevation.svg", "--quiet"]) == 0
+    assert any(text.startswith("Plan, facade 0 ") for text in texts(beside / "a.plan.svg"))
+    assert any(text.startswith("Elevation of facade 0") for text in texts(beside / "a.elevation.svg"))
+
+
 def test_a_plane_chooses_its_facade(beside):
     assert main(["elevation", "room.json", "-o", "a.svg", "--facade", "0", "--quiet"]) == 0
     title = next(text for text in texts(beside / "a.svg") if text.startswith("Elevation of facade 0"))
@@ -93,6 +100,12 @@ def test_without_the_photo_a_line_says_that_none_lies_beneath(folder, scene_file
         (["-o", "a.tif", "--plan"], "unknown suffix .tif for a plan; use .svg, .pdf, .dxf"),
         (["-o", "a.step"], "unknown suffix .step for an elevation; use .svg, .pdf, .dxf, .tif"),
         (["-o", "a.svg", "--option", "sewn=on"], "there is no option 'sewn' for .svg"),
+        (
+            ["-o", "a.elevation.SVG", "--plan"],
+            "the name says an elevation, --plan draws a plan; leave it out, or write a.pl",
+        ),
+        (["-o", "a.plan.svg"], "the name says a plan, which --plan draws; add it, or write a.elevation.svg"),
+        (["-o", "a.plan.tif"], "the name says a plan, which --plan draws; add it, or write a.elevation.tif"),
         ([], "no output was named"),
     ],
 )
