@@ -49,14 +49,15 @@ def fails(folder, capsys):
 def reconstructed_once():
     """One photo with one camera and the same options is reconstructed once for all tests: it takes longer than they do.
 
-    With corrections or a depth map it is done each time.
+    With corrections or a depth map it is done each time, and so it is where a test replaces the placement of bodies,
+    also one of another folder that runs later in this process.
     """
     reconstruct, known = linecad.pipeline.reconstruct, {}
 
     def remember(photo, options, on_progress=None, on_stage=lambda _: None, *more):
         if any(each is not None for each in more):
             return reconstruct(photo, options, on_progress, on_stage, *more)
-        key = (zlib.crc32(photo.pixels), repr(photo), options)
+        key = (zlib.crc32(photo.pixels), repr(photo), options, linecad.pipeline.place_lines)
         if key not in known:
             known[key] = reconstruct(photo, options, on_progress, on_stage)
         return known[key]
