@@ -97,13 +97,23 @@ class SolverError(LinecadError):
 
 
 class ContradictionError(SolverError):
-    """Crossings that a person called real and that no depths satisfy together: a smallest such set."""
+    """What a person said and what no depths satisfy together: crossings called real, or facts; a smallest such set."""
 
-    def __init__(self, text: str, lines: tuple[int, ...], crossings: tuple[tuple[int, int], ...]) -> None:
-        """The lines in it and the pairs of them that cross: nodes of the graph, or ids where the lines have some."""
+    def __init__(
+        self,
+        text: str,
+        lines: tuple[int, ...],
+        crossings: tuple[tuple[int, int], ...],
+        facts: tuple[int, ...] = (),
+    ) -> None:
+        """The lines in it, the pairs of them that cross, and the facts by their number among those that were told.
+
+        Lines are nodes of the graph, or ids where the lines have some.
+        """
         super().__init__(text)
         self.lines = lines
         self.crossings = crossings
+        self.facts = facts
 
 
 class CorrectionError(LinecadError):

@@ -16,17 +16,25 @@ from linecad.corrections.drawing import Drawing
 from linecad.corrections.edits import (
     Anchor,
     Corrections,
+    Cut,
     Delete,
     Draw,
     Edit,
+    Fact,
+    Foot,
     Join,
     KnownLength,
     Label,
     LabelCrossing,
+    Meet,
+    OnePlane,
+    PlaceAt,
     Point,
     SetAxis,
     SetFrame,
     Split,
+    Withdraw,
+    anchors_of,
 )
 from linecad.corrections.lookup import LineTable
 from linecad.directions import axis_name
@@ -40,6 +48,14 @@ FIRST_IDS = 100_000  # ids for the lines of one frame; those found with the next
 Origin = Literal["found", "drawn", "split", "joined"]
 
 
+@dataclass(frozen=True)
+class ToldFact:
+    """A fact, and the lines that it names now: by their ids, or as the nodes of a line graph."""
+
+    fact: Fact
+    lines: tuple[int, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class CorrectedLines:
     """The lines of a photo after all edits."""
@@ -51,6 +67,7 @@ class CorrectedLines:
     lengths: dict[int, float]  # m, by id
     parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
     notes: tuple[str, ...]  # what could not be found again
+    facts: tuple[ToldFact, ...] = ()  # about the bodies of lines, by id
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -105,6 +122,7 @@ class Correcting:
         self.labels: dict[tuple[int, int], tuple[Point, Label]] = {}
         self.lengths: dict[int, float] = {}
         self.parted: list[tuple[int, int]] = []
+        self.facts: dict[Fact, tuple[int, ...]] = {}
         self._table: LineTable | None = None
 
     def apply(self, edit: Edit, before_frame: bool = False) -> None:
@@ -143,6 +161,11 @@ class Correcting:
                 self.lengths.pop(number, None)
                 if edit.metres is not None:
                     self.lengths[number] = edit.metres
+            case Meet() | OnePlane() | Foot() | Cut() | PlaceAt():
+                self._tell(edit, before_frame)
+            case Withdraw():
+                if self.facts.pop(edit.fact, None) is None and not before_frame:
+                    raise CorrectionError("what is taken back was not said, or was taken back before")
             case SetFrame():
                 pass  # the lines were found with it
             case _:
@@ -160,6 +183,7 @@ class Correcting:
             lengths={own: metres for number, metres in self.lengths.items() for own in self._now(number)[:1]},
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
             notes=notes,
+            facts=tuple(ToldFact(fact, now) for fact, own in self.facts.items() if (now := self._named(fact, own))),
         )
 
     def anchor(self, number: int) -> Anchor:
@@ -177,6 +201,23 @@ class Correcting:
     def snapped(self, ends: Float, axis: int | None) -> tuple[Float, int, tuple[bool, bool]]:
         """What a line drawn from one end to the other (2, 2) would be: ends, axis, and which ends snap to others."""
         return self.drawing.snapped(ends, axis, self._lookup().ends.reshape(-1, 2))
+
+    def _tell(self, fact: Fact, before_frame: bool) -> None:
+        if before_frame:
+            raise CorrectionError("it was said of lines along other axes; say it again")
+        if fact in self.facts:
+            raise CorrectionError("this was said already; take it back first to say something else")
+        named = tuple(self.find(anchor) for anchor in anchors_of(fact))
+        if len(set(named)) < len(named):
+            raise CorrectionError("this takes two lines; choose another one")
+        self.facts[fact] = named
+
+    def _named(self, fact: Fact, lines: tuple[int, ...]) -> tuple[int, ...]:
+        """The lines that a fact is about now, of one that was split the piece nearest to where it was named."""
+        middles = (tuple(np.mean(anchor.ends, axis=0).tolist()) for anchor in anchors_of(fact))
+        now = [self._nearest(own, middle) for own, middle in zip(lines, middles, strict=True)]
+        found = tuple(own for own in now if own is not None)
+        return found if len(set(found)) == len(lines) else ()
 
     def _lookup(self) -> LineTable:
         if self._table is None:

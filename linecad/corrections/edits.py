@@ -14,6 +14,7 @@ LABELS: tuple[Label, ...] = get_args(Label)
 MOST_EDITS = 100_000  # in one file; a photo has some thousand crossings
 SHORTEST = 1e-6  # m, of a known length
 LONGEST = 1e6  # m
+LARGEST_LOG_RATIO = 5.0  # of two depths: nothing in a photo is 150 times as far as something else
 
 Point = tuple[float, float]  # px
 Ends = tuple[Point, Point]  # px
@@ -88,7 +89,71 @@ class SetFrame:
     lines: tuple[Anchor, ...]
 
 
-Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | SetFrame
+# Facts: what a person knows of how the bodies of a photo stand to each other. A fact is about the bodies that its lines
+# belong to when the scene is solved: which lines hold together is found anew each time.
+
+
+@dataclass(frozen=True)
+class Meet:
+    """Two lines meet where they cross in the photo; two along one axis are one line."""
+
+    lines: tuple[Anchor, Anchor]
+
+
+@dataclass(frozen=True)
+class OnePlane:
+    """Two lines lie in one plane; where its normal is upright, at one height."""
+
+    lines: tuple[Anchor, Anchor]
+    normal: int  # number of a direction
+
+
+@dataclass(frozen=True)
+class Foot:
+    """The wall of a line ends on the ground at a pixel; an upright line does at its point nearest to the pixel."""
+
+    line: Anchor
+    pixel: Point
+
+
+@dataclass(frozen=True)
+class Cut:
+    """What two lines belong to is not connected, however many crossings say so."""
+
+    lines: tuple[Anchor, Anchor]
+
+
+@dataclass(frozen=True)
+class PlaceAt:
+    """Where a line stands against another one: the log ratio of the depths of their segments' middles."""
+
+    line: Anchor
+    to: Anchor
+    log_ratio: float
+
+
+Fact = Meet | OnePlane | Foot | Cut | PlaceAt
+
+
+@dataclass(frozen=True)
+class Withdraw:
+    """A fact that was told does not hold."""
+
+    fact: Fact
+
+
+def anchors_of(fact: Fact) -> tuple[Anchor, ...]:
+    """The lines that a fact names."""
+    match fact:
+        case Foot():
+            return (fact.line,)
+        case PlaceAt():
+            return fact.line, fact.to
+        case _:
+            return fact.lines
+
+
+Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | SetFrame | Fact | Withdraw
 
 
 @dataclass(frozen=True)

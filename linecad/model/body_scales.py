@@ -14,11 +14,11 @@ import numpy as np
 from scipy.special import pdtrc
 
 from linecad.arrays import Bool, Float, Int
+from solver.bodies.contradiction import find_contradiction
 
 ENOUGH = 1.6  # decades of evidence that join two groups of bodies
 LEAST = 0.6  # decades; cues of less are as often wrong as right, and count nowhere
 BASE_RATE = 0.3  # coincidences that are expected beside those that the photo tells: few alone are no evidence
-CLOSEST = 1e-9  # log scale; what is less is rounding, not a contradiction
 MOST_BRANCHES = 2000  # sets of cues that are tried; then all cues of a contradiction are given up
 
 
@@ -117,38 +117,10 @@ def find_accepted_cues(cues: ScaleCues, count: int) -> Bool:
 
 
 def _contradiction(cues: ScaleCues, count: int, dropped: frozenset[int]) -> frozenset[int]:
-    """Cues that no scales satisfy together, none where all are satisfied: a negative cycle (Bellman and Ford).
-
-    Written out, as SciPy only says that there is a cycle and networkx knows no rounding (CLOSEST).
-    """
+    """Cues that no scales satisfy together, none where all are satisfied."""
     kept = np.array([cue for cue in range(len(cues.bodies)) if cue not in dropped], np.int64)
-    if len(kept) == 0:
-        return frozenset()
-    first, second = cues.bodies[kept].T
-    # The second's log scale is at most log_ratio + tolerance above the first's, the first's at most so much below.
-    start, end = np.r_[first, second], np.r_[second, first]
-    length = np.r_[cues.log_ratio[kept] + cues.tolerance[kept], cues.tolerance[kept] - cues.log_ratio[kept]]
-    distance = np.zeros(count)
-    came = np.full(count, -1)
-    moved = -1
-    for _ in range(count + 1):
-        moved = -1
-        for arc in np.flatnonzero(distance[start] + length < distance[end] - CLOSEST).tolist():
-            if distance[start[arc]] + length[arc] < distance[end[arc]] - CLOSEST:
-                distance[end[arc]] = distance[start[arc]] + length[arc]
-                came[end[arc]] = arc
-                moved = int(end[arc])
-        if moved < 0:
-            return frozenset()
-    for _ in range(count):  # back into the cycle itself
-        moved = int(start[came[moved]])
-    found, body = set(), moved
-    while True:
-        arc = int(came[body])
-        found.add(int(kept[arc % len(kept)]))
-        body = int(start[arc])
-        if body == moved:
-            return frozenset(found)
+    own = cues.subset(kept)
+    return frozenset(kept[list(find_contradiction(own.bodies[:, ::-1], own.log_ratio, own.tolerance, count))].tolist())
 
 
 def _log_scales(cues: ScaleCues, accepted: Bool, group: Int) -> Float:

@@ -1,34 +1,75 @@
-"""The stage that puts every body where it most likely is: fit, rigid bodies, evidence, scene program."""
+"""The stage that puts every body where it most likely is: evidence, facts, scene program."""
 
 import time
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from linecad.arrays import Bool, Float
-from linecad.decide.stability import resample
+from linecad.arrays import Bool, Float, Int
+from linecad.corrections.apply import ToldFact
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
-from linecad.ties.bodies import find_rigid_bodies
-from linecad.ties.candidates import Candidate, find_candidates
-from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, hear, report_of, ties_to_map
+from linecad.ties.candidates import Candidate
+from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
+from linecad.ties.evidence import Evidence, find_evidence
+from linecad.ties.facts import CERTAIN, FactTies, ties_of_facts
 from linecad.ties.probability import probabilities
-from linecad.ties.seams import find_seams, hold
 from linecad.ties.setting import Setting, Sight
-from linecad.ties.weights import weigh_candidates
-from solver.annotations import check_annotations, read_annotations
+from linecad.ties.weights import weigh_candidates, worth_a_tie
 from solver.bodies.search import place
 from solver.bodies.ties import Placement, Ties
 from solver.choice import boundaries
 from solver.depths import end_ratios, near_log_ratio
-from solver.families import find_families
-from solver.options import FAMILIES, OnProgress, SolveOptions
+from solver.options import OnProgress, SolveOptions
 from solver.potentials import fit_near_depths
-from solver.robust import RobustFit, agreeing_with
+from solver.robust import agreeing_with
 
-FITS = 21  # without some lines; each line is left out of seven
-CERTAIN = 1e6  # weight of what a person called real
+CONNECTING = ("bundle", "plane")  # kinds of ties that say that two bodies are one thing
+
+
+@dataclass(frozen=True, eq=False)
+class BodyPlaces:
+    """Bodies in their places."""
+
+    evidence: Evidence
+    told: FactTies  # what facts say
+    # What each tie comes from: a candidate, a crossing called real (its edge), a fact (-1 less its number), a map (None)
+    sources: tuple[Candidate | int | None, ...]
+    ties: Ties
+    placement: Placement
+    mapped: MapPlaces | None  # what a depth map made of the places, where it was heard
+
+    @property
+    def log_scale(self) -> Float:
+        """(B,) of each body; behind these of the ground, where no map was heard."""
+        return self.placement.log_scale if self.mapped is None else self.mapped.log_scale
+
+    @cached_property
+    def log_depth(self) -> Float:
+        """(N,) of all lines there."""
+        setting = self.evidence.setting
+        body = setting.bodies.body
+        moved = np.append(self.log_scale[: setting.bodies.count], 0.0)[body]
+        return np.asarray(setting.log_depth + moved)
+
+    @cached_property
+    def probability(self) -> Float:
+        """(N,) that a line's depth relative to component 0 is right within 5 %."""
+        known, evidence = self.evidence.setting, self.evidence
+        return probabilities(
+            known, self.placement, evidence.reference, self.log_depth, evidence.held, self.mapped
+        )  # fmt: skip
+
+    @property
+    def by_map(self) -> Bool:
+        """(N,) lines of bodies that a depth map alone ties to the reference."""
+        body = self.evidence.setting.bodies.body
+        if self.mapped is None:
+            return np.zeros(len(body), bool)
+        return np.asarray((body >= 0) & self.mapped.by_map[np.maximum(body, 0)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +77,30 @@ class Placed:
     """Lines in their places."""
 
     solution: Solution  # the crossings that agree there
-    setting: Setting
-    ties: Ties
-    placement: Placement
-    reference: int  # the body that the others are placed relative to
+    places: BodyPlaces
     probability: Float  # (N,) that a line's depth relative to component 0 is right within 5 %
     by_map: Bool  # (N,) lines of bodies that a depth map alone ties to the reference
     depth_map: DepthMapReport | None  # its scale is that of the solution's depths; None where no map was given
+
+    @property
+    def setting(self) -> Setting:
+        """The bodies with their inner depths."""
+        return self.places.evidence.setting
+
+    @property
+    def ties(self) -> Ties:
+        """What ties the bodies."""
+        return self.places.ties
+
+    @property
+    def placement(self) -> Placement:
+        """Their scales."""
+        return self.places.placement
+
+    @property
+    def reference(self) -> int:
+        """The body that the others are placed relative to."""
+        return self.places.evidence.reference
 
     @property
     def ground(self) -> tuple[float, float] | None:
@@ -57,18 +115,6 @@ class Placed:
         return float(self.placement.log_scale[number]), float(self.ties.weight[says_so].sum())
 
 
-@dataclass(frozen=True, eq=False)
-class BodyPlaces:
-    """Bodies in their places."""
-
-    ties: Ties
-    placement: Placement
-    reference: int  # the body that the others are placed relative to
-    log_depth: Float  # (N,) of all lines there
-    heard: DepthWitness | str  # the depth map, or why it was left out
-    mapped: MapPlaces | None  # what it made of the places, where it was heard
-
-
 def place_lines(
     graph: LineGraph,
     sight: Sight,
@@ -81,18 +127,27 @@ def place_lines(
     Keeps to the crossings that `options` call real or fake. Raises SolverError, ContradictionError, or DepthMapError
     where nothing tells what the photo's depth map measures.
     """
+    return place_on(find_evidence(graph, sight, options, (), on_stage), graph, options, (), on_progress, on_stage)
+
+
+def place_on(
+    evidence: Evidence,
+    graph: LineGraph,
+    options: SolveOptions,
+    facts: Sequence[ToldFact] = (),
+    on_progress: OnProgress = None,
+    on_stage: StageReport = silent,
+) -> Placed:
+    """The lines of a graph with every body where the evidence of its photo and facts about its nodes put it.
+
+    Raises SolverError, or ContradictionError where facts and crossings called real cannot all hold.
+    """
     began = time.monotonic()
-    ratios = end_ratios(graph)
-    real, fake = read_annotations(graph, options)
-    if real.any():
-        check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
-    on_stage("fitting depths, with and without some of the lines")
-    setting = _setting(graph, sight, options, real, fake)
-    on_stage(f"finding what ties {setting.bodies.count} bodies")
-    found = place_bodies(setting, find_candidates(setting), real, options, on_progress, on_stage)
-    placement, body = found.placement, setting.bodies.body
-    log_depth = _kept_to(graph, found.log_depth, real, ratios)
-    connected = (agreeing_with(graph, log_depth) & ~fake) | real
+    real, fake = evidence.real, evidence.fake
+    found = place_bodies(evidence, options, facts, on_progress, on_stage)
+    placement, body = found.placement, evidence.setting.bodies.body
+    log_depth = _kept_to(graph, found.log_depth, real)
+    connected = (agreeing_with(graph, log_depth) & ~fake & ~_across(body[graph.edges], found.told.cuts)) | real
     solution = Solution(
         status=placement.status,
         solver=placement.solver,
@@ -107,75 +162,74 @@ def place_lines(
         planar_pairs=np.zeros((0, 3), np.int64),
         log_depth=log_depth,
     )
-    mapped = found.mapped
-    held = hold(len(body), find_seams(setting))
-    probability = probabilities(setting, placement, found.reference, log_depth, held, mapped)
-    by_map = np.zeros(len(body), bool) if mapped is None else (body >= 0) & mapped.by_map[np.maximum(body, 0)]
-    told = None if sight.depth is None else report_of(sight.depth, found.heard, mapped)
-    return Placed(solution, setting, found.ties, placement, found.reference, probability, by_map, told)
+    depth = evidence.setting.sight.depth
+    told = None if depth is None else report_of(depth, evidence.heard, found.mapped)
+    sure = probabilities(
+        evidence.setting, placement, evidence.reference, log_depth, evidence.held, found.mapped
+    )  # fmt: skip
+    return Placed(solution, found, sure, found.by_map, told)
 
 
 def place_bodies(
-    setting: Setting,
-    candidates: list[Candidate],
-    real: Bool,
+    evidence: Evidence,
     options: SolveOptions,
+    facts: Sequence[ToldFact] = (),
     on_progress: OnProgress = None,
     on_stage: StageReport = silent,
 ) -> BodyPlaces:
-    """The bodies where candidates, crossings that a person called `real` (E,) and the sight's depth map put them."""
-    size = setting.bodies.size
-    ties = _with_sure(weigh_candidates(candidates, size), setting, real)
-    heard = hear(setting, candidates, setting.sight.depth)
+    """The bodies where the evidence of a photo and facts about the nodes of its graph put them.
+
+    Raises SolverError, or ContradictionError where facts and crossings called real cannot all hold.
+    """
+    setting, heard, reference = evidence.setting, evidence.heard, evidence.reference
+    size, told = setting.bodies.size, ties_of_facts(setting, facts)
+    sure, edges = _sure(setting, evidence.real)
+    told.check(facts, sure, setting.graph.edges[edges])
+    kept = [each for each in evidence.candidates if not (each.kind in CONNECTING and each.bodies in told.cuts)]
+    ties = weigh_candidates(kept, size).joined(sure).joined(told.ties)
+    sources = [*worth_a_tie(kept), *edges.tolist(), *(-1 - told.number).tolist()]
     if isinstance(heard, DepthWitness):
         ties = ties.joined(ties_to_map(heard, size))
-    reference = int(size.argmax()) if setting.bodies.count else 0
     on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
     # The ground is one more body, and the map another where it ties any.
     count = max(setting.bodies.count + 1, int(ties.bodies.max(initial=-1)) + 1)
     placement = place(ties, count, reference, options, on_progress)
-    log_scale, mapped = placement.log_scale, None
+    mapped = None
     if isinstance(heard, DepthWitness):
         mapped = follow_map(heard, ties, placement, reference, size)
-        log_scale = mapped.log_scale
-    body = setting.bodies.body
-    log_depth = setting.log_depth + np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
-    return BodyPlaces(ties, placement, reference, log_depth, heard, mapped)
+    sources += [None] * (len(ties) - len(sources))
+    return BodyPlaces(evidence, told, tuple(sources), ties, placement, mapped)
 
 
-def _setting(graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool) -> Setting:
-    believed = replace(
-        graph, weight=np.where(real, CERTAIN, graph.weight), informative=graph.informative & ~fake
-    )  # fmt: skip
-    log_depth = RobustFit(believed).depths()
-    fits = resample(believed, options.seed, FITS)
-    bodies = find_rigid_bodies(believed, log_depth, fits)
-    return Setting(believed, log_depth, bodies, fits, sight)
-
-
-def _with_sure(ties: Ties, setting: Setting, real: Bool) -> Ties:
-    """The ties, and one for each crossing of two bodies that a person called real, which outweighs all others."""
+def _sure(setting: Setting, real: Bool) -> tuple[Ties, Int]:
+    """A tie for each crossing of two bodies that a person called real, which outweighs all found ones; their edges."""
     graph, body = setting.graph, setting.bodies.body
     first, second = graph.edges.T
     sure = np.flatnonzero(real & graph.informative & (body[first] >= 0) & (body[second] >= 0))
     sure = sure[body[first[sure]] != body[second[sure]]]
     i, j = graph.edges[sure].T
     asked = graph.log_ratio[sure] - setting.log_depth[i] + setting.log_depth[j]
-    return ties.joined(
-        Ties(
-            np.column_stack([body[i], body[j]]),
-            asked,
-            graph.tolerance[sure],
-            np.full(len(sure), CERTAIN),
-            np.full(len(sure), -1),
-        )
+    ties = Ties(
+        np.column_stack([body[i], body[j]]),
+        asked,
+        graph.tolerance[sure],
+        np.full(len(sure), CERTAIN),
+        np.full(len(sure), -1),
     )
+    return ties, sure
 
 
-def _kept_to(graph: LineGraph, log_depth: Float, real: Bool, ratios: Float) -> Float:
+def _across(bodies: Int, cuts: frozenset[tuple[int, int]]) -> Bool:
+    """Mask (E,) of pairs of bodies (E, 2) that are cut from each other."""
+    ordered = np.sort(bodies, axis=1).tolist()
+    return np.array([tuple(pair) in cuts for pair in ordered], bool) if cuts else np.zeros(len(bodies), bool)
+
+
+def _kept_to(graph: LineGraph, log_depth: Float, real: Bool) -> Float:
     """Log depths (N,) moved as far as the crossings ask that a person called real."""
     if not real.any():
         return log_depth
+    ratios = end_ratios(graph)
     to_middle = np.log(ratios.min(axis=1))
     near = log_depth + to_middle
     lowest = near.min()

@@ -1,5 +1,7 @@
 """From candidates to ties: how much each is worth, by a table fitted to scenes of known depth."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from linecad.arrays import Float, Int
@@ -22,18 +24,26 @@ def log_odds_of(candidate: Candidate) -> float:
     return AT_ONCE[candidate.kind] + sum(known[name] * value for name, value in candidate.features.items())
 
 
-def weigh_candidates(candidates: list[Candidate], size: Int) -> Ties:
-    """The ties of bodies of `size` (B,) lines: what each candidate adds over chance, where that is enough."""
-    chance = float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
-    gain = np.array([log_odds_of(candidate) for candidate in candidates]) - chance
-    kept = np.flatnonzero(gain >= LEAST_WEIGHT).tolist()
+def gain_of(candidate: Candidate) -> float:
+    """Log-odds that a candidate adds over chance."""
+    return log_odds_of(candidate) - float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
+
+
+def worth_a_tie(candidates: Sequence[Candidate]) -> list[Candidate]:
+    """Those that add enough over chance."""
+    return [candidate for candidate in candidates if gain_of(candidate) >= LEAST_WEIGHT]
+
+
+def weigh_candidates(candidates: Sequence[Candidate], size: Int) -> Ties:
+    """The ties of bodies of `size` (B,) lines, one for each candidate that is `worth_a_tie`, in their order."""
+    chosen = worth_a_tie(candidates)
     layers = [(kind, normal) for kind in REPEATING for normal in (-1, 0, 1, UP)]
-    chosen = [candidates[number] for number in kept]
     layers += [("plane", normal) for normal in sorted({each.normal for each in chosen}) if normal >= MAIN]
     with_ground = np.append(size, size.sum())  # the ground is no crumb
     smaller = np.array([with_ground[list(candidate.bodies)].min() for candidate in chosen], np.float64)
     repeated = np.array([REPEATED if candidate.kind in REPEATING else 1.0 for candidate in chosen])
-    weight: Float = gain[kept] * np.minimum(1.0, smaller / FULL_SIZE) * repeated
+    gain = np.array([gain_of(candidate) for candidate in chosen])
+    weight: Float = gain * np.minimum(1.0, smaller / FULL_SIZE) * repeated
     return Ties(
         bodies=np.array([candidate.bodies for candidate in chosen]).reshape(-1, 2),
         log_ratio=np.array([candidate.log_ratio for candidate in chosen]),

@@ -12,7 +12,8 @@ import linecad.ties.placing
 import linecad.ties.weights
 from linecad.errors import ContradictionError, SolverError
 from linecad.ties.candidates import find_candidates
-from linecad.ties.placing import FITS, place_lines
+from linecad.ties.evidence import FITS
+from linecad.ties.placing import place_lines
 from solver.options import SolveOptions
 
 NEAR, FAR = 9.5, 12.0

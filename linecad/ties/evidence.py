@@ -1,0 +1,128 @@
+"""All that a photo tells of the places of its bodies, found once: what a person says of bodies needs no second look."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import networkx as nx
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.corrections.apply import ToldFact
+from linecad.corrections.edits import Cut
+from linecad.decide.stability import LEAST_TOLERANCE, resample
+from linecad.line_graph import LineGraph
+from linecad.progress import StageReport, silent
+from linecad.ties.bodies import RigidBodies, find_rigid_bodies
+from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.depth_ties import DepthWitness, hear
+from linecad.ties.facts import CERTAIN
+from linecad.ties.seams import find_seams, hold
+from linecad.ties.setting import Setting, Sight
+from solver.annotations import check_annotations, read_annotations
+from solver.depths import end_ratios
+from solver.families import find_families
+from solver.options import FAMILIES, SolveOptions
+from solver.robust import RobustFit
+
+FITS = 21  # without some lines; each line is left out of seven
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """What a photo tells of the places of its bodies, before anything is placed."""
+
+    setting: Setting
+    candidates: tuple[Candidate, ...]
+    held: Float  # (N,) probability that a line is held in its body (`linecad.ties.seams`)
+    heard: DepthWitness | str  # the depth map, or why it was left out
+    real: Bool  # (E,) crossings that a person called so
+    fake: Bool  # (E,)
+
+    @property
+    def reference(self) -> int:
+        """The body that the others are placed relative to."""
+        return int(self.setting.bodies.size.argmax()) if self.setting.bodies.count else 0
+
+    def without_photo(self) -> "Evidence":
+        """The same without pixels: small enough to hand on, and enough to place bodies."""
+        sight = replace(self.setting.sight, pixels=None, depth=None)
+        return replace(self, setting=replace(self.setting, sight=sight))
+
+
+def find_evidence(
+    graph: LineGraph,
+    sight: Sight,
+    options: SolveOptions,
+    facts: Sequence[ToldFact] = (),
+    on_stage: StageReport = silent,
+) -> Evidence:
+    """What a photo tells of the bodies of a graph's lines; of `facts` about its nodes only cuts matter here.
+
+    Keeps to the crossings that `options` call real or fake. Raises SolverError, ContradictionError, or DepthMapError
+    where nothing tells what the photo's depth map measures.
+    """
+    real, fake = read_annotations(graph, options)
+    if real.any():
+        ratios = end_ratios(graph)
+        check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
+    on_stage("fitting depths, with and without some of the lines")
+    setting = _setting(graph, sight, options, real, fake, facts)
+    on_stage(f"finding what ties {setting.bodies.count} bodies")
+    candidates = find_candidates(setting)
+    held = hold(len(setting.bodies.body), find_seams(setting))
+    return Evidence(setting, tuple(candidates), held, hear(setting, candidates, sight.depth), real, fake)
+
+
+def _setting(
+    graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool, facts: Sequence[ToldFact]
+) -> Setting:
+    """Bodies of the lines as they were found; fitted again only where what a person said contradicts them inside.
+
+    So a word about two bodies moves these, and what is far from them keeps its place.
+    """
+    log_depth = RobustFit(graph).depths()
+    bodies = find_rigid_bodies(graph, log_depth, fits := resample(graph, options.seed, FITS))
+    believed = replace(graph, informative=graph.informative & ~fake)
+    if _contradicts(graph, log_depth, bodies, real, fake):
+        believed = replace(believed, weight=np.where(real, CERTAIN, graph.weight))
+        log_depth = RobustFit(believed).depths()
+        bodies = find_rigid_bodies(believed, log_depth, fits := resample(believed, options.seed, FITS))
+    cuts = [told.lines for told in facts if isinstance(told.fact, Cut)]
+    return Setting(believed, log_depth, cut_bodies(bodies, believed, log_depth, cuts), fits, sight)
+
+
+def _contradicts(graph: LineGraph, log_depth: Float, bodies: RigidBodies, real: Bool, fake: Bool) -> bool:
+    """Whether a crossing is called real whose lines do not meet in one body, or in none, or fake where they do."""
+    own = bodies.body[graph.edges]
+    apart = (own[:, 0] != own[:, 1]) & (own >= 0).all(axis=1)
+    meets = graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
+    return bool((~apart & ((real & ~meets) | (fake & meets & graph.informative))).any())
+
+
+def cut_bodies(
+    bodies: RigidBodies, graph: LineGraph, log_depth: Float, cuts: Sequence[tuple[int, ...]]
+) -> RigidBodies:
+    """The bodies with those parted that hold both lines of a cut, where the least weight of crossings joins the two.
+
+    Of crossings that agree at log depths (N,). The side of the second line becomes a body of its own.
+    """
+    body, count = bodies.body.copy(), bodies.count
+    agrees = graph.informative & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
+    for first, second in cuts:
+        if body[first] < 0 or body[first] != body[second]:
+            continue
+        inside = agrees & (body[graph.edges] == body[first]).all(axis=1)
+        body[_side_of(second, first, graph.edges[inside], graph.weight[inside])] = count
+        count += 1
+    return RigidBodies(body, count)
+
+
+def _side_of(line: int, other: int, edges: Int, weight: Float) -> Int:
+    """The lines on the side of one line when the least weight of edges (E, 2) that part it from another one is cut."""
+    flow = nx.Graph()
+    flow.add_nodes_from([line, other])
+    for (first, second), each in zip(edges.tolist(), weight.tolist(), strict=True):
+        before = flow.get_edge_data(first, second, {"capacity": 0.0})["capacity"]
+        flow.add_edge(first, second, capacity=before + each)
+    _, (_, side) = nx.minimum_cut(flow, other, line)
+    return np.array(sorted(side), np.int64)

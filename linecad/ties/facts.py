@@ -1,0 +1,193 @@
+"""What a person knows of bodies, as ties that outweigh all that was found in the photo."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.corrections.apply import ToldFact
+from linecad.corrections.edits import Anchor, Cut, Foot, Meet, OnePlane, PlaceAt, Point
+from linecad.directions import UP, axis_name, components, lies_across, partner
+from linecad.errors import ContradictionError, CorrectionError
+from linecad.geometry import PhotoLength, depths_beside, homogeneous, segment_coordinates, world_rays
+from linecad.ties.setting import Setting
+from solver.bodies.contradiction import find_contradiction
+from solver.bodies.ties import Ties
+
+CERTAIN = 1e6  # weight of what a person said
+TOLERANCE = 0.01  # log ratio by which what a person said may be missed: eaves of one height are built to a centimetre
+ONE_LINE = PhotoLength(20.0, floor=6.0)  # between two segments along one axis that are one line
+FLATTEST = 1e-3  # of a unit ray across a plane, or of two lines across each other, below which nothing is told
+
+
+@dataclass(frozen=True, eq=False)
+class FactTies:
+    """The ties of facts, and the facts that tie nothing."""
+
+    ties: Ties
+    number: Int  # (T,) which of the facts each tie is
+    cuts: frozenset[tuple[int, int]]  # pairs of bodies that are not connected, the smaller first
+    idle: dict[int, str]  # what is in the way of a fact, by its number
+
+    def check(self, facts: Sequence[ToldFact], sure: Ties, crossings: Int) -> None:
+        """Raise ContradictionError unless some places fit all facts, and the crossings (S, 2) of the ties `sure`.
+
+        It names facts and crossings none of which can be left out.
+        """
+        both = self.ties.joined(sure)
+        around = find_contradiction(
+            both.bodies, both.log_ratio, both.tolerance, int(both.bodies.max(initial=-1)) + 1
+        )
+        if not around:
+            return
+        named = sorted({int(self.number[tie]) for tie in around if tie < len(self.number)})
+        pairs = [tuple(crossings[tie - len(self.number)].tolist()) for tie in sorted(around) if tie >= len(self.number)]
+        what = f"{len(named)} things that were said" + (f" and {len(pairs)} crossings called real" if pairs else "")
+        raise ContradictionError(
+            f"{what} cannot all hold; take one of them back",
+            (*(line for number in named for line in facts[number].lines), *(line for pair in pairs for line in pair)),
+            tuple(pairs),
+            tuple(named),
+        )
+
+
+def ties_of_facts(setting: Setting, facts: Sequence[ToldFact]) -> FactTies:
+    """What facts about the nodes of the setting's graph say of its bodies; the ground is one more body."""
+    bodies, ratios, number = [], [], []
+    idle: dict[int, str] = {}
+    cuts = set()
+    for own, told in enumerate(facts):
+        try:
+            if isinstance(told.fact, Cut):
+                cuts.add(_bodies_of_two(setting, told.lines))
+                continue
+            pair, log_ratio = tie_of(setting, told)
+        except CorrectionError as error:
+            idle[own] = str(error)
+            continue
+        bodies.append(pair)
+        ratios.append(log_ratio)
+        number.append(own)
+    count = len(bodies)
+    ties = Ties(
+        np.array(bodies, np.int64).reshape(-1, 2), np.array(ratios), np.full(count, TOLERANCE),
+        np.full(count, CERTAIN), np.full(count, -1),
+    )  # fmt: skip
+    return FactTies(ties, np.array(number, np.int64), frozenset(cuts), idle)
+
+
+def tie_of(setting: Setting, told: ToldFact) -> tuple[tuple[int, int], float]:
+    """Two bodies and the log scale of the first less that of the second; CorrectionError where a fact ties nothing."""
+    match told.fact:
+        case Foot():
+            body = _body(setting, told.lines[0])
+            return (body, setting.bodies.count), -_log_height(setting, told.lines[0], told.fact.pixel)
+        case Meet():
+            first, second = told.lines
+            apart = _apart_at_crossing(setting, first, second)
+        case OnePlane():
+            first, second = told.lines
+            apart = _apart_across(setting, first, second, told.fact.normal)
+        case PlaceAt():
+            apart = told.fact.log_ratio - _log_depth_of(setting, told.lines[0], told.fact.line)
+            apart += _log_depth_of(setting, told.lines[1], told.fact.to)
+        case _:
+            raise ValueError(f"{type(told.fact).__name__} is no tie")
+    return _bodies_of_two(setting, told.lines, apart), apart
+
+
+def depth_at(setting: Setting, line: int, pixel: Float) -> float:
+    """Camera depth at which a line, where its own body has it, passes nearest to the ray of a pixel (2,)."""
+    graph = setting.graph
+    ray = components(_rays(setting, pixel[None]), graph.turns)
+    point = graph.components[[line]] * np.exp(setting.log_depth[line])
+    depth = float(depths_beside(ray, point, graph.axis[[line]])[0])
+    if not depth > 0:
+        raise CorrectionError("the line would be behind the camera there; choose another place")
+    return depth
+
+
+def _rays(setting: Setting, pixels: Float) -> Float:
+    return world_rays(pixels, setting.sight.matrix, setting.sight.rotation[:, :3])
+
+
+def _body(setting: Setting, line: int) -> int:
+    body = int(setting.bodies.body[line])
+    if body < 0:
+        raise CorrectionError("a line belongs to no body: hardly anything crosses it; choose one of the wall beside it")
+    return body
+
+
+def _bodies_of_two(setting: Setting, lines: tuple[int, ...], apart: float | None = None) -> tuple[int, int]:
+    """The bodies of two lines that stand `apart` by this log ratio, if that is known; CorrectionError if it is one."""
+    first, second = (_body(setting, line) for line in lines)
+    if first != second:
+        return (min(first, second), max(first, second)) if apart is None else (first, second)
+    if apart is not None and abs(apart) <= TOLERANCE:
+        raise CorrectionError("that holds already: both lines are of one body")
+    by = "" if apart is None else f", in which that is missed by {abs(np.expm1(apart)):.1%}"
+    raise CorrectionError(f"both lines are of one body{by}; cut it between them first")
+
+
+def _apart_across(setting: Setting, first: int, second: int, normal: int) -> float:
+    graph = setting.graph
+    known = graph.components.shape[1]
+    for line in (first, second):
+        if normal >= known or not lies_across(graph.axis[[line]], normal)[0]:
+            raise CorrectionError(
+                f"a line along {axis_name(int(graph.axis[line]))} lies in no plane across {axis_name(normal)}"
+            )
+    one, other = (graph.components[line, normal] for line in (first, second))
+    if min(abs(one), abs(other)) < FLATTEST:
+        raise CorrectionError("a line is seen edge-on there, so its place in that plane is not told; choose another")
+    if one * other < 0:
+        raise CorrectionError("the two lines are on opposite sides of the camera, so no plane holds both")
+    return float(np.log(other / one) + setting.log_depth[second] - setting.log_depth[first])
+
+
+def _apart_at_crossing(setting: Setting, first: int, second: int) -> float:
+    ends, axis = setting.graph.segments.ends, setting.graph.axis
+    if axis[first] == axis[second]:
+        one, other = ends[first], ends[second]
+        longer, shorter = (one, other) if np.ptp(one, axis=0).sum() >= np.ptp(other, axis=0).sum() else (other, one)
+        if np.abs(segment_coordinates(shorter, longer)[1]).max() > ONE_LINE.px(setting.sight.width):
+            raise CorrectionError(
+                f"two lines along {axis_name(int(axis[first]))} meet only where they are one line in the photo; choose "
+                "lines that cross, or say that they lie in one plane"
+            )
+        pixel = np.concatenate([one, other]).mean(axis=0)
+    else:
+        one, other = (np.cross(*homogeneous(ends[line])) for line in (first, second))
+        through = np.cross(one, other)
+        if abs(through[2]) <= FLATTEST * np.abs(through).max() / setting.sight.width:
+            raise CorrectionError("the two lines are parallel in the photo; choose lines that cross")
+        pixel = through[:2] / through[2]
+    return float(np.log(depth_at(setting, second, pixel)) - np.log(depth_at(setting, first, pixel)))
+
+
+def _log_depth_of(setting: Setting, line: int, anchor: Anchor) -> float:
+    """Of a line at the middle of the segment that an anchor names."""
+    return float(np.log(depth_at(setting, line, np.mean(anchor.ends, axis=0))))
+
+
+def _log_height(setting: Setting, line: int, pixel: Point) -> float:
+    """Log of how far below the camera the wall of a line is at a pixel, at the scale of its body."""
+    graph = setting.graph
+    place, axis = np.array(pixel), int(graph.axis[line])
+    if axis == UP:
+        one, other = graph.segments.ends[line]
+        along = (other - one) / np.linalg.norm(other - one)
+        place = one + along * float((place - one) @ along)
+        depth = depth_at(setting, line, place)
+    else:
+        normal = int(partner(axis))
+        offset = graph.components[line, normal] * np.exp(setting.log_depth[line])
+        across = components(_rays(setting, place[None]), graph.turns)[0, normal]
+        depth = offset / across if abs(across) > FLATTEST else -1.0
+        if not depth > 0:
+            raise CorrectionError("the wall of that line does not reach that place of the photo")
+    height = -depth * float(_rays(setting, place[None])[0, UP])
+    if not height > 0:
+        raise CorrectionError("that place is above the camera, where no ground is; choose the foot of the wall")
+    return float(np.log(height))
