@@ -104,9 +104,9 @@ class ContradictionError(SolverError):
         text: str,
         lines: tuple[int, ...],
         crossings: tuple[tuple[int, int], ...],
-        facts: tuple[int, ...] = (),
+        facts: tuple[object, ...] = (),
     ) -> None:
-        """The lines in it, the pairs of them that cross, and the facts by their number among those that were told.
+        """The lines in it, the pairs of them that cross, and the facts (`linecad.corrections.edits.Fact`).
 
         Lines are nodes of the graph, or ids where the lines have some.
         """

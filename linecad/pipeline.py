@@ -7,7 +7,8 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.camera.photo import Photo
-from linecad.corrections.apply import CorrectedLines, correct
+from linecad.corrections.annotations import Annotations, facts_of
+from linecad.corrections.apply import CorrectedLines, ToldFact, correct
 from linecad.corrections.edits import Corrections
 from linecad.corrections.lengths import measured
 from linecad.decide.annotations import annotate, solve_annotated, told_in_the_photo, with_annotations
@@ -22,9 +23,12 @@ from linecad.model.regions.roofs import Sketch
 from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Scene
-from linecad.ties.placing import Placed, place_lines
+from linecad.ties.evidence import Evidence, find_evidence
+from linecad.ties.placing import BodyPlaces, Placed, place_on
 from linecad.ties.setting import Sight
 from solver.options import OnProgress
+
+NO_BODIES = "what was said of bodies is left out, as this program places none; leave --option formulation away"
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +41,7 @@ class Reconstruction:
     decision: Decision  # about every crossing of the graph
     lifted: Lifted  # the lines of the graph in space, before components are placed
     scene: Scene
+    places: BodyPlaces | None  # of its bodies; None for programs without them
 
 
 def reconstruct(
@@ -64,6 +69,27 @@ def reconstruct(
     return measured(made.scene, corrected)
 
 
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """What a photo shows once a person's words about its lines and crossings are known, before bodies are placed."""
+
+    found: FoundLines  # its segments are those after all edits
+    whole: LineGraph  # of all lines
+    graph: LineGraph  # the part of it that is solved
+    annotations: Annotations
+    details: Segments | None  # edges that faces can place
+    corrected: CorrectedLines | None
+    evidence: Evidence | None  # of the places of bodies; None for programs without them
+
+    def is_for(self, corrected: CorrectedLines) -> bool:
+        """Whether it holds after other edits too."""
+        return self.corrected is not None and self.corrected.differs_in_places(corrected)
+
+    def facts(self, corrected: CorrectedLines | None) -> tuple[tuple[ToldFact, ...], tuple[str, ...]]:
+        """What a person says of the bodies of these lines, by the nodes of the graph; and notes on what is left out."""
+        return ((), ()) if corrected is None else facts_of(self.graph, corrected)
+
+
 def reconstruct_lines(
     photo: str,
     found: FoundLines,
@@ -78,28 +104,74 @@ def reconstruct_lines(
     Raises ReconstructionError, SolverError or, where annotations cannot all be true, ContradictionError. The scale of
     known lengths is not set (`corrections.lengths.measured`).
     """
+    prepared = prepare(found, options, on_stage, corrected, depth)
+    return reconstruct_prepared(photo, prepared, options, on_progress, on_stage, corrected)
+
+
+def prepare(
+    found: FoundLines,
+    options: Options,
+    on_stage: StageReport = silent,
+    corrected: CorrectedLines | None = None,
+    depth: DepthMap | None = None,
+) -> Prepared:
+    """All that comes before bodies are placed; raises as `reconstruct_lines`."""
     details = None
     if options.uses_face_lines:
         details = found.details_for_faces(taken_away(found.segments, corrected))
     if corrected is not None:
-        found = replace(found, segments=corrected.segments, notes=found.notes + corrected.notes)
+        found = replace(found, segments=corrected.segments)
     whole, graph = connect(found, options)
     graph, annotations = annotate(graph, corrected)
-    placed = None
+    evidence = None
     if options.uses_bodies:
+        sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
+        facts = () if corrected is None else facts_of(graph, corrected)[0]
+        with told_in_the_photo(graph, corrected):
+            evidence = find_evidence(graph, sight, with_annotations(options.solve, annotations), facts, on_stage)
+    return Prepared(found, whole, graph, annotations, details, corrected, evidence)
+
+
+def reconstruct_prepared(
+    photo: str,
+    prepared: Prepared,
+    options: Options,
+    on_progress: OnProgress = None,
+    on_stage: StageReport = silent,
+    corrected: CorrectedLines | None = None,
+) -> Reconstruction:
+    """The scene of a photo of that name by what was prepared, and the facts of `corrected`, for which it must be.
+
+    Raises as `reconstruct_lines`.
+    """
+    found, graph, annotations, evidence = prepared.found, prepared.graph, prepared.annotations, prepared.evidence
+    facts, on_facts = prepared.facts(corrected)
+    placed = None
+    if evidence is not None:
         limits = with_annotations(options.solve, annotations)
         with told_in_the_photo(graph, corrected):
-            sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
-            placed = place_lines(graph, sight, limits, on_progress, on_stage)
+            placed = place_on(evidence, graph, limits, facts, on_progress, on_stage)
         solution = placed.solution
+        on_facts += placed.places.told.notes(facts)
     else:
         on_stage(f"solving {len(graph.segments)} lines with {len(graph.edges)} crossings")
         solution = solve_annotated(graph, options.solve, annotations, corrected, on_progress)
+        on_facts += (NO_BODIES,) * bool(facts)
     on_stage("deciding which crossings are real")
     inconsistency = found.inconsistency if options.joins_used == "stable" else None
     decision = decide(graph, solution, options, inconsistency, annotations)
     on_stage("lifting the lines into space")
-    notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
+    depth = None if evidence is None else evidence.setting.sight.depth
+    on_edits = () if corrected is None else corrected.notes
+    notes = (
+        found.notes
+        + on_edits
+        + annotations.notes
+        + on_facts
+        + decision.notes
+        + _notes_on_map(depth, placed, found.camera)
+    )
+    whole, details = prepared.whole, prepared.details
     sketch = None if found.raw is None or not options.roofs else Sketch(found.raw, whole.segments.ends, whole.axis)
     view = View(
         photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch
@@ -109,7 +181,8 @@ def reconstruct_lines(
     if options.largest_component:
         decision = decision.within(found_components.kept, graph)
     scene = build_scene(view, graph, solution, decision, found_components, placed)
-    return Reconstruction(whole, graph, solution, decision, lifted, scene)
+    places = None if placed is None else placed.places
+    return Reconstruction(whole, graph, solution, decision, lifted, scene, places)
 
 
 def taken_away(found: Segments, corrected: CorrectedLines | None) -> Segments:

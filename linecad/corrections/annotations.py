@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Int
-from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.apply import CorrectedLines, ToldFact
 from linecad.corrections.edits import Label
 from linecad.line_graph import LineGraph, Segments
 
@@ -46,6 +46,20 @@ def annotations_of(graph: LineGraph, corrected: CorrectedLines) -> Annotations:
                 "raise --option extension=PX"
             )
     return Annotations(real, fake, tuple(label), tuple(notes))
+
+
+def facts_of(graph: LineGraph, corrected: CorrectedLines) -> tuple[tuple[ToldFact, ...], tuple[str, ...]]:
+    """What a person says of the bodies of a graph's lines, by its nodes; and notes on lines that it has not."""
+    ids = corrected.ids[rows_of(graph.segments, corrected)].tolist()
+    node = {number: own for own, number in enumerate(ids)}
+    told = [ToldFact(each.fact, tuple(node[line] for line in each.lines)) for each in corrected.facts
+            if all(line in node for line in each.lines)]  # fmt: skip
+    missed = len(corrected.facts) - len(told)
+    note = (
+        f"{missed} of {len(corrected.facts)} things that were said of bodies are left out: a line of theirs is too "
+        "short or stands alone"
+    )
+    return tuple(told), (note,) * bool(missed)
 
 
 def rows_of(segments: Segments, corrected: CorrectedLines) -> Int:

@@ -77,6 +77,19 @@ class CorrectedLines:
             and np.array_equal(self.segments.ends, other.segments.ends)
         )
 
+    @property
+    def cuts(self) -> frozenset[Fact]:
+        """The facts on which it depends which lines are one body."""
+        return frozenset(told.fact for told in self.facts if isinstance(told.fact, Cut))
+
+    def differs_in_places(self, other: "CorrectedLines") -> bool:
+        """Whether nothing differs but facts that say where bodies stand."""
+        return self.differs_in_facts(other) and self.cuts == other.cuts
+
+    def differs_in_facts(self, other: "CorrectedLines") -> bool:
+        """Whether nothing differs but facts about bodies."""
+        return self.is_like(other) and (self.labels, self.parted) == (other.labels, other.parted)
+
 
 def correct(segments: Segments, camera: Camera, frame: ManhattanFrame, corrections: Corrections) -> CorrectedLines:
     """The lines after all edits; `frame` must be that of `corrections.frame`, if there is one."""

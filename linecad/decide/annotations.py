@@ -8,6 +8,7 @@ import numpy as np
 
 from linecad.corrections.annotations import Annotations, annotations_of, rows_of
 from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.words import said
 from linecad.errors import ContradictionError
 from linecad.line_graph import LineGraph, Solution
 from solver.options import OnProgress, SolveOptions
@@ -68,8 +69,14 @@ def _in_the_photo(error: ContradictionError, graph: LineGraph, corrected: Correc
     edge = {pair: number for number, pair in enumerate(map(tuple, graph.edges.tolist()))}
     places = [graph.crossing[edge[pair]].round().astype(int).tolist() for pair in error.crossings]
     where = ", ".join(f"({x}, {y})" for x, y in places)
+    text = f"the crossings at {where} cannot all be real: no depths fit them; take one of them back"
+    facts = [told.fact for told in corrected.facts if told.fact in error.facts]
+    if facts:
+        what = ", ".join(f'"{said(fact)}"' for fact in facts) + (f" and the crossings at {where}" if where else "")
+        text = f"{what} cannot all hold: no places fit them; take one of them back"
     return ContradictionError(
-        f"the crossings at {where} cannot all be real: no depths fit them; take one of them back",
+        text,
         tuple(int(ids[line]) for line in error.lines),
         tuple((int(min(ids[i], ids[j])), int(max(ids[i], ids[j]))) for i, j in error.crossings),
+        tuple(facts),
     )

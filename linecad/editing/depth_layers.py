@@ -14,7 +14,7 @@ from exporters.textures.layout import View
 from exporters.textures.nearest import nearest_of, shape_of
 from linecad.arrays import Float
 from linecad.depth.depth_map import DepthMap, Kind, camera_depths
-from linecad.editing.session import Now
+from linecad.editing.state import Now
 from linecad.geometry import homogeneous, resized_camera
 from linecad.scene import Camera, Scene
 

@@ -14,11 +14,13 @@ from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
+from linecad.editing.bodies import ShownBodies
+from linecad.editing.body_document import facts_of_page, list_bodies, moved_by_last
 from linecad.editing.depth_layers import document_of_layers
-from linecad.editing.session import Model, Now
+from linecad.editing.state import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError
-from linecad.scene import Face, Scene
+from linecad.scene import Face, Plane, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
@@ -44,6 +46,9 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "lines": _lines(now),
         "crossings": _crossings(now),
         "planes": [] if now.model is None else _planes(now, now.model),
+        "bodies": list_bodies(now),
+        "facts": facts_of_page(now),
+        "moved": moved_by_last(now),
         "notes": list(now.found.notes if scene is None else scene.notes),
         "depth_map": None if depth is None else document_of_layers(depth, now),
         "solve": solve_of(now),
@@ -56,6 +61,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
                 "lines": list(now.contradiction.lines),
                 "crossings": list(now.contradiction.crossings),
                 "text": now.contradiction.text,
+                "facts": [each["edit"] for each in facts_of_page(now) if each["contradicted"]],
             }
         ),
         "labelling": {"done": labelled, "total": len(now.lines.crossings)},
@@ -98,16 +104,25 @@ def _lines(now: Now) -> list[dict[str, object]]:
     graph, corrected = now.lines.graph, now.lines.corrected
     origin = dict(zip(corrected.ids.tolist(), corrected.origin, strict=True))
     in_space = {} if now.model is None else _in_space(now.model.scene)
+    bodies = None if now.model is None else now.model.bodies
     return [
         {
             "id": number,
             "axis": axis_name(axis),
             "segment": ends.tolist(),
-            **in_space.get((axis, ends.tobytes()), NOT_IN_SPACE),
+            **_moved(in_space.get((axis, ends.tobytes()), NOT_IN_SPACE), bodies, number),
             "origin": origin[number],
         }
         for number, axis, ends in zip(now.lines.ids, graph.axis.tolist(), graph.segments.ends, strict=True)
     ]
+
+
+def _moved(line: dict[str, object], bodies: ShownBodies | None, number: int) -> dict[str, object]:
+    """A line with its body, where that stands now: it moves along its rays, so it looks the same in the photo."""
+    body = -1 if bodies is None else bodies.body_of(number)
+    if bodies is None or line["ends"] is None:
+        return {**line, "body": body}
+    return {**line, "body": body, "ends": (bodies.factor(body) * np.array(line["ends"])).tolist()}
 
 
 @lru_cache(maxsize=2)
@@ -178,20 +193,45 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[_is_guess(scene)].tolist())
     triangles = _triangles(scene)
-    return [
-        {
+    found = []
+    for plane in scene.planes:
+        lines = [number for line in plane.lines for number in numbers[line]]
+        body = _body_of(plane, lines, model.bodies)
+        factor = 1.0 if model.bodies is None else model.bodies.factor(body)
+        guess = guesses.issuperset(plane.lines or numbers)
+        faces = [_face(triangles[face.id], factor) for face in plane.faces if face.id in triangles]
+        found.append({
             "id": plane.id,
             "axis": axis_name(plane.axis),
-            "offset": plane.offset,
-            "lines": [number for line in plane.lines for number in numbers[line]],
-            "faces": [
-                {**triangles[face.id], "guess": guesses.issuperset(plane.lines or numbers)}
-                for face in plane.faces
-                if face.id in triangles
-            ],
-        }
-        for plane in scene.planes
-    ]
+            "offset": factor * plane.offset,
+            "lines": lines,
+            "body": body,
+            "faces": [{**face, "guess": guess, "body": body} for face in faces],
+        })  # fmt: skip
+    return found
+
+
+def _body_of(plane: Plane, lines: list[int], bodies: ShownBodies | None) -> int:
+    """The body that most lines of a plane are of, that of the ground where it is that; -1 where nothing tells."""
+    if bodies is None:
+        return -1
+    if plane.shows_ground:
+        return bodies.count
+    own = [body for line in lines if (body := bodies.body_of(line)) >= 0]
+    return max(sorted(set(own)), key=own.count, default=-1)
+
+
+def _face(face: dict[str, object], factor: float) -> dict[str, object]:
+    """A face so many times as far away."""
+    if factor == 1.0:
+        return face
+    outline, holes = np.array(face["outline"]), face["holes"]
+    assert isinstance(holes, list)
+    return {
+        **face,
+        "outline": (factor * outline).tolist(),
+        "holes": [(factor * np.array(hole)).tolist() for hole in holes],
+    }
 
 
 @lru_cache(maxsize=2)

@@ -5,18 +5,27 @@ import numpy as np
 from linecad.arrays import Float
 from linecad.corrections.apply import Correcting
 from linecad.corrections.edits import (
+    LARGEST_LOG_RATIO,
     Anchor,
+    Cut,
     Delete,
     Draw,
     Edit,
     Ends,
+    Fact,
+    Foot,
     Join,
     KnownLength,
     LabelCrossing,
+    Meet,
+    OnePlane,
+    PlaceAt,
     SetAxis,
     SetFrame,
     Split,
+    Withdraw,
 )
+from linecad.corrections.fact_file import FACTS
 from linecad.corrections.file import OPERATIONS, frame_lines, label, metres
 from linecad.corrections.nodes import axis, ends, point
 from linecad.editing.session import Session
@@ -39,17 +48,50 @@ def read_edit(node: Node, session: Session) -> Edit:
         case "split":
             return Split(_line(node, lines), point(node["at"]))
         case "join":
-            pair = node["lines"].items()
-            if len(pair) != 2:
-                raise node["lines"].wrong("a list of 2")
-            return Join((lines.anchor(pair[0].integer()), lines.anchor(pair[1].integer())))
+            return Join(_two(node["lines"], lines))
         case "draw":
             drawn, own, _ = proposal(node, lines)
             return Draw(Anchor(_plain(drawn), own))
         case "length":
             return KnownLength(_line(node, lines), metres(node))
-        case _:
+        case "frame":
             return SetFrame(frame_lines(node["lines"], "ends"))
+        case "withdraw":
+            return Withdraw(_told(node["edit"], session))
+        case _:
+            return _fact(node, lines)
+
+
+def _fact(node: Node, lines: Correcting) -> Fact:
+    """A fact whose lines are named by their ids."""
+    match node["op"].one_of(FACTS):
+        case "meet":
+            return Meet(_two(node["lines"], lines))
+        case "plane":
+            return OnePlane(_two(node["lines"], lines), axis(node["normal"]))
+        case "foot":
+            return Foot(_line(node, lines), point(node["pixel"]))
+        case "cut":
+            return Cut(_two(node["lines"], lines))
+        case _:
+            to = lines.anchor(node["to"].integer())
+            return PlaceAt(_line(node, lines), to, node["log_ratio"].number(LARGEST_LOG_RATIO))
+
+
+def _told(node: Node, session: Session) -> Fact:
+    """The fact that was told as the edit of a number."""
+    edits, number = session.now().corrections.edits, node.integer()
+    told = edits[number] if number < len(edits) else None
+    if not isinstance(told, Fact):
+        raise node.wrong("the number of an edit that says something of bodies")
+    return told
+
+
+def _two(node: Node, lines: Correcting) -> tuple[Anchor, Anchor]:
+    pair = node.items()
+    if len(pair) != 2:
+        raise node.wrong("a list of 2")
+    return lines.anchor(pair[0].integer()), lines.anchor(pair[1].integer())
 
 
 def proposal(node: Node, lines: Correcting) -> tuple[Float, int, tuple[bool, bool]]:

@@ -14,8 +14,9 @@ from linecad.depth.for_photo import open_depth_map
 from linecad.editing.guard import HOST, new_token
 from linecad.editing.labelling import camera_of_labels, labels_to_json
 from linecad.editing.saving import Saver
-from linecad.editing.session import Session, ToSave
+from linecad.editing.session import Session
 from linecad.editing.solving import SolvingProcess
+from linecad.editing.state import ToSave
 from linecad.errors import EditorError
 from linecad.io.files import check_output, write_text_atomically
 from linecad.io.locks import alone

@@ -18,14 +18,16 @@ from starlette.routing import Route
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
+from linecad.editing.body_document import places_of
 from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
 from linecad.editing.edits import proposal, read_edit
 from linecad.editing.guard import HOST, Guard, TooLargeError
 from linecad.editing.labelling import labels_to_json
 from linecad.editing.saving import Saver
-from linecad.editing.session import Session, StaleError, ToSave
+from linecad.editing.session import Session
 from linecad.editing.solving import Task
+from linecad.editing.state import StaleError, ToSave
 from linecad.editing.tabs import Tabs
 from linecad.editing.tiles import Pyramid
 from linecad.errors import EditorError, LinecadError
@@ -86,6 +88,8 @@ class Editor:
             Route("/api/edit", _post(self.edit), methods=["POST"]),
             Route("/api/undo", _post(self.undo), methods=["POST"]),
             Route("/api/redo", _post(self.redo), methods=["POST"]),
+            Route("/api/preview", _post(self.preview), methods=["POST"]),
+            Route("/api/places/{body:int}", self.places),
             Route("/api/propose", _post(self.propose), methods=["POST"]),
             Route("/api/solve", _post(self.solve), methods=["POST"]),
             Route("/api/stop", _post(self.stop), methods=["POST"]),
@@ -136,17 +140,33 @@ class Editor:
     def edit(self, body: Node) -> Response:
         """POST /api/edit."""
         self.session.edit(_base(body), lambda session: read_edit(body["edit"], session))
-        return self._state()
+        return self._changed()
 
     def undo(self, body: Node) -> Response:
         """POST /api/undo."""
         self.session.undo(_base(body))
-        return self._state()
+        return self._changed()
 
     def redo(self, body: Node) -> Response:
         """POST /api/redo."""
         self.session.redo(_base(body))
+        return self._changed()
+
+    def _changed(self) -> Response:
+        """The state after a change; where that was about bodies, the scene is built anew behind it."""
+        if self.session.wants_solve:
+            self.solving.start(self.session.task(self.session.now().version))
         return self._state()
+
+    def preview(self, body: Node) -> Response:
+        """POST /api/preview: by which log factors a fact would move bodies, and the ground, and what it contradicts."""
+        moves, against = self.session.preview(_base(body), lambda session: read_edit(body["edit"], session))
+        conflict = None if against is None else {"text": against.text, "lines": list(against.lines)}
+        return JSONResponse({"moves": {str(number): by for number, by in moves.items()}, "conflict": conflict})
+
+    def places(self, request: Request) -> Response:
+        """GET /api/places/BODY: where else a body could stand, the most likely first."""
+        return JSONResponse(places_of(self.session.now(), request.path_params["body"]))
 
     def propose(self, body: Node) -> Response:
         """POST /api/propose: what a drawn line would be."""

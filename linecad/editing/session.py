@@ -6,101 +6,38 @@ Everything here is kept by one lock; the server's threads and the one that hears
 import threading
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 
 from linecad.camera.photo import Photo
-from linecad.corrections.annotations import Annotations, annotations_of, rows_of
-from linecad.corrections.apply import CorrectedLines, Correcting, correcting_of
-from linecad.corrections.edits import Corrections, Edit, KnownLength, SetFrame
+from linecad.corrections.annotations import annotations_of, rows_of
+from linecad.corrections.apply import CorrectedLines, Correcting, ToldFact, correcting_of
+from linecad.corrections.edits import Corrections, Edit, Fact, KnownLength, SetFrame, Withdraw, anchors_of
 from linecad.corrections.lengths import measured
+from linecad.editing.bodies import ShownBodies
 from linecad.editing.solving import Answer, Step, Task
-from linecad.errors import CorrectionError, LinecadError
+from linecad.editing.state import (
+    Contradiction,
+    Lines,
+    Model,
+    Now,
+    StaleError,
+    ToSave,
+    contradiction_of,
+    crossing_id,
+    decisions,
+    lines_of_crossing,
+)
+from linecad.errors import ContradictionError, CorrectionError
 from linecad.finding import FoundLines, connect_all, name_lines
-from linecad.line_graph import LineGraph, Segments
+from linecad.line_graph import Segments
 from linecad.options import Options
 from linecad.pipeline import Reconstruction
 from linecad.scene import Scene
 from solver.options import Progress
 
-MODELS_KEPT = 12  # solved before, shown again at once when an undo or redo comes back to what they were solved for
-CROSSING_BASE = 10**7  # ids of crossings are smaller id * this + larger id of their lines
-
-
-class StaleError(LinecadError):
-    """The page spoke of a state that is over."""
-
-
-@dataclass(frozen=True, eq=False)
-class Lines:
-    """The lines after all edits, with their crossings."""
-
-    corrected: CorrectedLines
-    graph: LineGraph  # of all lines that are long enough
-    annotations: Annotations
-    ids: tuple[int, ...]  # of the graph's nodes
-    crossings: tuple[int, ...]  # ids of the graph's edges
-
-    @cached_property
-    def edge(self) -> dict[int, int]:
-        """The graph's edge by the id of the crossing."""
-        return {crossing: edge for edge, crossing in enumerate(self.crossings)}
-
-
-@dataclass(frozen=True, eq=False)
-class ToSave:
-    """What the files hold."""
-
-    corrections: Corrections
-    lines: Lines
-
-
-@dataclass(frozen=True)
-class Decided:
-    """The decision about one crossing."""
-
-    real: bool
-    reason: str  # one of linecad.scene.REASONS
-
-
-@dataclass(frozen=True, eq=False)
-class Model:
-    """A solved scene."""
-
-    scene: Scene
-    version: int  # of the state that it was solved for
-    decided: dict[int, Decided]  # by the id of the crossing
-    changed: frozenset[int]  # crossings whose decision differs from that of the model before
-    seconds: float  # of the solver
-
-
-@dataclass(frozen=True)
-class Contradiction:
-    """What cannot all be true, by ids."""
-
-    lines: tuple[int, ...]
-    crossings: tuple[int, ...]
-    text: str
-
-
-@dataclass(frozen=True, eq=False)
-class Now:
-    """A state to show: values that do not change any more."""
-
-    version: int
-    photo: Photo
-    found: FoundLines
-    lines: Lines
-    corrections: Corrections
-    model: Model | None
-    progress: Progress | None  # of the solve that runs, or of the last one
-    is_fresh: bool  # the model holds all edits
-    is_running: bool
-    error: str  # of the last solve
-    contradiction: Contradiction | None
-
-
 Content = tuple[Edit, ...]
+
+MODELS_KEPT = 12  # solved before, shown again at once when an undo or redo comes back to what they were solved for
 
 
 class Session:
@@ -158,6 +95,7 @@ class Session:
         with self._lock:
             self._check(base)
             edit = make(self)
+            self._check_fact(edit)
             edits = (*self._corrections.edits, edit)
             self._change(replace(self._corrections, edits=edits, undone=()), added=edit)
 
@@ -177,6 +115,34 @@ class Session:
             edits = (*self._corrections.edits, last)
             self._change(replace(self._corrections, edits=edits, undone=tuple(undone)), added=last)
 
+    def preview(self, base: int, make: Callable[["Session"], Edit]) -> tuple[dict[int, float], Contradiction | None]:
+        """What a fact would do: the log factor by which each body would move, and what it contradicts.
+
+        StaleError or CorrectionError as for `edit`; nothing changes.
+        """
+        with self._lock:
+            self._check(base)
+            edit = make(self)
+            told = self._check_fact(edit)
+            if told is None:
+                raise CorrectionError("only what is said of bodies can be tried out")
+            bodies = self._bodies_now()
+            corrected = replace(self._lines.corrected, facts=(*self._lines.corrected.facts, told))
+            try:
+                return bodies.preview(corrected, self.options), None
+            except ContradictionError as error:
+                return {}, contradiction_of(error.lines, error.crossings, str(error), error.facts)
+
+    @property
+    def wants_solve(self) -> bool:
+        """Whether the last change was about bodies, so that the scene should be built anew without being asked."""
+        with self._lock:
+            model = self._solved
+            if self._contradiction is not None or self._content() in self._models or model is None:
+                return False
+            bodies, corrected = model.bodies, self._lines.corrected
+            return bodies is not None and bodies.corrected.differs_in_facts(corrected)
+
     @property
     def lines(self) -> Lines:
         """The lines as they are now."""
@@ -191,7 +157,7 @@ class Session:
         """The ids of the two lines of a crossing; CorrectionError when there is none with this id."""
         if crossing not in self._lines.edge:
             raise CorrectionError(f"there is no crossing {crossing} any more; reload the page")
-        return divmod(crossing, CROSSING_BASE)
+        return lines_of_crossing(crossing)
 
     def next_unlabelled(self, after: int | None) -> int | None:
         """The next crossing without a label behind `after`, in the order of the state and around."""
@@ -232,8 +198,7 @@ class Session:
                 return
             self._error = answer.error
             if answer.lines:
-                crossings = tuple(crossing_id(*pair) for pair in answer.crossings)
-                self._contradiction = Contradiction(answer.lines, crossings, answer.error)
+                self._contradiction = contradiction_of(answer.lines, answer.crossings, answer.error, answer.facts)
             if answer.made is not None:
                 self._models[content] = self._model_of(answer.made)
                 self._show(self._models[content])
@@ -270,8 +235,40 @@ class Session:
             self._models.move_to_end(self._content())
             self._show(known)
         elif self._solved is not None:
-            self._show(self._solved)
+            self._show(self._moved(self._solved))
         self._on_change(ToSave(corrections, self._lines))
+
+    def _check_fact(self, edit: Edit) -> ToldFact | None:
+        """The fact that an edit tells, by ids of lines, or None; CorrectionError where it would say nothing.
+
+        A cut is not checked here but for its lines.
+        """
+        if isinstance(edit, Withdraw) or not isinstance(edit, Fact):
+            return None
+        bodies = self._bodies_now()
+        told = ToldFact(edit, tuple(self._editing.find(anchor) for anchor in anchors_of(edit)))
+        bodies.check(told)
+        return told
+
+    def _bodies_now(self) -> ShownBodies:
+        """The bodies that are shown, of lines as they are now; CorrectionError when there are none."""
+        bodies = None if self._solved is None else self._solved.bodies
+        if bodies is None:
+            if self.options.uses_bodies:
+                raise CorrectionError("the bodies are not known yet; wait until the model is there")
+            raise CorrectionError("this program places no bodies; start linecad edit without --option formulation")
+        return bodies
+
+    def _moved(self, model: Model) -> Model:
+        """The model with its bodies where the facts put them that are told now."""
+        bodies, corrected = model.bodies, self._lines.corrected
+        if bodies is None or not bodies.corrected.differs_in_places(corrected):
+            return model
+        try:
+            return replace(model, bodies=bodies.with_facts(corrected, self.options))
+        except ContradictionError as error:
+            self._contradiction = contradiction_of(error.lines, error.crossings, str(error), error.facts)
+            return model
 
     def _replay(self, corrections: Corrections) -> tuple[Correcting, tuple[str, ...]]:
         frame = corrections.frame
@@ -310,28 +307,7 @@ class Session:
         changed = frozenset(
             crossing for crossing, found in now.items() if before.get(crossing, found).real != found.real
         )
-        return Model(made.scene, self._version, now, changed, made.solution.seconds)
-
-
-def crossing_id(one: int, other: int) -> int:
-    """The id of the crossing of two lines."""
-    return min(one, other) * CROSSING_BASE + max(one, other)
-
-
-def decisions(made: Reconstruction, lines: Lines, largest_alone: bool) -> dict[int, Decided]:
-    """What was decided, by the id of each crossing; lines that were not solved are in too small a group, or another."""
-    row = {
-        (axis, ends.tobytes()): ids
-        for axis, ends, ids in zip(lines.graph.axis.tolist(), lines.graph.segments.ends, lines.ids, strict=True)
-    }
-    graph, decision = made.graph, made.decision
-    ids = [row[axis, ends.tobytes()] for axis, ends in zip(graph.axis.tolist(), graph.segments.ends, strict=True)]
-    unsolved = "other group" if largest_alone else "small group"
-    found = {
-        crossing: Decided(False, unsolved) if label in (None, "unsure") else Decided(label == "real", "annotated")
-        for crossing, label in zip(lines.crossings, lines.annotations.label, strict=True)
-    }
-    rows = zip(graph.edges.tolist(), decision.real.tolist(), decision.reason.tolist(), strict=True)
-    for (i, j), real, reason in rows:
-        found[crossing_id(ids[i], ids[j])] = Decided(real, reason)
-    return found
+        bodies = None
+        if made.places is not None:
+            bodies = ShownBodies.of(made.places, made.graph, self._lines.corrected)
+        return Model(made.scene, self._version, now, changed, made.solution.seconds, bodies)

@@ -18,11 +18,12 @@ from typing import TYPE_CHECKING
 
 from linecad.camera.photo import Photo
 from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.edits import Fact
 from linecad.depth.depth_map import DepthMap
 from linecad.errors import ContradictionError, LinecadError
 from linecad.finding import FoundLines
 from linecad.options import Options
-from linecad.pipeline import Reconstruction, reconstruct_lines
+from linecad.pipeline import Prepared, Reconstruction, prepare, reconstruct_prepared
 from solver.options import Progress
 
 if TYPE_CHECKING:
@@ -57,6 +58,7 @@ class Answer:
     error: str = ""
     lines: tuple[int, ...] = ()  # ids of lines that stand in a contradiction
     crossings: tuple[tuple[int, int], ...] = ()  # pairs of line ids whose crossings cannot all be real
+    facts: tuple[Fact, ...] = ()  # that cannot all hold
 
 
 @dataclass(frozen=True)
@@ -176,9 +178,10 @@ def work(pipe: Connection, asked: "Synchronized[int]") -> None:
     with contextlib.suppress(EOFError, OSError):
         photo, options, depth = pipe.recv()
         _warm()
+        solver = TaskSolver(photo, options, depth)
         while True:
             task = pipe.recv()
-            pipe.send(_solve(task, photo, options, depth, pipe, asked))
+            pipe.send(solver.answer(task, _teller(task, pipe, asked)))
 
 
 def _pass(_number: int, _frame: FrameType | None) -> None:
@@ -191,26 +194,41 @@ def _warm() -> None:
         importlib.import_module(name)
 
 
-def _solve(
-    task: Task, photo: Photo, options: Options, depth: DepthMap | None, pipe: Connection, asked: "Synchronized[int]"
-) -> Answer:
+def _teller(task: Task, pipe: Connection, asked: "Synchronized[int]") -> Callable[[Progress], None]:
     def tell(at: Progress) -> None:
         pipe.send(Step(task.number, at))
         if asked.value == task.number:
             signal.raise_signal(signal.SIGINT)
 
-    return solve_task(task, photo, options, tell, depth)
+    return tell
 
 
-def solve_task(
-    task: Task, photo: Photo, options: Options, tell: Callable[[Progress], None], depth: DepthMap | None = None
-) -> Answer:
-    """The answer to a task, in this process; `depth` is a map on the photo's pixels."""
-    try:
-        found = replace(task.found, pixels=photo.pixels)
-        made = reconstruct_lines(photo.name, found, options, tell, corrected=task.corrected, depth=depth)
-    except ContradictionError as error:
-        return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings)
-    except LinecadError as error:
-        return Answer(task.number, error=str(error))
-    return Answer(task.number, made)
+class TaskSolver:
+    """Solves tasks of one photo in this process; what two of them have in common is found once."""
+
+    def __init__(self, photo: Photo, options: Options, depth: DepthMap | None = None) -> None:
+        """`depth` is a map on the photo's pixels."""
+        self._photo, self._options, self._depth = photo, options, depth
+        self._prepared: Prepared | None = None
+
+    def answer(self, task: Task, tell: Callable[[Progress], None]) -> Answer:
+        """The answer to a task."""
+        try:
+            made = self._made(task, tell)
+        except ContradictionError as error:
+            facts = tuple(told.fact for told in task.corrected.facts if told.fact in error.facts)
+            return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings, facts=facts)
+        except LinecadError as error:
+            return Answer(task.number, error=str(error))
+        if made.places is not None:
+            evidence = made.places.evidence.without_photo()
+            made = replace(made, places=replace(made.places, evidence=evidence))
+        return Answer(task.number, made)
+
+    def _made(self, task: Task, tell: Callable[[Progress], None]) -> Reconstruction:
+        prepared = self._prepared
+        if prepared is None or not prepared.is_for(task.corrected):
+            found = replace(task.found, pixels=self._photo.pixels)
+            prepared = prepare(found, self._options, corrected=task.corrected, depth=self._depth)
+            self._prepared = prepared
+        return reconstruct_prepared(self._photo.name, prepared, self._options, tell, corrected=task.corrected)

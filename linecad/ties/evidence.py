@@ -99,9 +99,7 @@ def _contradicts(graph: LineGraph, log_depth: Float, bodies: RigidBodies, real: 
     return bool((~apart & ((real & ~meets) | (fake & meets & graph.informative))).any())
 
 
-def cut_bodies(
-    bodies: RigidBodies, graph: LineGraph, log_depth: Float, cuts: Sequence[tuple[int, ...]]
-) -> RigidBodies:
+def cut_bodies(bodies: RigidBodies, graph: LineGraph, log_depth: Float, cuts: Sequence[tuple[int, ...]]) -> RigidBodies:
     """The bodies with those parted that hold both lines of a cut, where the least weight of crossings joins the two.
 
     Of crossings that agree at log depths (N,). The side of the second line becomes a body of its own.

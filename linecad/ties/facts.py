@@ -8,6 +8,7 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.corrections.apply import ToldFact
 from linecad.corrections.edits import Anchor, Cut, Foot, Meet, OnePlane, PlaceAt, Point
+from linecad.corrections.words import said
 from linecad.directions import UP, axis_name, components, lies_across, partner
 from linecad.errors import ContradictionError, CorrectionError
 from linecad.geometry import PhotoLength, depths_beside, homogeneous, segment_coordinates, world_rays
@@ -30,25 +31,28 @@ class FactTies:
     cuts: frozenset[tuple[int, int]]  # pairs of bodies that are not connected, the smaller first
     idle: dict[int, str]  # what is in the way of a fact, by its number
 
+    def notes(self, facts: Sequence[ToldFact]) -> tuple[str, ...]:
+        """What a reader should know of facts that say nothing."""
+        return tuple(f'"{said(facts[number].fact)}" is left out: {why}' for number, why in self.idle.items())
+
     def check(self, facts: Sequence[ToldFact], sure: Ties, crossings: Int) -> None:
         """Raise ContradictionError unless some places fit all facts, and the crossings (S, 2) of the ties `sure`.
 
         It names facts and crossings none of which can be left out.
         """
         both = self.ties.joined(sure)
-        around = find_contradiction(
-            both.bodies, both.log_ratio, both.tolerance, int(both.bodies.max(initial=-1)) + 1
-        )
+        around = find_contradiction(both.bodies, both.log_ratio, both.tolerance, int(both.bodies.max(initial=-1)) + 1)
         if not around:
             return
-        named = sorted({int(self.number[tie]) for tie in around if tie < len(self.number)})
+        named = [
+            facts[number] for number in sorted({int(self.number[tie]) for tie in around if tie < len(self.number)})
+        ]
         pairs = [tuple(crossings[tie - len(self.number)].tolist()) for tie in sorted(around) if tie >= len(self.number)]
-        what = f"{len(named)} things that were said" + (f" and {len(pairs)} crossings called real" if pairs else "")
         raise ContradictionError(
-            f"{what} cannot all hold; take one of them back",
-            (*(line for number in named for line in facts[number].lines), *(line for pair in pairs for line in pair)),
-            tuple(pairs),
-            tuple(named),
+            "what was said cannot all hold",
+            (*(line for told in named for line in told.lines), *(line for pair in pairs for line in pair)),
+            tuple((first, second) for first, second in pairs),
+            tuple(told.fact for told in named),
         )
 
 

@@ -36,7 +36,7 @@ class BodyPlaces:
 
     evidence: Evidence
     told: FactTies  # what facts say
-    # What each tie comes from: a candidate, a crossing called real (its edge), a fact (-1 less its number), a map (None)
+    # Of each tie: a candidate, the edge of a crossing called real, -1 less the number of a fact, None for a depth map
     sources: tuple[Candidate | int | None, ...]
     ties: Ties
     placement: Placement

@@ -33,7 +33,7 @@ def _climb(ties: Ties, start: Float) -> tuple[Float, float]:
     improved = True
     while improved:
         improved = False
-        for moved in _sets(ties, scale):
+        for moved in sets_that_move(ties, scale):
             by, worth = _best_move(ties, scale, moved, 0.0)
             if worth > value + LEAST_GAIN:
                 scale[moved] += by
@@ -50,7 +50,7 @@ def margins(ties: Ties, log_scale: Float, reference: int) -> Float:
     """
     value = ties.value(log_scale)
     margin = np.full(len(log_scale), np.inf)
-    for moved in _sets(ties, log_scale):
+    for moved in sets_that_move(ties, log_scale):
         if moved[reference]:
             continue
         _, worth = _best_move(ties, log_scale, moved, ELSEWHERE)
@@ -90,7 +90,7 @@ def _best_move(ties: Ties, log_scale: Float, moved: Bool, least: float) -> tuple
     return best
 
 
-def _sets(ties: Ties, log_scale: Float) -> list[Bool]:
+def sets_that_move(ties: Ties, log_scale: Float) -> list[Bool]:
     """Sets of bodies (B,) that may move together: each alone, those that ties hold together, both sides of a cut."""
     count = len(log_scale)
     holds = ties.holds(log_scale)

@@ -30,7 +30,7 @@ def sights(monkeypatch):
         seen.append(sight)
         raise ReconstructionError("the places need not be found")
 
-    monkeypatch.setattr(linecad.pipeline, "place_lines", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     return seen
 
 

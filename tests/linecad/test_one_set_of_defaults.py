@@ -18,7 +18,7 @@ from linecad.convert import Conversion
 from linecad.corrections.edits import Corrections
 from linecad.editing.run import EditOptions
 from linecad.editing.session import Session
-from linecad.editing.solving import solve_task
+from linecad.editing.solving import TaskSolver
 from linecad.evaluation.datasets import find_dataset
 from linecad.evaluation.measure import measure_photo
 from linecad.evaluation.methods import Settings
@@ -80,7 +80,7 @@ def by_page(path, folder, monkeypatch):
         corrections = Corrections(photo.name, photo.width, photo.height)
         session = Session(photo, find_segments(photo.grey), options.reconstruct, corrections, lambda _: None)
         task = session.task(session.now().version)
-        answers.append(solve_task(task, photo, options.reconstruct, lambda _: None))
+        answers.append(TaskSolver(photo, options.reconstruct).answer(task, lambda _: None))
 
     monkeypatch.setattr("linecad.editing.run.edit", serve)
     output = ["-o", str(folder / "said.json")]

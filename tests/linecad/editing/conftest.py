@@ -51,12 +51,12 @@ class InPlace:
 
     def answer(self):
         """Solve what waits longest and tell the session."""
-        from linecad.editing.solving import Answer, solve_task
+        from linecad.editing.solving import Answer, TaskSolver
 
         task = self.waiting.pop(0)
         key = pickle.dumps((task.found, task.corrected, self.options, self.depth))
         if key not in self.known:
-            self.known[key] = solve_task(task, self.photo, self.options, lambda _: None, self.depth)
+            self.known[key] = TaskSolver(self.photo, self.options, self.depth).answer(task, lambda _: None)
         answer = replace(self.known[key], number=task.number)
         assert isinstance(answer, Answer)
         self.take(answer)

@@ -11,7 +11,7 @@ from linecad.corrections.edits import Corrections
 from linecad.depth.depth_map import DepthMap
 from linecad.editing.run import EditOptions, edit
 from linecad.editing.session import Session
-from linecad.editing.solving import SolvingProcess, solve_task
+from linecad.editing.solving import SolvingProcess, TaskSolver
 from linecad.errors import DepthMapError, ReconstructionError
 from linecad.lines.segments import find_segments
 from linecad.options import Options
@@ -47,10 +47,10 @@ def test_a_solve_looks_at_the_depth_map(made_photo, task, monkeypatch):
     def look(_graph, sight, *_):
         raise ReconstructionError(f"seen {sight.depth.name}")
 
-    monkeypatch.setattr(linecad.pipeline, "place_lines", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     ones = np.ones((made_photo.height, made_photo.width))
     depth = DepthMap("map.npz", ones, ones > 0, "z")
-    assert solve_task(task, made_photo, Options(), lambda _: None, depth).error == "seen map.npz"
+    assert TaskSolver(made_photo, Options(), depth).answer(task, lambda _: None).error == "seen map.npz"
 
 
 def test_the_page_reads_the_map_and_hands_it_to_the_process_that_solves(made_photo, tmp_path, monkeypatch):

@@ -1,0 +1,74 @@
+"""Where else a body could stand: the places that evidence asks for, with what each is worth against the one it has."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Bool
+from linecad.ties.candidates import Candidate
+from linecad.ties.placing import CONNECTING, BodyPlaces
+from linecad.ties.weights import gain_of
+from solver.bodies.local_search import sets_that_move
+
+SAME_PLACE = 0.01  # log scale within which two places are one
+MOST = 12
+
+
+@dataclass(frozen=True, eq=False)
+class OtherPlace:
+    """A place that a body does not have."""
+
+    move: float  # log factor by which it and what goes with it would move away from the camera
+    moved: Bool  # (B,) the bodies that go along
+    worth: float  # log-odds against the place that the body has; negative where that is more likely
+    reasons: tuple[Candidate, ...]  # what asks for it, the most telling first
+
+
+def other_places(places: BodyPlaces, body: int) -> list[OtherPlace]:
+    """The places that other evidence asks for, the most likely first; MOST at most, none for the reference.
+
+    Each is that of a set of bodies which moves as a whole, of all such sets the one that loses least. Evidence that is
+    too weak for a tie may be all there is: it proposes places, and orders those that cost the same.
+    """
+    evidence, ties, log_scale = places.evidence, places.ties, places.placement.log_scale
+    reference = evidence.reference
+    kept = [each for each in evidence.candidates if not (each.kind in CONNECTING and each.bodies in places.told.cuts)]
+    if body == reference or not kept:
+        return []
+    first, second = np.array([each.bodies for each in kept], np.int64).T
+    asked, gain = np.array([each.log_ratio for each in kept]), np.array([gain_of(each) for each in kept])
+    now = ties.value(log_scale)
+    found: list[OtherPlace] = []
+    for moved in _sets(places, body):
+        across = np.flatnonzero((moved[first] != moved[second]) & (gain > 0))
+        by = np.where(moved[first[across]], 1.0, -1.0)
+        moves = by * (asked[across] - log_scale[first[across]] + log_scale[second[across]])
+        for move in _distinct(moves, gain[across]):
+            reasons = across[np.abs(moves - move) <= SAME_PLACE]
+            worth = ties.value(np.where(moved, log_scale + move, log_scale)) - now
+            ordered = sorted(reasons.tolist(), key=lambda number: -gain[number])
+            found.append(OtherPlace(move, moved, worth, tuple(kept[number] for number in ordered)))
+    found.sort(key=lambda place: (-place.worth, -sum(map(gain_of, place.reasons)), abs(place.move)))
+    best: list[OtherPlace] = []
+    for place in found:
+        if all(abs(place.move - other.move) > SAME_PLACE for other in best):
+            best.append(place)
+    return best[:MOST]
+
+
+def _sets(places: BodyPlaces, body: int) -> list[Bool]:
+    """The sets of bodies that may move with a body while the reference stays."""
+    count, reference = len(places.placement.log_scale), places.evidence.reference
+    every = sets_that_move(places.ties, places.placement.log_scale)
+    own = [moved for moved in every if moved[body] and not moved[reference]]
+    return own or [np.arange(count) == body]
+
+
+def _distinct(moves: np.ndarray, gain: np.ndarray) -> list[float]:
+    """Moves to other places, of those nearer than SAME_PLACE the one that most asks for."""
+    found: list[float] = []
+    for number in np.argsort(-gain, kind="stable").tolist():
+        move = float(moves[number])
+        if abs(move) > SAME_PLACE and all(abs(move - other) > SAME_PLACE for other in found):
+            found.append(move)
+    return found
