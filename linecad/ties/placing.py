@@ -27,6 +27,7 @@ from solver.options import OnProgress, SolveOptions
 from solver.potentials import fit_near_depths
 from solver.robust import agreeing_with
 
+SAID = 0.97  # probability of a place that a person gave: nobody measured how often people are wrong
 CONNECTING = ("bundle", "plane")  # kinds of ties that say that two bodies are one thing
 
 
@@ -58,10 +59,18 @@ class BodyPlaces:
     @cached_property
     def probability(self) -> Float:
         """(N,) that a line's depth relative to component 0 is right within 5 %."""
-        known, evidence = self.evidence.setting, self.evidence
-        return probabilities(
-            known, self.placement, evidence.reference, self.log_depth, evidence.held, self.mapped
+        return self.probability_at(self.log_depth)
+
+    def probability_at(self, log_depth: Float) -> Float:
+        """The same for lines at depths (N,) near these."""
+        evidence, body = self.evidence, self.evidence.setting.bodies.body
+        found = probabilities(
+            evidence.setting, self.placement, evidence.reference, log_depth, evidence.held, self.mapped
         )  # fmt: skip
+        # What a person ties to the reference stands there, if the line is held in its body.
+        said = self.ties.parts(self.placement.counted & (self.ties.weight >= CERTAIN), len(self.placement.log_scale))
+        is_said = (said == said[evidence.reference]) & (np.arange(len(said)) != evidence.reference)
+        return np.where((body >= 0) & is_said[body], np.maximum(found, SAID * evidence.held), found)
 
     @property
     def by_map(self) -> Bool:
@@ -164,10 +173,7 @@ def place_on(
     )
     depth = evidence.setting.sight.depth
     told = None if depth is None else report_of(depth, evidence.heard, found.mapped)
-    sure = probabilities(
-        evidence.setting, placement, evidence.reference, log_depth, evidence.held, found.mapped
-    )  # fmt: skip
-    return Placed(solution, found, sure, found.by_map, told)
+    return Placed(solution, found, found.probability_at(log_depth), found.by_map, told)
 
 
 def place_bodies(
