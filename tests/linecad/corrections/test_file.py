@@ -10,14 +10,20 @@ from linecad.corrections.edits import (
     LABELS,
     Anchor,
     Corrections,
+    Cut,
     Delete,
     Draw,
+    Foot,
     Join,
     KnownLength,
     LabelCrossing,
+    Meet,
+    OnePlane,
+    PlaceAt,
     SetAxis,
     SetFrame,
     Split,
+    Withdraw,
 )
 from linecad.corrections.file import (
     LARGEST_FILE,
@@ -35,7 +41,16 @@ points = st.tuples(numbers, numbers)
 segments = st.tuples(points, points).filter(lambda p: abs(p[0][0] - p[1][0]) + abs(p[0][1] - p[1][1]) > 0.01)
 anchors = st.builds(Anchor, segments, st.integers(0, 2))
 pairs = st.tuples(anchors, anchors)
+facts = st.one_of(
+    st.builds(Meet, pairs),
+    st.builds(OnePlane, pairs, st.integers(0, 6)),
+    st.builds(Foot, anchors, points),
+    st.builds(Cut, pairs),
+    st.builds(PlaceAt, anchors, anchors, st.floats(-5, 5)),
+)
 edits = st.one_of(
+    facts,
+    st.builds(Withdraw, facts),
     st.builds(LabelCrossing, pairs, points, st.sampled_from([*LABELS, None])),
     st.builds(SetAxis, anchors, st.integers(0, 2)),
     st.builds(Delete, anchors),
@@ -96,6 +111,11 @@ def test_what_was_undone_may_be_missing():
         (with_edit(op="delete", line={**LINE, "segment": [[1, 1], [1, 1]]}), "expected two ends that differ"),
         (with_edit(op="delete", line=7), "expected an object"),
         (with_edit(op="frame", lines=[]), "expected a list of 1 to 100"),
+        (with_edit(op="meet", lines=[LINE] * 3), "expected a list of 2"),
+        (with_edit(op="plane", lines=[LINE] * 2, normal="up"), "normal is \"up\", expected one of x, y, z"),
+        (with_edit(op="foot", line=LINE), "pixel is missing"),
+        (with_edit(op="place", line=LINE, to=LINE, log_ratio=5.1), "log_ratio is 5.1, expected a finite number of at"),
+        (with_edit(op="withdraw", fact={"op": "delete", "line": LINE}), "fact.op is \"delete\", expected one of meet"),
         (with_edit(op="frame", lines=[LINE] * 101), "expected a list of 1 to 100"),
         ([FILE], "expected an object"),
     ],

@@ -1,0 +1,231 @@
+"""Bodies as the page is told of them: facts move them at once, and the scene that is built behind agrees."""
+
+import numpy as np
+import pytest
+
+from linecad.corrections.file import corrections_from_json, corrections_to_json
+from linecad.options import Options
+
+
+@pytest.fixture
+def solved(page):
+    page.solve()
+    return page
+
+
+def lines_of(state, body):
+    return [line for line in state["lines"] if line["body"] == body]
+
+
+def depths(state, body):
+    """How far the ends of a body's lines are, by line."""
+    return {line["id"]: np.array(line["ends"]) for line in lines_of(state, body) if line["ends"] is not None}
+
+
+def in_photo(state, points):
+    seen = points @ np.array(state["R_cam_from_world"]).T @ np.array(state["K"]).T
+    return seen[..., :2] / seen[..., 2:]
+
+
+def place(state, log_ratio):
+    """The word that the second body stands so far from the first."""
+    first, second = (lines_of(state, body)[0]["id"] for body in (0, 1))
+    return {"op": "place", "line": second, "to": first, "log_ratio": log_ratio}
+
+
+def camera_depth(state, line):
+    ends = np.array(next(each["ends"] for each in state["lines"] if each["id"] == line))
+    return (ends @ np.array(state["R_cam_from_world"]).T)[:, 2].mean()
+
+
+class TestDocument:
+    def test_every_line_and_face_has_its_body(self, solved):
+        state = solved.state()
+        bodies = {body["id"]: body for body in state["bodies"]}
+        assert sorted(bodies) == [0, 1]
+        for number, body in bodies.items():
+            assert body["lines"] == [line["id"] for line in lines_of(state, number)]
+        assert sum(body["share"] for body in bodies.values()) == pytest.approx(1.0)
+        assert [body["reference"] for body in state["bodies"]] == [True, False]
+        assert [body["id"] for body in state["bodies"]] == [0, 1], "the largest share comes first"
+        assert {plane["body"] for plane in state["planes"]} == {0, 1, 2}, "the ground is one more"
+        for plane in state["planes"]:
+            assert {face["body"] for face in plane["faces"]} <= {plane["body"]}
+
+    def test_what_ties_a_body_is_told_in_words(self, solved):
+        body = solved.state()["bodies"][1]
+        assert body["guess"] == (body["probability"] < 0.5)
+        assert ["a foot on the ground"] == [tie["words"] for tie in body["ties"] if tie["counted"]]
+        assert [tie["other"] for tie in body["ties"]] == [None]
+
+    def test_before_the_first_solve_there_are_none(self, page):
+        state = page.state()
+        assert (state["bodies"], state["facts"], state["moved"]) == ([], [], [])
+        assert "wait until the model" in page.refused(422, "edit", edit={"op": "cut", "lines": [0, 1]})
+
+    def test_programs_over_crossings_have_none(self, open_page):
+        page = open_page(options=Options(over_bodies=False))
+        assert page.solve()["bodies"] == []
+        assert "places no bodies" in page.refused(422, "edit", edit={"op": "cut", "lines": [0, 1]})
+
+
+class TestFacts:
+    def test_a_body_moves_at_once_along_its_rays(self, solved):
+        before = solved.state()
+        there = solved.edit(**place(before, 0.5))
+        fact = there["facts"][0]
+        first, second = fact["lines"][1], fact["lines"][0]
+        assert np.log(camera_depth(there, second) / camera_depth(there, first)) == pytest.approx(0.5, abs=0.05)
+        was, now = depths(before, 1), depths(there, 1)
+        factors = {round(float(np.median(now[line] / was[line])), 6) for line in was}
+        assert len(factors) == 1, "all of it by one factor"
+        assert factors != {1.0}
+        for line in was:
+            assert in_photo(there, now[line]) == pytest.approx(in_photo(before, was[line]), abs=1e-6)
+        assert depths(there, 0).keys() == depths(before, 0).keys()
+        for line, ends in depths(before, 0).items():
+            assert depths(there, 0)[line] == pytest.approx(ends)
+        assert (fact["words"], fact["holds"], fact["bodies"]) == ("stands here", True, [1, 0])
+
+    def test_its_faces_move_along(self, solved):
+        before = solved.state()
+        there = solved.edit(**place(before, 0.5))
+        [factor] = {
+            round(float(np.median(now / depths(before, 1)[line])), 6) for line, now in depths(there, 1).items()
+        }
+        for was, now in zip(before["planes"], there["planes"], strict=True):
+            expected = factor if was["body"] == 1 else 1.0
+            if was["body"] < 2:
+                assert now["offset"] == pytest.approx(expected * was["offset"], rel=1e-5)
+                for one, other in zip(was["faces"], now["faces"], strict=True):
+                    assert np.array(other["outline"]) == pytest.approx(expected * np.array(one["outline"]), rel=1e-5)
+
+    def test_the_scene_is_built_anew_behind_it_and_agrees(self, solved):
+        there = solved.edit(**place(solved.state(), 0.5))
+        assert there["solve"]["state"] == "running"
+        assert not there["solve"]["fresh"]
+        solved.solving.answer()
+        built = solved.state()
+        assert built["solve"]["fresh"]
+        assert [fact["holds"] for fact in built["facts"]] == [True]
+        scale = np.median([
+            np.linalg.norm(ends[1] - ends[0]) / np.linalg.norm(np.subtract(*depths(there, 0)[line]))
+            for line, ends in depths(built, 0).items() if line in depths(there, 0)
+        ])  # fmt: skip
+        fact = there["facts"][0]
+        for line in fact["lines"]:
+            assert camera_depth(built, line) == pytest.approx(scale * camera_depth(there, line), rel=0.02)
+
+    def test_undo_and_redo_move_it_too(self, solved):
+        before = solved.state()
+        there = solved.edit(**place(before, 0.5))
+        back = solved.change("undo")
+        assert back["solve"]["fresh"], "that model is known"
+        assert back["lines"] == before["lines"]
+        again = solved.change("redo")
+        assert again["lines"] == there["lines"]
+        assert again["facts"] == there["facts"]
+
+    def test_what_was_said_can_be_taken_back_later(self, solved):
+        before = solved.state()
+        said = solved.edit(**place(before, 0.5))
+        solved.edit(op="delete", line=lines_of(before, 0)[-1]["id"])
+        state = solved.edit(op="withdraw", edit=said["facts"][0]["edit"])
+        assert state["facts"] == []
+        assert "something of bodies" in solved.refused(422, "edit", edit={"op": "withdraw", "edit": 1})
+        assert "something of bodies" in solved.refused(422, "edit", edit={"op": "withdraw", "edit": 99})
+
+    def test_it_is_kept_in_the_corrections(self, solved):
+        solved.edit(**place(solved.state(), 0.5))
+        corrections = solved.session.now().corrections
+        assert corrections_from_json(corrections_to_json(corrections)) == corrections
+        assert corrections.edits[0].log_ratio == 0.5
+
+    def test_the_last_fact_tells_what_it_moved(self, solved):
+        state = solved.edit(**place(solved.state(), 0.5))
+        assert [moved["body"] for moved in state["moved"]] == [1]
+        assert state["moved"][0]["asked"]
+        assert abs(state["moved"][0]["log_factor"]) > 0.01
+
+    def test_a_cut_within_a_body_waits_for_the_solve(self, solved):
+        before = solved.state()
+        first, second = (lines_of(before, 0)[number]["id"] for number in (0, -1))
+        there = solved.edit(op="cut", lines=[first, second])
+        assert there["lines"] == before["lines"]
+        assert there["solve"]["state"] == "running"
+        solved.solving.answer()
+        built = {line["id"]: line["body"] for line in solved.state()["lines"]}
+        assert built[first] != built[second]
+
+    def test_other_edits_wait_to_be_solved(self, solved):
+        there = solved.edit(op="delete", line=lines_of(solved.state(), 0)[0]["id"])
+        assert there["solve"]["state"] == "idle"
+
+    def test_what_says_nothing_is_refused(self, solved):
+        first, second = (lines_of(solved.state(), 0)[number]["id"] for number in (0, 1))
+        edit = {"op": "place", "line": first, "to": second, "log_ratio": 1.0}
+        assert "of one body" in solved.refused(422, "edit", edit=edit)
+
+    def test_a_contradiction_names_facts_and_leaves_the_model(self, solved):
+        before = solved.state()
+        first, second = lines_of(before, 0), lines_of(before, 1)
+        there = solved.edit(**place(before, 0.5))
+        against = {"op": "place", "line": second[1]["id"], "to": first[1]["id"], "log_ratio": 2.0}
+        state = solved.edit(**against)
+        assert state["contradiction"]["facts"] == [0, 1]
+        assert '"stands here at (' in state["contradiction"]["text"]
+        assert [fact["contradicted"] for fact in state["facts"]] == [True, True]
+        assert len(solved.solving.waiting) == 1, "what cannot hold is not solved for"
+        freed = solved.edit(op="withdraw", edit=1)
+        assert freed["contradiction"] is None
+        assert freed["lines"] == there["lines"]
+
+
+class TestPreview:
+    def test_it_moves_nothing_and_tells_what_would_move(self, solved):
+        state = solved.state()
+        edit = place(state, 0.5)
+        told = solved.post("preview", base_version=solved.version, edit=edit).json()
+        assert list(told["moves"]) == ["1"]
+        assert told["conflict"] is None
+        assert solved.state() == state
+        there = solved.edit(**edit)
+        assert told["moves"]["1"] == pytest.approx(there["moved"][0]["log_factor"])
+
+    def test_it_tells_what_would_be_contradicted(self, solved):
+        state = solved.edit(**place(solved.state(), 0.5))
+        first, second = lines_of(state, 0), lines_of(state, 1)
+        against = {"op": "place", "line": second[1]["id"], "to": first[1]["id"], "log_ratio": 2.0}
+        told = solved.post("preview", base_version=solved.version, edit=against).json()
+        assert told["moves"] == {}
+        assert "cannot all hold" in told["conflict"]["text"]
+        assert solved.state()["contradiction"] is None
+
+    def test_only_facts_are_tried_out(self, solved):
+        text = solved.refused(422, "preview", edit={"op": "delete", "line": 0})
+        assert "only what is said of bodies" in text
+
+
+class TestPlaces:
+    def test_other_places_come_best_first(self, solved):
+        found = solved.get("places/1").json()
+        assert found
+        assert [each["worth"] for each in found] == sorted((each["worth"] for each in found), reverse=True)
+        for each in found:
+            assert abs(each["move"]) > 0.005
+            assert 1 in each["bodies"]
+            assert 0 not in each["bodies"]
+            assert each["words"]
+
+    def test_a_proposed_place_can_be_taken(self, solved):
+        state = solved.state()
+        best = solved.get("places/1").json()[0]
+        second, first = lines_of(state, 1)[0]["id"], lines_of(state, 0)[0]["id"]
+        now = np.log(camera_depth(state, second) / camera_depth(state, first))
+        there = solved.edit(op="place", line=second, to=first, log_ratio=now + best["move"])
+        moved = np.log(camera_depth(there, second) / camera_depth(state, second))
+        assert moved == pytest.approx(best["move"], abs=0.05)
+
+    def test_the_reference_and_what_is_no_body_have_none(self, solved):
+        assert solved.get("places/0").json() == []
+        assert solved.get("places/77").json() == []

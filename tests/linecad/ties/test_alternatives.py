@@ -1,0 +1,75 @@
+"""Other places of bodies: each is asked for by evidence, and worth what the program says of it."""
+
+import numpy as np
+import pytest
+
+from linecad.ties.alternatives import MOST, SAME_PLACE, other_places
+from linecad.ties.evidence import find_evidence
+from linecad.ties.placing import place_bodies
+from linecad.ties.weights import gain_of
+from solver.options import SolveOptions
+
+
+@pytest.fixture(scope="module")
+def street(build_town, build_row):
+    """Two walls of equal heights, the second set back; a course of the first passes before it."""
+    first, second = build_row(1, at=(9.5, 12.0), level=True, end=1.7)
+    return build_town(first, second[:8] + second[12:], yaw=-0.05)
+
+
+@pytest.fixture(scope="module")
+def places(street):
+    return place_bodies(find_evidence(street.graph, street.sight, SolveOptions()), SolveOptions())
+
+
+@pytest.fixture(scope="module")
+def body(places):
+    """The body that is not the reference."""
+    return 1 - places.evidence.reference
+
+
+def test_each_is_asked_for_by_what_it_names(places, body):
+    found = other_places(places, body)
+    assert 0 < len(found) <= MOST
+    log_scale = places.placement.log_scale
+    for place in found:
+        assert place.reasons
+        there = np.where(place.moved, log_scale + place.move, log_scale)
+        for reason in place.reasons:
+            first, second = reason.bodies
+            assert there[first] - there[second] == pytest.approx(reason.log_ratio, abs=2 * SAME_PLACE)
+            assert gain_of(reason) > 0
+
+
+def test_each_is_worth_what_the_ties_say(places, body):
+    log_scale = places.placement.log_scale
+    for place in other_places(places, body):
+        there = np.where(place.moved, log_scale + place.move, log_scale)
+        assert place.worth == pytest.approx(places.ties.value(there) - places.ties.value(log_scale))
+
+
+def test_they_are_different_places_and_the_best_comes_first(places, body):
+    found = other_places(places, body)
+    moves = [place.move for place in found]
+    for number, move in enumerate(moves):
+        assert abs(move) > SAME_PLACE
+        assert all(abs(move - other) > SAME_PLACE for other in moves[:number])
+    worth = [place.worth for place in found]
+    assert worth == sorted(worth, reverse=True)
+    assert worth[0] <= 0, "the program has found the best"
+
+
+def test_where_walls_would_be_in_one_plane_is_one_of_them(places, body, street):
+    """The course that passes before the second wall would meet it there."""
+    by = np.log(12.0 / 9.5) * (1 if street.part[places.evidence.setting.lines[body][0]] == 0 else -1)
+    kinds = {
+        reason.kind
+        for place in other_places(places, body)
+        if abs(place.move - by) < 2 * SAME_PLACE
+        for reason in place.reasons
+    }
+    assert kinds & {"bundle", "plane"}
+
+
+def test_the_reference_stays(places):
+    assert other_places(places, places.evidence.reference) == []
