@@ -4,7 +4,7 @@ What cannot be found again is told in a note and left out. Every line has an id 
 added or taken back: found lines are numbered in their order, new ones follow in the order of the edits.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal, assert_never
 
@@ -19,10 +19,13 @@ from linecad.corrections.edits import (
     Delete,
     Draw,
     Edit,
+    FaceAnchor,
     Join,
+    KnownDistance,
     KnownLength,
     Label,
     LabelCrossing,
+    Place,
     Point,
     SetAxis,
     SetFrame,
@@ -40,6 +43,16 @@ FIRST_IDS = 100_000  # ids for the lines of one frame; those found with the next
 Origin = Literal["found", "drawn", "split", "joined"]
 
 
+@dataclass(frozen=True)
+class FoundPlace:
+    """A point that a person measured from or to, its line found again."""
+
+    pixel: Point
+    line: int | None = None  # id; None for a point in a plane
+    face: Point | None = None  # px where the photo shows the plane; None for a point on a line
+    normal: int | None = None  # axis of the plane; None where a frame given later made it another one
+
+
 @dataclass(frozen=True, eq=False)
 class CorrectedLines:
     """The lines of a photo after all edits."""
@@ -51,6 +64,7 @@ class CorrectedLines:
     lengths: dict[int, float]  # m, by id
     parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
     notes: tuple[str, ...]  # what could not be found again
+    distances: tuple[tuple[FoundPlace, FoundPlace, float], ...] = ()  # m, between two points
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -104,6 +118,7 @@ class Correcting:
         self.became: dict[int, tuple[int, ...]] = {}  # lines that were split or joined, and their successors
         self.labels: dict[tuple[int, int], tuple[Point, Label]] = {}
         self.lengths: dict[int, float] = {}
+        self.distances: dict[tuple[Place, Place], tuple[FoundPlace, FoundPlace, float]] = {}
         self.parted: list[tuple[int, int]] = []
         self._table: LineTable | None = None
 
@@ -143,6 +158,11 @@ class Correcting:
                 self.lengths.pop(number, None)
                 if edit.metres is not None:
                     self.lengths[number] = edit.metres
+            case KnownDistance():
+                first_place, second_place = (self._found_place(place, before_frame) for place in edit.places)
+                self.distances.pop(edit.places, None)
+                if edit.metres is not None:
+                    self.distances[edit.places] = (first_place, second_place, edit.metres)
             case SetFrame():
                 pass  # the lines were found with it
             case _:
@@ -160,6 +180,11 @@ class Correcting:
             lengths={own: metres for number, metres in self.lengths.items() for own in self._now(number)[:1]},
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
             notes=notes,
+            distances=tuple(
+                (one, other, metres)
+                for first, second, metres in self.distances.values()
+                for one, other in product(self._place_now(first), self._place_now(second))
+            ),
         )
 
     def anchor(self, number: int) -> Anchor:
@@ -177,6 +202,18 @@ class Correcting:
     def snapped(self, ends: Float, axis: int | None) -> tuple[Float, int, tuple[bool, bool]]:
         """What a line drawn from one end to the other (2, 2) would be: ends, axis, and which ends snap to others."""
         return self.drawing.snapped(ends, axis, self._lookup().ends.reshape(-1, 2))
+
+    def _found_place(self, place: Place, before_frame: bool) -> FoundPlace:
+        if isinstance(place.on, FaceAnchor):
+            return FoundPlace(place.pixel, face=place.on.pixel, normal=None if before_frame else place.on.axis)
+        return FoundPlace(place.pixel, line=self.find(place.on, before_frame))
+
+    def _place_now(self, place: FoundPlace) -> list[FoundPlace]:
+        """The place on the line that its line has become, the nearest piece; none where that was deleted."""
+        if place.line is None:
+            return [place]
+        now = self._nearest(place.line, place.pixel)
+        return [] if now is None else [replace(place, line=now)]
 
     def _lookup(self) -> LineTable:
         if self._table is None:

@@ -15,10 +15,13 @@ from linecad.corrections.edits import (
     Delete,
     Draw,
     Edit,
+    FaceAnchor,
     Join,
+    KnownDistance,
     KnownLength,
     Label,
     LabelCrossing,
+    Place,
     Point,
     SetAxis,
     SetFrame,
@@ -37,7 +40,7 @@ LARGEST_PHOTO = 10**6  # px along one side
 LARGEST_PIXEL = 1e7  # px from the photo's corner
 LEAST_LENGTH = 1e-3  # px, of a segment
 MOST_FRAME_LINES = 100
-OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame")
+OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "distance", "frame")
 
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
@@ -109,6 +112,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "draw", "line": _anchor_to_json(edit.line)}
         case KnownLength():
             return {"op": "length", "line": _anchor_to_json(edit.line), "metres": edit.metres}
+        case KnownDistance():
+            return {"op": "distance", "points": [_place_to_json(one) for one in edit.places], "metres": edit.metres}
         case SetFrame():
             return {"op": "frame", "lines": [_anchor_to_json(line) for line in edit.lines]}
         case _:
@@ -117,6 +122,13 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
 
 def _anchor_to_json(anchor: Anchor) -> dict[str, object]:
     return {"segment": [list(end) for end in anchor.ends], "axis": axis_name(anchor.axis)}
+
+
+def _place_to_json(place: Place) -> dict[str, object]:
+    pixel = list(place.pixel)
+    if isinstance(place.on, Anchor):
+        return {"pixel": pixel, "line": _anchor_to_json(place.on)}
+    return {"pixel": pixel, "face": {"pixel": list(place.on.pixel), "normal": axis_name(place.on.axis)}}
 
 
 def _corrections(top: Node) -> Corrections:
@@ -152,6 +164,9 @@ def _edit(node: Node) -> Edit:
             return Draw(_anchor(node["line"]))
         case "length":
             return KnownLength(_anchor(node["line"]), metres(node))
+        case "distance":
+            first, second = two(node["points"])
+            return KnownDistance((_place(first), _place(second)), metres(node))
         case _:
             return SetFrame(frame_lines(node["lines"], "segment"))
 
@@ -161,10 +176,23 @@ def _anchor(node: Node, key: str = "segment") -> Anchor:
 
 
 def _two(node: Node) -> tuple[Anchor, Anchor]:
+    first, second = two(node)
+    return _anchor(first), _anchor(second)
+
+
+def two(node: Node) -> tuple[Node, Node]:
+    """The elements of a list of two; JsonError for anything else, as below."""
     items = node.items()
     if len(items) != 2:
         raise node.wrong("a list of 2")
-    return _anchor(items[0]), _anchor(items[1])
+    return items[0], items[1]
+
+
+def _place(node: Node) -> Place:
+    line, pixel = node.get("line"), point(node["pixel"])
+    if line is not None:
+        return Place(pixel, _anchor(line))
+    return Place(pixel, FaceAnchor(point(node["face"]["pixel"]), axis(node["face"]["normal"])))
 
 
 def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:
@@ -177,10 +205,7 @@ def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:
 
 def ends(node: Node) -> tuple[Point, Point]:
     """Both ends of a segment, px."""
-    items = node.items()
-    if len(items) != 2:
-        raise node.wrong("a list of 2")
-    first, second = point(items[0]), point(items[1])
+    first, second = map(point, two(node))
     if abs(first[0] - second[0]) + abs(first[1] - second[1]) < LEAST_LENGTH:
         raise node.wrong("two ends that differ")
     return first, second
@@ -188,10 +213,8 @@ def ends(node: Node) -> tuple[Point, Point]:
 
 def point(node: Node) -> Point:
     """A place in the photo, px."""
-    items = node.items()
-    if len(items) != 2:
-        raise node.wrong("a list of 2")
-    return items[0].number(LARGEST_PIXEL), items[1].number(LARGEST_PIXEL)
+    u, v = two(node)
+    return u.number(LARGEST_PIXEL), v.number(LARGEST_PIXEL)
 
 
 def axis(node: Node) -> int:

@@ -3,22 +3,18 @@
 import math
 from functools import lru_cache
 
-import numpy as np
-
 from exporters.bands import GUESS, bands_of
-from exporters.faces import FlatFace
 from exporters.formats import FORMATS, SCENE_FILE
-from exporters.model import build_model
-from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.depth_layers import document_of_layers
+from linecad.editing.faces import triangles_of
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
-from linecad.errors import OutputError
-from linecad.scene import Face, Scene
+from linecad.model.known_lengths import rows_by_segment
+from linecad.scene import Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
@@ -125,7 +121,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "guess": bool(guess[row]),
             "by_depth_map": bool(lines.by_depth_map[row]),
         }
-        for look, row in _rows(scene).items()
+        for look, row in rows_by_segment(scene).items()
     }
 
 
@@ -173,11 +169,11 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         )
     }
     numbers: dict[int, list[int]] = {int(line): [] for line in scene.lines.id}
-    for look, row in _rows(scene).items():
+    for look, row in rows_by_segment(scene).items():
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[_is_guess(scene)].tolist())
-    triangles = _triangles(scene)
+    triangles = triangles_of(scene)
     return [
         {
             "id": plane.id,
@@ -192,40 +188,6 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         }
         for plane in scene.planes
     ]
-
-
-@lru_cache(maxsize=2)
-def _triangles(scene: Scene) -> dict[int, dict[str, object]]:
-    """Of each face by its id: rings and triangles, indices into the points of all rings in their order."""
-    flat = {face.id: face for face in build_model(scene).faces}
-    found: dict[int, dict[str, object]] = {}
-    for _, face in scene.faces:
-        try:
-            indices = triangulate(flat[face.id])
-        except OutputError:  # a face that cannot be triangulated cannot be drawn; exports say what is wrong with it
-            continue
-        outline, *holes = _turned_rings(face, flat[face.id])
-        found[face.id] = {"id": face.id, "outline": outline, "holes": holes, "triangles": indices.tolist()}
-    return found
-
-
-def _turned_rings(face: Face, flat: FlatFace) -> list[list[list[float]]]:
-    """The rings of a face in the direction that its triangles count them in."""
-    return [
-        (ring if _same_direction(ring, turned) else ring[::-1]).tolist()
-        for ring, turned in zip((face.outline, *face.holes), flat.rings, strict=True)
-    ]
-
-
-def _same_direction(ring: np.ndarray, turned: np.ndarray) -> bool:
-    scale = np.linalg.norm(turned[0]) / max(np.linalg.norm(ring[0]), np.finfo(float).tiny)
-    return bool(np.abs(ring * scale - turned).max() <= np.abs(ring[::-1] * scale - turned).max())
-
-
-def _rows(scene: Scene) -> dict[tuple[int, bytes], int]:
-    """The row of each line of a scene by axis and segment, that of a line joined from pieces by each of these."""
-    axes = enumerate(scene.lines.axis.tolist())
-    return {(axis, ends.tobytes()): row for row, axis in axes for ends in scene.lines.segments_of(row)}
 
 
 def _finite(number: float) -> float | None:

@@ -11,13 +11,16 @@ from linecad.corrections.edits import (
     Edit,
     Ends,
     Join,
+    KnownDistance,
     KnownLength,
     LabelCrossing,
+    Place,
     SetAxis,
     SetFrame,
     Split,
 )
-from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label, metres, point
+from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label, metres, point, two
+from linecad.editing.faces import face_anchor
 from linecad.editing.session import Session
 from linecad.io.strict_json import Node
 
@@ -38,15 +41,16 @@ def read_edit(node: Node, session: Session) -> Edit:
         case "split":
             return Split(_line(node, lines), point(node["at"]))
         case "join":
-            pair = node["lines"].items()
-            if len(pair) != 2:
-                raise node["lines"].wrong("a list of 2")
-            return Join((lines.anchor(pair[0].integer()), lines.anchor(pair[1].integer())))
+            one, other = two(node["lines"])
+            return Join((lines.anchor(one.integer()), lines.anchor(other.integer())))
         case "draw":
             drawn, own, _ = proposal(node, lines)
             return Draw(Anchor(_plain(drawn), own))
         case "length":
             return KnownLength(_line(node, lines), metres(node))
+        case "distance":
+            start, end = two(node["points"])
+            return KnownDistance((_place(start, session), _place(end, session)), metres(node))
         case _:
             return SetFrame(frame_lines(node["lines"], "ends"))
 
@@ -56,6 +60,14 @@ def proposal(node: Node, lines: Correcting) -> tuple[Float, int, tuple[bool, boo
     chosen = node.get("axis")
     wanted = None if chosen is None or chosen.value is None else axis(chosen)
     return lines.snapped(np.array(ends(node["ends"])), wanted)
+
+
+def _place(node: Node, session: Session) -> Place:
+    """A point on a line, by its id, or in a plane of the model, by the id of one of its faces."""
+    pixel, line = point(node["pixel"]), node.get("line")
+    if line is not None:
+        return Place(pixel, session.editing.anchor(line.integer()))
+    return Place(pixel, face_anchor(session.scene(), pixel, node["face"].integer()))
 
 
 def _line(node: Node, lines: Correcting) -> Anchor:

@@ -12,12 +12,12 @@ from functools import cached_property
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import Annotations, annotations_of, rows_of
 from linecad.corrections.apply import CorrectedLines, Correcting, correcting_of
-from linecad.corrections.edits import Corrections, Edit, KnownLength, SetFrame
-from linecad.corrections.lengths import measured
+from linecad.corrections.edits import Corrections, Edit, KnownDistance, KnownLength, SetFrame
 from linecad.editing.solving import Answer, Step, Task
 from linecad.errors import CorrectionError, LinecadError
 from linecad.finding import FoundLines, connect_all, name_lines
 from linecad.line_graph import LineGraph, Segments
+from linecad.model.known_lengths import measured
 from linecad.options import Options
 from linecad.pipeline import Reconstruction
 from linecad.scene import Scene
@@ -297,7 +297,7 @@ class Session:
 
     def _content(self) -> Content:
         """The edits that bear on the solve."""
-        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength))
+        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength | KnownDistance))
 
     def _show(self, model: Model) -> None:
         """Show a model, with the scale that known lengths give now."""

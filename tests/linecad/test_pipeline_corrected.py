@@ -10,10 +10,10 @@ from linecad.camera.vanishing_points import fit_frame
 from linecad.corrections.annotations import annotations_of
 from linecad.corrections.apply import correct
 from linecad.corrections.edits import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
-from linecad.corrections.lengths import measured
 from linecad.decide.blocks import find_blocks
 from linecad.errors import ContradictionError, ReconstructionError
 from linecad.finding import FoundLines, connect, name_lines
+from linecad.model.known_lengths import measured
 from linecad.options import SHORT_REACH, Options
 from linecad.pipeline import reconstruct, reconstruct_lines
 from solver.options import FORMULATIONS, SolveOptions

@@ -12,9 +12,12 @@ from linecad.corrections.edits import (
     Corrections,
     Delete,
     Draw,
+    FaceAnchor,
     Join,
+    KnownDistance,
     KnownLength,
     LabelCrossing,
+    Place,
     SetAxis,
     SetFrame,
     Split,
@@ -35,6 +38,7 @@ points = st.tuples(numbers, numbers)
 segments = st.tuples(points, points).filter(lambda p: abs(p[0][0] - p[1][0]) + abs(p[0][1] - p[1][1]) > 0.01)
 anchors = st.builds(Anchor, segments, st.integers(0, 2))
 pairs = st.tuples(anchors, anchors)
+places = st.builds(Place, points, anchors | st.builds(FaceAnchor, points, st.integers(0, 6)))
 edits = st.one_of(
     st.builds(LabelCrossing, pairs, points, st.sampled_from([*LABELS, None])),
     st.builds(SetAxis, anchors, st.integers(0, 2)),
@@ -43,6 +47,7 @@ edits = st.one_of(
     st.builds(Join, pairs),
     st.builds(Draw, anchors),
     st.builds(KnownLength, anchors, st.none() | st.floats(1e-6, 1e6)),
+    st.builds(KnownDistance, st.tuples(places, places), st.none() | st.floats(1e-6, 1e6)),
     st.builds(SetFrame, st.lists(anchors, min_size=1, max_size=4).map(tuple)),
 )
 lists = st.lists(edits, max_size=6).map(tuple)
