@@ -159,7 +159,7 @@ class Correcting:
                 if edit.metres is not None:
                     self.lengths[number] = edit.metres
             case KnownDistance():
-                first_place, second_place = (self._found_place(place, before_frame) for place in edit.places)
+                first_place, second_place = (self.found_place(place, before_frame) for place in edit.places)
                 self.distances.pop(edit.places, None)
                 if edit.metres is not None:
                     self.distances[edit.places] = (first_place, second_place, edit.metres)
@@ -203,7 +203,8 @@ class Correcting:
         """What a line drawn from one end to the other (2, 2) would be: ends, axis, and which ends snap to others."""
         return self.drawing.snapped(ends, axis, self._lookup().ends.reshape(-1, 2))
 
-    def _found_place(self, place: Place, before_frame: bool) -> FoundPlace:
+    def found_place(self, place: Place, before_frame: bool = False) -> FoundPlace:
+        """The point with its line found again; CorrectionError when that is not there."""
         if isinstance(place.on, FaceAnchor):
             return FoundPlace(place.pixel, face=place.on.pixel, normal=None if before_frame else place.on.axis)
         return FoundPlace(place.pixel, line=self.find(place.on, before_frame))

@@ -3,14 +3,17 @@
 import math
 from functools import lru_cache
 
+import numpy as np
+
 from exporters.bands import GUESS, bands_of
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
+from linecad.editing.cell_layer import document_of_cells
 from linecad.editing.depth_layers import document_of_layers
-from linecad.editing.faces import triangles_of
+from linecad.editing.faces import facades_in, triangles_of
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.model.known_lengths import rows_by_segment
@@ -42,6 +45,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "planes": [] if now.model is None else _planes(now, now.model),
         "notes": list(now.found.notes if scene is None else scene.notes),
         "depth_map": None if depth is None else document_of_layers(depth, now),
+        "cells": document_of_cells(now),
         "solve": solve_of(now),
         "undo": len(now.corrections.edits),
         "redo": len(now.corrections.undone),
@@ -173,12 +177,17 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[_is_guess(scene)].tolist())
-    triangles = triangles_of(scene)
+    triangles, facades, told = triangles_of(scene), facades_in(scene), _probabilities(scene)
+    components = scene.components_of_planes
     return [
         {
             "id": plane.id,
             "axis": axis_name(plane.axis),
             "offset": plane.offset,
+            "normal": plane.normal(scene.turns).tolist(),
+            "component": components[plane.id],
+            "is_facade": plane.id in facades,
+            "probability": told[plane.id],
             "lines": [number for line in plane.lines for number in numbers[line]],
             "faces": [
                 {**triangles[face.id], "guess": guesses.issuperset(plane.lines or numbers)}
@@ -188,6 +197,18 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         }
         for plane in scene.planes
     ]
+
+
+def _probabilities(scene: Scene) -> dict[int, float | None]:
+    """How sure each plane is, by its id: the median of its lines; None where it has none or nothing is told."""
+    lines = scene.lines
+    if not len(lines.probability):
+        return dict.fromkeys((plane.id for plane in scene.planes), None)
+    of_line = dict(zip(lines.id.tolist(), np.asarray(lines.probability).tolist(), strict=True))
+    return {
+        plane.id: float(np.median([of_line[line] for line in plane.lines])) if plane.lines else None
+        for plane in scene.planes
+    }
 
 
 def _finite(number: float) -> float | None:

@@ -23,6 +23,7 @@ from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label,
 from linecad.editing.faces import face_anchor
 from linecad.editing.session import Session
 from linecad.io.strict_json import Node
+from linecad.model.known_lengths import units_between
 
 
 def read_edit(node: Node, session: Session) -> Edit:
@@ -49,8 +50,7 @@ def read_edit(node: Node, session: Session) -> Edit:
         case "length":
             return KnownLength(_line(node, lines), metres(node))
         case "distance":
-            start, end = two(node["points"])
-            return KnownDistance((_place(start, session), _place(end, session)), metres(node))
+            return _known_distance(node, session)
         case _:
             return SetFrame(frame_lines(node["lines"], "ends"))
 
@@ -60,6 +60,15 @@ def proposal(node: Node, lines: Correcting) -> tuple[Float, int, tuple[bool, boo
     chosen = node.get("axis")
     wanted = None if chosen is None or chosen.value is None else axis(chosen)
     return lines.snapped(np.array(ends(node["ends"])), wanted)
+
+
+def _known_distance(node: Node, session: Session) -> KnownDistance:
+    """The distance of two points; ScaleError, at once, where the model does not hold it or it sets no scale."""
+    start, end = two(node["points"])
+    edit = KnownDistance((_place(start, session), _place(end, session)), metres(node))
+    first, second = (session.editing.found_place(place) for place in edit.places)
+    units_between(session.scene(), session.lines.corrected, (first, second))
+    return edit
 
 
 def _place(node: Node, session: Session) -> Place:

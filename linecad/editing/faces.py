@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from exporters.drawings.facades import facades_of
 from exporters.faces import FlatFace
 from exporters.model import build_model
 from exporters.triangulation import triangulate
@@ -52,6 +53,12 @@ def _places(scene: Scene, plane: Plane) -> list[Point]:
 
 
 @lru_cache(maxsize=2)
+def facades_in(scene: Scene) -> frozenset[int]:
+    """The ids of the planes that an elevation can be drawn of."""
+    return frozenset(facade.plane for facade in facades_of(build_model(scene)))
+
+
+@lru_cache(maxsize=2)
 def triangles_of(scene: Scene) -> dict[int, dict[str, Any]]:
     """Of each face by its id: rings and triangles, indices into the points of all rings in their order."""
     flat = {face.id: face for face in build_model(scene).faces}
@@ -62,7 +69,13 @@ def triangles_of(scene: Scene) -> dict[int, dict[str, Any]]:
         except OutputError:  # a face that cannot be triangulated cannot be drawn; exports say what is wrong with it
             continue
         outline, *holes = _turned_rings(face, flat[face.id])
-        found[face.id] = {"id": face.id, "outline": outline, "holes": holes, "triangles": indices.tolist()}
+        found[face.id] = {
+            "id": face.id,
+            "kind": face.kind,
+            "outline": outline,
+            "holes": holes,
+            "triangles": indices.tolist(),
+        }
     return found
 
 

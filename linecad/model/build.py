@@ -40,6 +40,7 @@ from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
+from linecad.model.regions.shown import cells_of
 from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
@@ -161,6 +162,7 @@ def build_scene(
         depth_map=depth_map,
         openings=openings,
         turns=graph.turns,
+        cells=cells_of(regions, view.camera),
     )
     scene = with_main_first(finished(scene, framed, sight))
     last = (inexact_crossings(scene), *on_faces.notes(scene.lines))

@@ -33,7 +33,7 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
         scales.append(metres / _length(scene, row[key], corrected, number))
     for first, second, metres in corrected.distances:
         try:
-            scales.append(metres / distance(scene, corrected, (first, second)))
+            scales.append(metres / units_between(scene, corrected, (first, second)))
         except ScaleError as error:
             notes.append(f"a known distance ({metres:g} m) says nothing: {error}")
     if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
@@ -43,7 +43,7 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     return replace(scene, metres_per_unit=metres_per_unit, scale_source=source, notes=scene.notes + tuple(notes))
 
 
-def distance(scene: Scene, corrected: CorrectedLines, places: tuple[FoundPlace, FoundPlace]) -> float:
+def units_between(scene: Scene, corrected: CorrectedLines, places: tuple[FoundPlace, FoundPlace]) -> float:
     """How far apart two points are, in units of the scene; ScaleError where it has no such point, or not for sure."""
     first, second = (_point(scene, corrected, place) for place in places)
     units = float(np.linalg.norm(second - first))
