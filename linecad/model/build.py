@@ -135,8 +135,7 @@ def build_scene(
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_and_cross(framed, _intersections(graph, decision, found, new_id), sight, view.camera.width)
     planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
-    look = _look(view, placed, float(scales[0]))
-    regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
+    regions = find_regions(planes, lines, view.camera, view.frame.rotation, _look(view, placed, scales), graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
     whole = planes
@@ -254,9 +253,10 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
 
 
-def _look(view: View, placed: Placed | None, scale: float) -> Look:
-    """What the faces are found by, in a scene of which the placed lines are `scale` times as far."""
-    feet, camera = _ground_of_feet(placed, scale), view.camera
+def _look(view: View, placed: Placed | None, scales: Float) -> Look:
+    """What the faces are found by, in a scene of which the placed lines are `scales[0]` times as far."""
+    scale, camera = float(scales[0]), view.camera
+    feet = _ground_of_feet(placed, scale)
     return Look(view.pixels, feet, normals_of(placed), view.sketch, depths_of(placed, scale, camera.matrix))
 
 
