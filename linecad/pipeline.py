@@ -10,7 +10,6 @@ from linecad.camera.photo import Photo
 from linecad.corrections.annotations import Annotations, facts_of
 from linecad.corrections.apply import CorrectedLines, ToldFact, correct
 from linecad.corrections.edits import Corrections
-from linecad.corrections.lengths import measured
 from linecad.decide.annotations import annotate, solve_annotated, told_in_the_photo, with_annotations
 from linecad.decide.decision import Decision, decide
 from linecad.depth.depth_map import DepthMap
@@ -18,6 +17,7 @@ from linecad.depth.intrinsics import note_on_intrinsics
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Segments, Solution
 from linecad.model.build import View, build_scene, find_components
+from linecad.model.known_lengths import measured
 from linecad.model.lifting import Lifted, lift
 from linecad.model.regions.roofs import Sketch
 from linecad.options import Options
@@ -102,7 +102,7 @@ def reconstruct_lines(
     """The scene of the lines that were found in a photo of that name, or of the same after all edits (`corrected`).
 
     Raises ReconstructionError, SolverError or, where annotations cannot all be true, ContradictionError. The scale of
-    known lengths is not set (`corrections.lengths.measured`).
+    known lengths is not set (`linecad.model.known_lengths.measured`).
     """
     prepared = prepare(found, options, on_stage, corrected, depth)
     return reconstruct_prepared(photo, prepared, options, on_progress, on_stage, corrected)

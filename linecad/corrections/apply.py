@@ -4,7 +4,7 @@ What cannot be found again is told in a note and left out. Every line has an id 
 added or taken back: found lines are numbered in their order, new ones follow in the order of the edits.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal, assert_never
 
@@ -20,14 +20,17 @@ from linecad.corrections.edits import (
     Delete,
     Draw,
     Edit,
+    FaceAnchor,
     Fact,
     Foot,
     Join,
+    KnownDistance,
     KnownLength,
     Label,
     LabelCrossing,
     Meet,
     OnePlane,
+    Place,
     PlaceAt,
     Point,
     SetAxis,
@@ -46,6 +49,16 @@ MOST_NOTES = 5  # about single corrections; the rest is counted
 FIRST_IDS = 100_000  # ids for the lines of one frame; those found with the next one are other lines
 
 Origin = Literal["found", "drawn", "split", "joined"]
+
+
+@dataclass(frozen=True)
+class FoundPlace:
+    """A point that a person measured from or to, its line found again."""
+
+    pixel: Point
+    line: int | None = None  # id; None for a point in a plane
+    face: Point | None = None  # px where the photo shows the plane; None for a point on a line
+    normal: int | None = None  # axis of the plane; None where a frame given later made it another one
 
 
 @dataclass(frozen=True)
@@ -68,6 +81,7 @@ class CorrectedLines:
     parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
     notes: tuple[str, ...]  # what could not be found again
     facts: tuple[ToldFact, ...] = ()  # about the bodies of lines, by id
+    distances: tuple[tuple[FoundPlace, FoundPlace, float], ...] = ()  # m, between two points
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -134,6 +148,7 @@ class Correcting:
         self.became: dict[int, tuple[int, ...]] = {}  # lines that were split or joined, and their successors
         self.labels: dict[tuple[int, int], tuple[Point, Label]] = {}
         self.lengths: dict[int, float] = {}
+        self.distances: dict[tuple[Place, Place], tuple[FoundPlace, FoundPlace, float]] = {}
         self.parted: list[tuple[int, int]] = []
         self.facts: dict[Fact, tuple[int, ...]] = {}
         self._table: LineTable | None = None
@@ -179,6 +194,11 @@ class Correcting:
             case Withdraw():
                 if self.facts.pop(edit.fact, None) is None and not before_frame:
                     raise CorrectionError("what is taken back was not said, or was taken back before")
+            case KnownDistance():
+                first_place, second_place = (self.found_place(place, before_frame) for place in edit.places)
+                self.distances.pop(edit.places, None)
+                if edit.metres is not None:
+                    self.distances[edit.places] = (first_place, second_place, edit.metres)
             case SetFrame():
                 pass  # the lines were found with it
             case _:
@@ -197,6 +217,11 @@ class Correcting:
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
             notes=notes,
             facts=tuple(ToldFact(fact, now) for fact, own in self.facts.items() if (now := self._named(fact, own))),
+            distances=tuple(
+                (one, other, metres)
+                for first, second, metres in self.distances.values()
+                for one, other in product(self._place_now(first), self._place_now(second))
+            ),
         )
 
     def anchor(self, number: int) -> Anchor:
@@ -231,6 +256,19 @@ class Correcting:
         now = [self._nearest(own, middle) for own, middle in zip(lines, middles, strict=True)]
         found = tuple(own for own in now if own is not None)
         return found if len(set(found)) == len(lines) else ()
+
+    def found_place(self, place: Place, before_frame: bool = False) -> FoundPlace:
+        """The point with its line found again; CorrectionError when that is not there."""
+        if isinstance(place.on, FaceAnchor):
+            return FoundPlace(place.pixel, face=place.on.pixel, normal=None if before_frame else place.on.axis)
+        return FoundPlace(place.pixel, line=self.find(place.on, before_frame))
+
+    def _place_now(self, place: FoundPlace) -> list[FoundPlace]:
+        """The place on the line that its line has become, the nearest piece; none where that was deleted."""
+        if place.line is None:
+            return [place]
+        now = self._nearest(place.line, place.pixel)
+        return [] if now is None else [replace(place, line=now)]
 
     def _lookup(self) -> LineTable:
         if self._table is None:

@@ -83,6 +83,30 @@ class KnownLength:
 
 
 @dataclass(frozen=True)
+class FaceAnchor:
+    """A plane by its normal and a place in the photo that shows it before all other faces with that normal."""
+
+    pixel: Point
+    axis: int
+
+
+@dataclass(frozen=True)
+class Place:
+    """A point in space: on the ray of a pixel, where that comes nearest to a line or meets a plane."""
+
+    pixel: Point  # also outside the photo
+    on: Anchor | FaceAnchor
+
+
+@dataclass(frozen=True)
+class KnownDistance:
+    """How far apart two points are in metres; None takes back what was said of the same two."""
+
+    places: tuple[Place, Place]
+    metres: float | None
+
+
+@dataclass(frozen=True)
 class SetFrame:
     """Lines drawn along the Manhattan axes, in place of the frame that was found; equal axes are parallel in space."""
 
@@ -153,7 +177,7 @@ def anchors_of(fact: Fact) -> tuple[Anchor, ...]:
             return fact.lines
 
 
-Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | SetFrame | Fact | Withdraw
+Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | KnownDistance | SetFrame | Fact | Withdraw
 
 
 @dataclass(frozen=True)

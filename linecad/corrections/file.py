@@ -16,13 +16,16 @@ from linecad.corrections.edits import (
     Delete,
     Draw,
     Edit,
+    FaceAnchor,
     Foot,
     Join,
+    KnownDistance,
     KnownLength,
     Label,
     LabelCrossing,
     Meet,
     OnePlane,
+    Place,
     PlaceAt,
     SetAxis,
     SetFrame,
@@ -30,7 +33,7 @@ from linecad.corrections.edits import (
     Withdraw,
 )
 from linecad.corrections.fact_file import FACTS, fact_to_json, read_fact
-from linecad.corrections.nodes import anchor, anchor_to_json, axis, point, two_anchors
+from linecad.corrections.nodes import anchor, anchor_to_json, axis, point, two, two_anchors
 from linecad.directions import axis_name
 from linecad.errors import CorrectionsFileError
 from linecad.io.files import read_text, write_text_atomically
@@ -42,7 +45,9 @@ SUFFIX = ".corrections.json"
 LARGEST_FILE = 64 * 2**20  # bytes; an edit takes a few hundred
 LARGEST_PHOTO = 10**6  # px along one side
 MOST_FRAME_LINES = 100
-OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame", *FACTS, "withdraw")
+OPERATIONS = (
+    "label", "axis", "delete", "split", "join", "draw", "length", "distance", "frame", *FACTS, "withdraw",
+)  # fmt: skip
 
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
@@ -114,6 +119,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "draw", "line": anchor_to_json(edit.line)}
         case KnownLength():
             return {"op": "length", "line": anchor_to_json(edit.line), "metres": edit.metres}
+        case KnownDistance():
+            return {"op": "distance", "points": [_place_to_json(one) for one in edit.places], "metres": edit.metres}
         case SetFrame():
             return {"op": "frame", "lines": [anchor_to_json(line) for line in edit.lines]}
         case Withdraw():
@@ -122,6 +129,13 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return fact_to_json(edit)
         case _:
             assert_never(edit)
+
+
+def _place_to_json(place: Place) -> dict[str, object]:
+    pixel = list(place.pixel)
+    if isinstance(place.on, Anchor):
+        return {"pixel": pixel, "line": anchor_to_json(place.on)}
+    return {"pixel": pixel, "face": {"pixel": list(place.on.pixel), "normal": axis_name(place.on.axis)}}
 
 
 def _corrections(top: Node) -> Corrections:
@@ -157,12 +171,22 @@ def _edit(node: Node) -> Edit:
             return Draw(anchor(node["line"]))
         case "length":
             return KnownLength(anchor(node["line"]), metres(node))
+        case "distance":
+            first, second = two(node["points"])
+            return KnownDistance((_place(first), _place(second)), metres(node))
         case "frame":
             return SetFrame(frame_lines(node["lines"], "segment"))
         case "withdraw":
             return Withdraw(read_fact(node["fact"]))
         case _:
             return read_fact(node)
+
+
+def _place(node: Node) -> Place:
+    line, pixel = node.get("line"), point(node["pixel"])
+    if line is not None:
+        return Place(pixel, anchor(line))
+    return Place(pixel, FaceAnchor(point(node["face"]["pixel"]), axis(node["face"]["normal"])))
 
 
 def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:

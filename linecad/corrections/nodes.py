@@ -15,10 +15,16 @@ def anchor(node: Node, key: str = "segment") -> Anchor:
 
 def two_anchors(node: Node) -> tuple[Anchor, Anchor]:
     """Two lines."""
+    first, second = two(node)
+    return anchor(first), anchor(second)
+
+
+def two(node: Node) -> tuple[Node, Node]:
+    """The elements of a list of two."""
     items = node.items()
     if len(items) != 2:
         raise node.wrong("a list of 2")
-    return anchor(items[0]), anchor(items[1])
+    return items[0], items[1]
 
 
 def anchor_to_json(line: Anchor) -> dict[str, object]:
@@ -28,10 +34,7 @@ def anchor_to_json(line: Anchor) -> dict[str, object]:
 
 def ends(node: Node) -> tuple[Point, Point]:
     """Both ends of a segment, px."""
-    items = node.items()
-    if len(items) != 2:
-        raise node.wrong("a list of 2")
-    first, second = point(items[0]), point(items[1])
+    first, second = map(point, two(node))
     if abs(first[0] - second[0]) + abs(first[1] - second[1]) < LEAST_LENGTH:
         raise node.wrong("two ends that differ")
     return first, second
@@ -39,10 +42,8 @@ def ends(node: Node) -> tuple[Point, Point]:
 
 def point(node: Node) -> Point:
     """A place in the photo, px."""
-    items = node.items()
-    if len(items) != 2:
-        raise node.wrong("a list of 2")
-    return items[0].number(LARGEST_PIXEL), items[1].number(LARGEST_PIXEL)
+    u, v = two(node)
+    return u.number(LARGEST_PIXEL), v.number(LARGEST_PIXEL)
 
 
 def axis(node: Node) -> int:

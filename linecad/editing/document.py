@@ -6,21 +6,20 @@ from functools import lru_cache
 import numpy as np
 
 from exporters.bands import GUESS, bands_of
-from exporters.faces import FlatFace
 from exporters.formats import FORMATS, SCENE_FILE
-from exporters.model import build_model
-from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.bodies import ShownBodies
 from linecad.editing.body_document import facts_of_page, list_bodies, moved_by_last
+from linecad.editing.cell_layer import document_of_cells
 from linecad.editing.depth_layers import document_of_layers
+from linecad.editing.faces import facades_in, triangles_of
 from linecad.editing.state import Model, Now
 from linecad.editing.tiles import TILE
-from linecad.errors import OutputError
-from linecad.scene import Face, Plane, Scene
+from linecad.model.known_lengths import rows_by_segment
+from linecad.scene import Plane, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
@@ -51,6 +50,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "moved": moved_by_last(now),
         "notes": list(now.found.notes if scene is None else scene.notes),
         "depth_map": None if depth is None else document_of_layers(depth, now),
+        "cells": document_of_cells(now),
         "solve": solve_of(now),
         "undo": len(now.corrections.edits),
         "redo": len(now.corrections.undone),
@@ -140,7 +140,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "guess": bool(guess[row]),
             "by_depth_map": bool(lines.by_depth_map[row]),
         }
-        for look, row in _rows(scene).items()
+        for look, row in rows_by_segment(scene).items()
     }
 
 
@@ -189,12 +189,12 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         )
     }
     numbers: dict[int, list[int]] = {int(line): [] for line in scene.lines.id}
-    for look, row in _rows(scene).items():
+    for look, row in rows_by_segment(scene).items():
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[_is_guess(scene)].tolist())
-    triangles = _triangles(scene)
-    found = []
+    triangles, facades, told = triangles_of(scene), facades_in(scene), _probabilities(scene)
+    components, found = scene.components_of_planes, []
     for plane in scene.planes:
         lines = [number for line in plane.lines for number in numbers[line]]
         body = _body_of(plane, lines, model.bodies)
@@ -205,6 +205,10 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             "id": plane.id,
             "axis": axis_name(plane.axis),
             "offset": factor * plane.offset,
+            "normal": plane.normal(scene.turns).tolist(),
+            "component": components[plane.id],
+            "is_facade": plane.id in facades,
+            "probability": told[plane.id],
             "lines": lines,
             "body": body,
             "faces": [{**face, "guess": guess, "body": body} for face in faces],
@@ -235,38 +239,16 @@ def _face(face: dict[str, object], factor: float) -> dict[str, object]:
     }
 
 
-@lru_cache(maxsize=2)
-def _triangles(scene: Scene) -> dict[int, dict[str, object]]:
-    """Of each face by its id: rings and triangles, indices into the points of all rings in their order."""
-    flat = {face.id: face for face in build_model(scene).faces}
-    found: dict[int, dict[str, object]] = {}
-    for _, face in scene.faces:
-        try:
-            indices = triangulate(flat[face.id])
-        except OutputError:  # a face that cannot be triangulated cannot be drawn; exports say what is wrong with it
-            continue
-        outline, *holes = _turned_rings(face, flat[face.id])
-        found[face.id] = {"id": face.id, "outline": outline, "holes": holes, "triangles": indices.tolist()}
-    return found
-
-
-def _turned_rings(face: Face, flat: FlatFace) -> list[list[list[float]]]:
-    """The rings of a face in the direction that its triangles count them in."""
-    return [
-        (ring if _same_direction(ring, turned) else ring[::-1]).tolist()
-        for ring, turned in zip((face.outline, *face.holes), flat.rings, strict=True)
-    ]
-
-
-def _same_direction(ring: np.ndarray, turned: np.ndarray) -> bool:
-    scale = np.linalg.norm(turned[0]) / max(np.linalg.norm(ring[0]), np.finfo(float).tiny)
-    return bool(np.abs(ring * scale - turned).max() <= np.abs(ring[::-1] * scale - turned).max())
-
-
-def _rows(scene: Scene) -> dict[tuple[int, bytes], int]:
-    """The row of each line of a scene by axis and segment, that of a line joined from pieces by each of these."""
-    axes = enumerate(scene.lines.axis.tolist())
-    return {(axis, ends.tobytes()): row for row, axis in axes for ends in scene.lines.segments_of(row)}
+def _probabilities(scene: Scene) -> dict[int, float | None]:
+    """How sure each plane is, by its id: the median of its lines; None where it has none or nothing is told."""
+    lines = scene.lines
+    if not len(lines.probability):
+        return dict.fromkeys((plane.id for plane in scene.planes), None)
+    of_line = dict(zip(lines.id.tolist(), np.asarray(lines.probability).tolist(), strict=True))
+    return {
+        plane.id: float(np.median([of_line[line] for line in plane.lines])) if plane.lines else None
+        for plane in scene.planes
+    }
 
 
 def _finite(number: float) -> float | None:

@@ -15,10 +15,12 @@ from linecad.corrections.edits import (
     Fact,
     Foot,
     Join,
+    KnownDistance,
     KnownLength,
     LabelCrossing,
     Meet,
     OnePlane,
+    Place,
     PlaceAt,
     SetAxis,
     SetFrame,
@@ -27,9 +29,11 @@ from linecad.corrections.edits import (
 )
 from linecad.corrections.fact_file import FACTS
 from linecad.corrections.file import OPERATIONS, frame_lines, label, metres
-from linecad.corrections.nodes import axis, ends, point
+from linecad.corrections.nodes import axis, ends, point, two
+from linecad.editing.faces import face_anchor
 from linecad.editing.session import Session
 from linecad.io.strict_json import Node
+from linecad.model.known_lengths import units_between
 
 
 def read_edit(node: Node, session: Session) -> Edit:
@@ -54,6 +58,8 @@ def read_edit(node: Node, session: Session) -> Edit:
             return Draw(Anchor(_plain(drawn), own))
         case "length":
             return KnownLength(_line(node, lines), metres(node))
+        case "distance":
+            return _known_distance(node, session)
         case "frame":
             return SetFrame(frame_lines(node["lines"], "ends"))
         case "withdraw":
@@ -99,6 +105,23 @@ def proposal(node: Node, lines: Correcting) -> tuple[Float, int, tuple[bool, boo
     chosen = node.get("axis")
     wanted = None if chosen is None or chosen.value is None else axis(chosen)
     return lines.snapped(np.array(ends(node["ends"])), wanted)
+
+
+def _known_distance(node: Node, session: Session) -> KnownDistance:
+    """The distance of two points; ScaleError, at once, where the model does not hold it or it sets no scale."""
+    start, end = two(node["points"])
+    edit = KnownDistance((_place(start, session), _place(end, session)), metres(node))
+    first, second = (session.editing.found_place(place) for place in edit.places)
+    units_between(session.scene(), session.lines.corrected, (first, second))
+    return edit
+
+
+def _place(node: Node, session: Session) -> Place:
+    """A point on a line, by its id, or in a plane of the model, by the id of one of its faces."""
+    pixel, line = point(node["pixel"]), node.get("line")
+    if line is not None:
+        return Place(pixel, session.editing.anchor(line.integer()))
+    return Place(pixel, face_anchor(session.scene(), pixel, node["face"].integer()))
 
 
 def _line(node: Node, lines: Correcting) -> Anchor:

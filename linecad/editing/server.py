@@ -19,6 +19,7 @@ from exporters.formats import FORMATS, SCENE_FILE
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.body_document import places_of
+from linecad.editing.cell_layer import picture_of_cells
 from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
 from linecad.editing.edits import proposal, read_edit
@@ -30,6 +31,7 @@ from linecad.editing.solving import Task
 from linecad.editing.state import StaleError, ToSave
 from linecad.editing.tabs import Tabs
 from linecad.editing.tiles import Pyramid
+from linecad.editing.wanted import document_of_shown, read_wanted, values_of
 from linecad.errors import EditorError, LinecadError
 from linecad.io.strict_json import JsonError, Node, parse
 from linecad.outputs import write_outputs
@@ -85,12 +87,14 @@ class Editor:
             Route("/api/progress", self.progress),
             Route("/api/tile/{level:int}/{column:int}/{row:int}", self.tile),
             Route("/api/depth/{layer}", self.depth_layer),
+            Route("/api/cells", self.cells),
             Route("/api/edit", _post(self.edit), methods=["POST"]),
             Route("/api/undo", _post(self.undo), methods=["POST"]),
             Route("/api/redo", _post(self.redo), methods=["POST"]),
             Route("/api/preview", _post(self.preview), methods=["POST"]),
             Route("/api/places/{body:int}", self.places),
             Route("/api/propose", _post(self.propose), methods=["POST"]),
+            Route("/api/shown", _post(self.shown), methods=["POST"]),
             Route("/api/solve", _post(self.solve), methods=["POST"]),
             Route("/api/stop", _post(self.stop), methods=["POST"]),
             Route("/api/hello", _post(self.hello), methods=["POST"]),
@@ -137,6 +141,11 @@ class Editor:
             data = layer_of(request.path_params["layer"], self.depth, self.session.now())
         return _error(404, "there is no such layer") if data is None else Response(data, media_type="image/png")
 
+    def cells(self, _request: Request) -> Response:
+        """GET /api/cells: a picture over the photo of what each part of it was taken for."""
+        data = picture_of_cells(self.session.now())
+        return _error(404, "there is no such layer") if data is None else Response(data, media_type="image/png")
+
     def edit(self, body: Node) -> Response:
         """POST /api/edit."""
         self.session.edit(_base(body), lambda session: read_edit(body["edit"], session))
@@ -173,6 +182,10 @@ class Editor:
         ends, axis, snapped = proposal(body, self.session.editing)
         return JSONResponse({"axis": axis_name(axis), "ends": ends.tolist(), "snapped": list(snapped)})
 
+    def shown(self, body: Node) -> Response:
+        """POST /api/shown: which lines and faces `linecad export` would keep."""
+        return JSONResponse(document_of_shown(self.session.now(), read_wanted(body)))
+
     def solve(self, body: Node) -> Response:
         """POST /api/solve."""
         task = self.session.task(_base(body))
@@ -203,15 +216,16 @@ class Editor:
         return JSONResponse({"crossing": self.session.next_unlabelled(int(after) if after else None)})
 
     def export(self, request: Request) -> Response:
-        """GET /api/export/FORMAT: the bytes that `linecad export` writes."""
+        """GET /api/export/FORMAT?wanted=JSON: the bytes that `linecad export` writes of what is wanted."""
         if request.path_params["name"] == LABELS:
             return self._labels()
         suffix = "." + request.path_params["name"]
         if suffix != SCENE_FILE and suffix not in FORMATS:
             return _error(404, "there is no such format")
         try:
-            data = self._exported(suffix)
-        except LinecadError as error:
+            text = request.query_params.get("wanted")
+            data = self._exported(suffix, None if text is None else parse(text))
+        except (JsonError, LinecadError) as error:
             return _error(422, str(error))
         return self._attached(data, suffix)
 
@@ -228,11 +242,14 @@ class Editor:
         disposition = f'attachment; filename="{name or "scene"}{ending}"'
         return Response(data, media_type="application/octet-stream", headers={"content-disposition": disposition})
 
-    def _exported(self, suffix: str) -> bytes:
+    def _exported(self, suffix: str, wanted: Node | None) -> bytes:
         scene = self.session.scene()
+        if wanted is not None:
+            scene = read_wanted(wanted).of(scene)
+        values = values_of(scene, suffix, wanted)
         with tempfile.TemporaryDirectory(prefix="linecad-") as folder:
             path = Path(folder) / f"scene{suffix}"
-            write_outputs(scene, self.session.photo.pixels, [path], {})
+            write_outputs(scene, self.session.photo.pixels, [path], values)
             return path.read_bytes()
 
 

@@ -12,8 +12,16 @@ from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import annotations_of, rows_of
 from linecad.corrections.apply import CorrectedLines, Correcting, ToldFact, correcting_of
-from linecad.corrections.edits import Corrections, Edit, Fact, KnownLength, SetFrame, Withdraw, anchors_of
-from linecad.corrections.lengths import measured
+from linecad.corrections.edits import (
+    Corrections,
+    Edit,
+    Fact,
+    KnownDistance,
+    KnownLength,
+    SetFrame,
+    Withdraw,
+    anchors_of,
+)
 from linecad.editing.bodies import ShownBodies
 from linecad.editing.distant import distant
 from linecad.editing.solving import Answer, Step, Task
@@ -32,6 +40,7 @@ from linecad.editing.state import (
 from linecad.errors import ContradictionError, CorrectionError
 from linecad.finding import FoundLines, connect_all, name_lines
 from linecad.line_graph import Segments
+from linecad.model.known_lengths import measured
 from linecad.options import Options
 from linecad.pipeline import Reconstruction
 from linecad.scene import Scene
@@ -296,7 +305,7 @@ class Session:
 
     def _content(self) -> Content:
         """The edits that bear on the solve."""
-        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength))
+        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength | KnownDistance))
 
     def _show(self, model: Model) -> None:
         """Show a model, with the scale that known lengths give now."""

@@ -40,6 +40,7 @@ from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
+from linecad.model.regions.shown import cells_of
 from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
@@ -119,8 +120,7 @@ def build_scene(
     Where bodies were `placed`, all components have one scale. Else each is put at the depth of its neighbours.
     """
     if placed is not None:
-        told = common_planes(placed.setting, placed.places.facts)
-        found = replace(found, lifted=join_planes(found.lifted, found.component, graph.axis, told))
+        found = _with_planes_joined(found, graph, placed)
     kept = np.flatnonzero(found.kept)
     scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
     scale = scales[found.component]
@@ -136,8 +136,7 @@ def build_scene(
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_and_cross(framed, _intersections(graph, decision, found, new_id), sight, view.camera.width)
     planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
-    look = _look(view, placed, float(scales[0]))
-    regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
+    regions = find_regions(planes, lines, view.camera, view.frame.rotation, _look(view, placed, scales), graph.turns)
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
     whole = planes
@@ -163,10 +162,17 @@ def build_scene(
         depth_map=depth_map,
         openings=openings,
         turns=graph.turns,
+        cells=cells_of(regions, view.camera),
     )
     scene = with_main_first(finished(scene, framed, sight))
     last = (inexact_crossings(scene), *on_faces.notes(scene.lines))
     return with_ids_by_place(replace(scene, notes=(*scene.notes, *filter(None, last))))
+
+
+def _with_planes_joined(found: Components, graph: LineGraph, placed: Placed) -> Components:
+    """The components with the planes in common that they nearly have, or that a person told to be one."""
+    told = common_planes(placed.setting, placed.places.facts)
+    return replace(found, lifted=join_planes(found.lifted, found.component, graph.axis, told))
 
 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:
@@ -254,9 +260,10 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
     return np.column_stack([new_id[inside[:, :2]], inside[:, 2]])
 
 
-def _look(view: View, placed: Placed | None, scale: float) -> Look:
-    """What the faces are found by, in a scene of which the placed lines are `scale` times as far."""
-    feet, camera = _ground_of_feet(placed, scale), view.camera
+def _look(view: View, placed: Placed | None, scales: Float) -> Look:
+    """What the faces are found by, in a scene of which the placed lines are `scales[0]` times as far."""
+    scale, camera = float(scales[0]), view.camera
+    feet = _ground_of_feet(placed, scale)
     return Look(view.pixels, feet, normals_of(placed), view.sketch, depths_of(placed, scale, camera.matrix))
 
 

@@ -151,7 +151,7 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
     row = _line_under(scene, pixels)
     if row is not None:
         ends = scene.lines.ends[row]
-        points, where = _nearest_on_line(rays, ends), f"line {scene.lines.id[row]}"
+        points, where = nearest_on_line(rays, ends), f"line {scene.lines.id[row]}"
     else:
         plane = _plane_under(scene, rays)
         depth = plane.offset / plane.along_normal(rays, scene.turns)
@@ -169,7 +169,7 @@ def _line_under(scene: Scene, pixels: Float) -> int | None:
     return row if len(off) and np.isfinite(off[row]) else None
 
 
-def _nearest_on_line(rays: Float, ends: Float) -> Float:
+def nearest_on_line(rays: Float, ends: Float) -> Float:
     """(M, 3) the points of a line (2, 3) that come nearest to rays (M, 3) from the camera."""
     direction = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
     unit = rays / np.linalg.norm(rays, axis=1)[:, None]

@@ -12,6 +12,7 @@ where two segments meet in the image, an *axis* is 0, 1 or 2 (x, y, z), a *depth
 """
 
 from linecad.scene.camera import Camera, Certainty
+from linecad.scene.cells import CELL_KINDS, CellKind, Cells
 from linecad.scene.lines import Intersections, Lines
 from linecad.scene.reports import DepthMapReport, SolveReport
 from linecad.scene.surfaces import Face, Opening, Plane, ground_of
@@ -42,6 +43,7 @@ from linecad.scene.words import (
 __all__ = [
     "AXES",
     "CAMERA_SOURCES",
+    "CELL_KINDS",
     "CONFIDENCES",
     "DEPTH_KINDS",
     "DETAIL",
@@ -55,6 +57,8 @@ __all__ = [
     "SAME_HEIGHT",
     "Camera",
     "CameraSource",
+    "CellKind",
+    "Cells",
     "Certainty",
     "Confidence",
     "DepthKind",

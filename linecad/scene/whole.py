@@ -8,6 +8,7 @@ import numpy as np
 from linecad.arrays import Float, check_unique, freeze
 from linecad.directions import Turns, components, count_of
 from linecad.scene.camera import Camera, Certainty
+from linecad.scene.cells import Cells
 from linecad.scene.lines import Intersections, Lines
 from linecad.scene.reports import DepthMapReport, SolveReport
 from linecad.scene.surfaces import Face, Opening, Plane
@@ -33,6 +34,7 @@ class Scene:
     depth_map: DepthMapReport | None = None  # None where none was given
     openings: tuple[Opening, ...] = ()
     turns: Turns = ()  # of the frames that lines and planes have beside the world's axes
+    cells: Cells | None = None  # what each part of the photo shows; in no file, so None in scenes that come from one
 
     def __post_init__(self) -> None:
         freeze(self, "rotation", np.float64, (3, 3))

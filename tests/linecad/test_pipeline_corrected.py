@@ -20,10 +20,10 @@ from linecad.corrections.edits import (
     PlaceAt,
     SetFrame,
 )
-from linecad.corrections.lengths import measured
 from linecad.decide.blocks import find_blocks
 from linecad.errors import ContradictionError, ReconstructionError
 from linecad.finding import FoundLines, connect, name_lines
+from linecad.model.known_lengths import measured
 from linecad.options import SHORT_REACH, Options
 from linecad.pipeline import prepare, reconstruct, reconstruct_lines, reconstruct_prepared
 from solver.options import FORMULATIONS, SolveOptions

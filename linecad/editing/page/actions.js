@@ -60,6 +60,7 @@ export class Actions {
   }
 
   length() {
+    if (this.store.tool === "measure") return this.measuring.askLength();
     return this.#withLine((line) => this.openLength(line));
   }
 
@@ -101,7 +102,7 @@ export class Actions {
   /** Arrow keys: the view goes that way over the photo, the model turns, or moves when `shift` is held. */
   arrow(x, y, shift) {
     if (this.view !== this.model) this.photo.change((viewport) => viewport.pan(-x * PAN_STEP, -y * PAN_STEP));
-    else if (shift) this.model.change((camera) => camera.pan(-x * PAN_STEP, -y * PAN_STEP));
+    else if (shift || this.model.orbit.flat) this.model.change((camera) => camera.pan(-x * PAN_STEP, -y * PAN_STEP));
     else this.model.change((camera) => camera.orbit(x * PAN_STEP, y * PAN_STEP));
   }
 
@@ -120,6 +121,7 @@ export class Actions {
 
   escape() {
     if (!this.draft.isEmpty) this.draft.clear();
+    else if (!this.measuring.isEmpty) this.measuring.clear();
     else if (this.store.labelling) this.toggleLabelling();
     else if (this.store.selection) this.store.set({ selection: null });
     else if (this.store.tool !== "correct") this.store.set({ tool: "correct" });

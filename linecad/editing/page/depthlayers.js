@@ -1,4 +1,4 @@
-// What a depth map shows over the photo: the map itself, and where it and the model differ; with a legend.
+// What lies over the photo: the depth map, where it and the model differ, what each part was taken for; with a legend.
 
 import { element } from "./dom.js";
 import { RequestError } from "./server.js";
@@ -9,7 +9,12 @@ const ENDS = {
   difference: ["map 20 % nearer than the model", "20 % farther"],
 };
 
-/** The layers of the depth map that are switched on; `onChange` is called when another picture is to be drawn. */
+/** The number of a layer in a state: another one whenever its picture is; null where there is none. */
+function numberOf({ depth_map: map, cells }, name) {
+  return (name === "cells" ? cells?.number : map?.[name]) ?? null;
+}
+
+/** The layers of pictures that are switched on; `onChange` is called when another picture is to be drawn. */
 export class DepthLayers {
   #pictures = new Map(); // layer -> {number, bitmap}: the number that the state has for it; no bitmap while it is asked
 
@@ -21,14 +26,14 @@ export class DepthLayers {
   /** The layers that are to be seen now, from below. */
   get #shown() {
     const { state, layers, hidden } = this.store;
-    if (state.depth_map === null || hidden) return [];
-    return Object.keys(ENDS).filter((name) => layers[name] && state.depth_map[name] !== null);
+    if (hidden) return [];
+    return ["cells", ...Object.keys(ENDS)].filter((name) => layers[name] && numberOf(state, name) !== null);
   }
 
   /** Ask for what is to be seen and is not there as the state has it; the picture before stays until then. */
   renew() {
     for (const name of this.#shown) {
-      const number = this.store.state.depth_map[name];
+      const number = numberOf(this.store.state, name);
       if (this.#pictures.get(name)?.number !== number) this.#load(name, number);
     }
     this.#showLegend();
@@ -40,7 +45,7 @@ export class DepthLayers {
     this.#pictures.set(name, { number, bitmap: before });
     let bitmap = null;
     try {
-      bitmap = await this.server.depthLayer(name);
+      bitmap = await this.server.layer(name);
     } catch (error) {
       if (!(error instanceof RequestError)) throw error; // the next model asks again
     }
@@ -64,9 +69,21 @@ export class DepthLayers {
     this.legend.hidden = shown.length === 0;
     if (shown.length === 0) return;
     const rows = shown.map((name) => {
+      if (name === "cells") return this.#kinds();
       const [low, high] = ENDS[name];
       return element("p", {}, low, element("i", { class: `ramp ${name}`, "aria-hidden": "true" }), high);
     });
-    this.legend.replaceChildren(...rows, element("p", { class: "quiet" }, this.store.state.depth_map.text));
+    const map = shown.some((name) => name in ENDS) ? [element("p", { class: "quiet" }, this.store.state.depth_map.text)] : [];
+    this.legend.replaceChildren(...rows, ...map);
+  }
+
+  /** The kinds of what parts of the photo were taken for, with their colours. */
+  #kinds() {
+    const kinds = this.store.state.cells.kinds.map(({ name, colour }) => {
+      const swatch = element("i", { class: "swatch", "aria-hidden": "true" });
+      swatch.style.background = colour; // an attribute would be against the policy of the page
+      return element("span", {}, swatch, name);
+    });
+    return element("p", { class: "kinds" }, ...kinds);
   }
 }

@@ -4,6 +4,7 @@ import { AXIS, CASING, INK, WRONG } from "./colours.js";
 import { applied, product } from "./matrices.js";
 import { markOf } from "./marks.js";
 import { isReal } from "./store.js";
+import { colourOf } from "./sure.js";
 
 const BOUNDARY = 2.8; // CSS px, width of lines where two planes meet
 const OTHER = 1.6;
@@ -30,8 +31,9 @@ function drawFaces(context, store, viewport) {
   context.clip();
   context.globalAlpha = FACE_OPACITY;
   for (const plane of store.state.planes) {
-    context.fillStyle = AXIS[plane.axis];
+    context.fillStyle = colourOf(store, plane);
     for (const face of plane.faces ?? []) {
+      if (!store.showsFace(face)) continue;
       context.beginPath();
       for (const ring of [face.outline, ...(face.holes ?? [])]) tracePolygon(context, ring, project, viewport);
       context.fill("evenodd");
@@ -40,7 +42,8 @@ function drawFaces(context, store, viewport) {
   context.restore();
 }
 
-function tracePolygon(context, ring, project, viewport) {
+/** Add a ring in space to the path of a context in CSS px of the stage; `project` takes it to the photo. */
+export function tracePolygon(context, ring, project, viewport) {
   const corners = beforeCamera(ring.map((point) => applied(project, point)));
   corners.forEach(([x, y, depth], index) => {
     const at = viewport.toScreen([x / depth, y / depth]);
@@ -70,7 +73,7 @@ function drawLines(context, store, viewport) {
   const groups = new Map();
   for (const line of store.state.lines) {
     if (!store.showsLine(line)) continue;
-    const name = styleOf(line);
+    const name = `${styleOf(line)} ${colourOf(store, line)}`;
     if (!groups.has(name)) groups.set(name, []);
     groups.get(name).push(line);
   }
@@ -90,7 +93,7 @@ function drawLines(context, store, viewport) {
     context.globalAlpha = 1;
     for (const [, lines] of shown) {
       context.setLineDash(dashes(lines[0]));
-      strokeLines(context, viewport, lines, AXIS[lines[0].axis], width);
+      strokeLines(context, viewport, lines, colourOf(store, lines[0]), width);
       context.setLineDash([]);
     }
   }
@@ -153,10 +156,12 @@ export function drawAttention(context, store, viewport, marks) {
   const light = (id, colour, border) => {
     if (!store.lines.has(id)) return;
     lit.add(id);
-    glow(context, viewport, store.lines.get(id), colour, border);
+    const line = store.lines.get(id);
+    glow(context, viewport, line, [colour, colourOf(store, line)], border);
   };
   for (const id of wrong?.lines ?? []) light(id, WRONG, 4);
   for (const id of store.selectedCrossing?.lines ?? []) light(id, INK, 0.5);
+  if (store.selection?.kind === "face") for (const id of store.selectedPlane.lines) light(id, INK, 0.5);
   if (store.selectedLine) light(store.selectedLine.id, INK, 2.5);
   if (store.hover?.kind === "line") light(store.hover.id, INK, 1.2);
   // The lines lie over the marks of the canvas below: those of the lit ones come again on top.
@@ -189,15 +194,15 @@ function circleAround(context, viewport, marks, crossing, width) {
   }
 }
 
-/** A line with a border on each side, `border` CSS px wide, and dots at its ends. */
-function glow(context, viewport, line, colour, border) {
+/** A line of its `own` colour with a border on each side, `border` CSS px wide, and dots at its ends. */
+function glow(context, viewport, line, [colour, own], border) {
   const width = (line.boundary ? BOUNDARY : OTHER) + 0.6;
   context.lineCap = "round";
   for (const [ink, wide] of [
     [CASING, width + 2 * border + 3],
     [colour, width + 2 * border],
     [CASING, width + 1.4],
-    [AXIS[line.axis], width],
+    [own, width],
   ]) {
     strokeLines(context, viewport, [line], ink, wide);
   }

@@ -2,6 +2,7 @@
 
 import { frameOf, letterOf } from "./axes.js";
 import { counted, element, keyButton } from "./dom.js";
+import { lengthsText } from "./measuring.js";
 import { isReal } from "./store.js";
 import { fixesFrame } from "./tools.js";
 
@@ -24,7 +25,7 @@ export class Inspector {
   constructor(store, actions, tools) {
     Object.assign(this, { store, actions, tools });
     this.panel = document.querySelector("#inspector");
-    const shown = ["state", "selection", "hover", "tool", "labelling", "owner"];
+    const shown = ["state", "selection", "hover", "tool", "labelling", "owner", "measure"];
     store.listen((changed) => shown.some((name) => changed.has(name)) && this.#renew());
     actions.draft.listen(() => this.#renew());
     this.#renew();
@@ -43,11 +44,13 @@ export class Inspector {
     this.panel.classList.toggle("labelling", store.labelling);
     if (store.labelling) return this.panel.replaceChildren(...this.#labelling());
     if (store.tool === "frame") return this.panel.replaceChildren(...this.#frame());
+    if (store.tool === "measure") return this.panel.replaceChildren(...this.actions.measuring.panel());
     if (store.tool === "draw") return this.panel.replaceChildren(...this.#drawing());
     const thing = store.selection ?? store.hover;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());
-    this.panel.replaceChildren(...(thing.kind === "line" ? this.#line(found) : this.#crossing(found)));
+    const tell = { line: () => this.#line(found), crossing: () => this.#crossing(found), face: () => this.#face(found) };
+    this.panel.replaceChildren(...tell[thing.kind]());
   }
 
   #summary() {
@@ -136,6 +139,20 @@ export class Inspector {
         keyButton("Length", "M", () => this.actions.openLength(line), locked),
         keyButton("Delete", "Del", () => this.actions.remove(), locked),
       ),
+    ];
+  }
+
+  #face({ face, plane }) {
+    const { metres_per_unit: metres } = this.store.state;
+    const { text, unit } = lengthsText([plane.offset], metres);
+    const sure = plane.probability === null ? null : `depth ${Math.round(100 * plane.probability)} % sure`;
+    const group = plane.component > 0 ? `component ${plane.component}` : null;
+    const where = `plane ${plane.id} at ${plane.axis} = ${text[0]} ${unit}`;
+    const facts = [where, counted(plane.lines.length, "line"), sure, group, face.guess ? "a guess" : null];
+    const name = face.kind === "other" ? "Face" : `${face.kind[0].toUpperCase()}${face.kind.slice(1)}`;
+    return [
+      element("p", {}, element("strong", {}, name), ` · ${facts.filter(Boolean).join(" · ")}`),
+      element("div", { class: "buttons" }, keyButton("Front", "Shift+F", () => this.actions.views.front())),
     ];
   }
 

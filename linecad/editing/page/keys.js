@@ -4,7 +4,7 @@ import { element } from "./dom.js";
 import { TOOLS } from "./tools.js";
 
 /** Rows of the table: `keys` as in KeyboardEvent.key (lower case), with "ctrl+" and "shift+" before them. */
-export function keyTable({ store, actions, tools, pointer, panels }) {
+export function keyTable({ store, actions, tools, pointer, panels, views, choosing }) {
   const label = (value) => () => (store.labelling ? actions.labelAndGoOn(value) : actions.label(value));
   return [
     [
@@ -100,9 +100,11 @@ export function keyTable({ store, actions, tools, pointer, panels }) {
         { keys: ["h"], text: "While held: nothing over the photo", held: (down) => store.set({ hidden: down }) },
         { keys: ["t"], text: "See the model through the camera", run: () => panels.toggleCamera() },
         { keys: ["p"], text: "Photo on the faces of the model", run: () => store.set({ texture: !store.texture }) },
-        ...store.offeredLayers.map(({ name, label: layer, key }) => ({
+        ...views.keys(),
+        ...choosing.keys(),
+        ...store.offeredLayers.map(({ name, label: layer, key, about }) => ({
           keys: [key],
-          text: `Show or hide: ${layer.toLowerCase()}`,
+          text: about ?? `Show or hide: ${layer.toLowerCase()}`,
           run: () => store.toggleLayer(name),
         })),
       ],
@@ -164,6 +166,7 @@ const NAMES = {
   "ctrl+shift+z": "Ctrl+Shift+Z",
   "ctrl+y": "Ctrl+Y",
   "shift+0": "Shift+0",
+  "shift+l": "Shift+L",
 };
 const SPELLED = new Set(["=", ")"]); // the same key with and without Shift on some keyboards: one of the two is told
 

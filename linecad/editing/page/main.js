@@ -1,11 +1,13 @@
 // Starts the page: asks for the state, builds the views, and wires them to the keys.
 
 import { Actions } from "./actions.js";
+import { Choosing } from "./choosing.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
+import { Measuring } from "./measuring.js";
 import { Messages } from "./messages.js";
 import { ModelView } from "./modelview.js";
 import { Panels } from "./panels.js";
@@ -16,6 +18,7 @@ import { Solving } from "./solving.js";
 import { Store } from "./store.js";
 import { guardTab } from "./tabs.js";
 import { Tools } from "./tools.js";
+import { Views } from "./views.js";
 
 const messages = new Messages();
 
@@ -34,11 +37,16 @@ async function start() {
   const actions = new Actions({ store, server, editing, draft, photo, model, messages });
   const tools = new Tools(store, actions);
   const pointer = new Pointer(store, photo, tools);
+  const measuring = new Measuring({ store, photo, model, pointer, actions });
+  photo.drawOver = (context) => measuring.draw(context);
   const panels = new Panels(store, actions, pointer);
+  const views = new Views(store, model, messages);
+  const choosing = new Choosing(store, actions);
+  Object.assign(actions, { measuring, views, choosing });
   new Labelling(store, actions);
   new Inspector(store, actions, tools);
   new Solving(store, actions);
-  const table = keyTable({ store, actions, tools, pointer, panels });
+  const table = keyTable({ store, actions, tools, pointer, panels, views, choosing });
   listenToKeys(table);
   document.querySelector("#help-columns").append(...keyHelp(table));
   await guardTab(server, store, messages, editing);

@@ -56,6 +56,17 @@ export function frustum(left, right, bottom, top, near, far) {
   ]);
 }
 
+/** View to clip space without perspective, from half of what is seen across and up, and two depths. */
+export function orthographic(halfWidth, halfHeight, near, far) {
+  const depth = far - near;
+  return new Float32Array([
+    ...[1 / halfWidth, 0, 0, 0],
+    ...[0, 1 / halfHeight, 0, 0],
+    ...[0, 0, -2 / depth, 0],
+    ...[0, 0, -(far + near) / depth, 1],
+  ]);
+}
+
 /** Clip coordinates of a point of the world. */
 export function projected(matrix, [x, y, z]) {
   return [0, 1, 2, 3].map((row) => matrix[row] * x + matrix[4 + row] * y + matrix[8 + row] * z + matrix[12 + row]);
@@ -64,6 +75,12 @@ export function projected(matrix, [x, y, z]) {
 /** The world's ray through a pixel, camera depth 1, for K with square pixels. */
 export function ray(K, rotation, [u, v]) {
   return applied(transposed(rotation), [(u - K[0][2]) / K[0][0], (v - K[1][2]) / K[1][1], 1]);
+}
+
+/** The pixel that shows a point of the world, or null where that is behind the camera. */
+export function pixelOf(K, rotation, point) {
+  const [x, y, depth] = applied(K, applied(rotation, point));
+  return depth > 0 ? [x / depth, y / depth] : null;
 }
 
 /** The point of the line through `start` and `end` that is nearest to a ray from the origin. */

@@ -1,22 +1,32 @@
 // The model: its lines, its faces with the photo on them, and the camera, seen from anywhere.
 
-import { AXIS, INK, WRONG, channels } from "./colours.js";
+import { INK, channels } from "./colours.js";
+import { paintGizmo } from "./gizmo.js";
 import { Graphics } from "./graphics.js";
-import { nearestToRay, product, projected, ray } from "./matrices.js";
+import { litStrokes } from "./lighting.js";
+import { product, projected } from "./matrices.js";
 import { Orbit, withoutOutliers } from "./orbit.js";
 import { distance } from "./picking.js";
 import { wheelFactor } from "./pointer.js";
+import { faceAlong } from "./sights.js";
+import { colourOf } from "./sure.js";
 
 const PAPER = [0.965, 0.965, 0.97];
 const FACE_COLOURS = { x: [0.88, 0.83, 0.82], y: [0.83, 0.86, 0.82], z: [0.82, 0.84, 0.89] };
 const FACE_OPACITY = { textured: 1, plain: 0.92 };
-const WIDTH = { boundary: 2.6, other: 1.3, lit: 4.5 }; // CSS px
+const WIDTH = { boundary: 2.6, other: 1.3, wall: 3.2 }; // CSS px
+const PALER = 0.45; // what is left of the colour that tells how sure a face is
 const GUESS_OPACITY = 0.45;
 const NEARER = 0.0006; // share of the depth, so that lines are not eaten by the faces they bound
 const TEXTURE_SIDE = 4096; // px; a larger photo takes more memory than it shows
 const CAMERA_SHARE = 0.06; // of the size of the model, how large the camera is drawn
 const LINE_REACH = 8; // CSS px
 const CLICK_REACH = 4; // CSS px
+
+/** A colour of a face, on which lines of the same colour are seen. */
+function paler(colour) {
+  return colour.map((value) => 1 - (1 - value) * PALER);
+}
 
 /** The right half of the page. Without WebGL 2 it says so and does nothing else. */
 export class ModelView {
@@ -36,6 +46,8 @@ export class ModelView {
     this.gizmo = document.querySelector("#gizmo");
     this.orbit = new Orbit(store.state.photo, store.state.K, store.state.R_cam_from_world);
     this.onView = () => {};
+    this.onClick = (at) => this.store.set({ selection: this.thingAt(at) });
+    this.onHover = (at) => this.store.set({ hover: this.lineAt(at) });
     try {
       this.graphics = new Graphics(this.canvas);
     } catch {
@@ -64,8 +76,9 @@ export class ModelView {
   #noticed(changed) {
     const { lines, planes, contradiction } = this.store.state;
     const isNew = changed.has("state") && (lines !== this.#built?.lines || planes !== this.#built.planes);
-    if (isNew || changed.has("layers") || changed.has("texture")) this.#rebuild();
-    else if (changed.has("hover") || changed.has("selection") || contradiction !== this.#built?.contradiction)
+    const rebuilding = ["layers", "texture", "colouring", "shown"];
+    if (isNew || rebuilding.some((name) => changed.has(name))) this.renew();
+    else if (["hover", "selection", "measure"].some((name) => changed.has(name)) || contradiction !== this.#built?.contradiction)
       this.#lightUp();
     else return;
     // One picture of the screen later: a click on the photo is not to wait for the model to be drawn.
@@ -79,7 +92,9 @@ export class ModelView {
 
   change(action) {
     if (!this.works) return;
+    const before = this.orbit.flat?.name;
     action(this.orbit);
+    if (this.orbit.flat?.name !== before) this.renew(); // a plan shows no ceilings
     this.redraw();
     this.onView();
   }
@@ -111,7 +126,7 @@ export class ModelView {
     }
     await Promise.all(loads);
     this.graphics.finishPhoto();
-    this.#rebuild();
+    this.renew();
     this.redraw();
   }
 
@@ -121,7 +136,15 @@ export class ModelView {
     return withoutOutliers(this.store.state.lines.flatMap((line) => line.ends ?? []));
   }
 
-  #rebuild() {
+  /** The corners of the faces that are shown too. */
+  get allPoints() {
+    const faces = this.store.state.planes.flatMap((plane) => plane.faces ?? []);
+    const shown = faces.filter((face) => this.store.showsFace(face));
+    return withoutOutliers([...this.points, ...shown.flatMap((face) => face.outline)]);
+  }
+
+  /** Make anew what is drawn. */
+  renew() {
     this.#built = this.store.state;
     this.orbit.K = this.store.state.K;
     this.orbit.rotation = this.store.state.R_cam_from_world;
@@ -137,14 +160,24 @@ export class ModelView {
   }
 
   #modelLines() {
-    return this.store.state.lines
+    const lines = this.store.state.lines
       .filter((line) => line.ends && this.store.showsLine(line))
       .map((line) => ({
         start: line.ends[0],
         end: line.ends[1],
-        colour: [...channels(AXIS[line.axis]), line.guess ? GUESS_OPACITY : 1],
+        colour: [...channels(colourOf(this.store, line)), line.guess ? GUESS_OPACITY : 1],
         width: (line.boundary ? WIDTH.boundary : WIDTH.other) * devicePixelRatio,
       }));
+    return this.orbit.flat?.name === "plan" ? [...this.#walls(), ...lines] : lines;
+  }
+
+  /** Walls as a plan shows them: faces that stand upright are seen on edge there, as nothing. */
+  #walls() {
+    const look = { colour: [...channels(INK), 1], width: WIDTH.wall * devicePixelRatio };
+    const faces = [...this.store.faces.values()].filter(({ face, plane }) => plane.normal[2] === 0 && this.store.showsFace(face));
+    return faces.flatMap(({ face: { outline } }) =>
+      outline.map((start, index) => ({ start, end: outline[(index + 1) % outline.length], ...look })),
+    );
   }
 
   /** The camera as a pyramid: its eye, its picture, and a mark on the upper side. */
@@ -161,12 +194,15 @@ export class ModelView {
   }
 
   #faceCorners() {
-    if (!this.store.layers.faces) return [];
-    const opacity = this.store.texture ? FACE_OPACITY.textured : FACE_OPACITY.plain;
+    const { store } = this;
+    const tells = store.colouring !== "axis";
+    const opacity = store.texture && !tells ? FACE_OPACITY.textured : FACE_OPACITY.plain;
     const corners = [];
-    for (const plane of this.store.state.planes) {
-      const colour = [...FACE_COLOURS[plane.axis[0]], opacity]; // walls of further frames as those of x and y
+    for (const plane of store.state.planes) {
+      // Walls of further frames as those of x and y.
+      const colour = [...(tells ? paler(channels(colourOf(store, plane))) : FACE_COLOURS[plane.axis[0]]), opacity];
       for (const face of plane.faces ?? []) {
+        if (!store.showsFace(face) || (face.kind === "ceiling" && this.orbit.flat?.name === "plan")) continue;
         const points = [face.outline, ...(face.holes ?? [])].flat();
         for (const index of face.triangles.flat()) corners.push([...points[index], ...colour]);
       }
@@ -174,52 +210,9 @@ export class ModelView {
     return corners;
   }
 
-  /** Where a crossing is on each of its lines: one point when it is real, two when it is not. */
-  #crossingInSpace(crossing) {
-    const { K, R_cam_from_world: rotation } = this.store.state;
-    const through = ray(K, rotation, crossing.pixel);
-    const lines = crossing.lines.map((id) => this.store.lines.get(id)).filter((line) => line?.ends);
-    return lines.map((line) => nearestToRay(...line.ends, through));
-  }
-
   #lightUp() {
     this.#built = { ...this.#built, contradiction: this.store.state.contradiction };
-    const wrong = this.store.state.contradiction?.lines ?? [];
-    const lit = wrong.map((id) => [{ kind: "line", id }, channels(WRONG)]);
-    for (const thing of [this.store.selection, this.store.hover]) if (thing) lit.push([thing, channels(INK)]);
-    this.#lit = this.graphics.lines(
-      lit.flatMap(([thing, colour]) => this.#litLines(thing, colour)),
-      this.#lit,
-    );
-  }
-
-  #litLines(thing, colour) {
-    const found = this.store.find(thing);
-    if (!found) return [];
-    const lineLit = (line) => {
-      const [start, end] = line.ends;
-      return [
-        { start, end, colour: [...colour, 1], width: (WIDTH.lit + 2.4) * devicePixelRatio },
-        { start, end, colour: [...channels(AXIS[line.axis]), 1], width: (WIDTH.lit - 1.6) * devicePixelRatio },
-      ];
-    };
-    if (thing.kind === "line") return found.ends ? lineLit(found) : [];
-    const points = this.#crossingInSpace(found);
-    const lines = found.lines
-      .map((id) => this.store.lines.get(id))
-      .filter((line) => line?.ends)
-      .flatMap(lineLit);
-    const dots = points.map((point) => ({
-      start: point,
-      end: point,
-      colour: [...colour, 1],
-      width: 11 * devicePixelRatio,
-    }));
-    const apart =
-      points.length === 2
-        ? [{ start: points[0], end: points[1], colour: [...colour, 0.8], width: 1.5 * devicePixelRatio }]
-        : [];
-    return [...lines, ...apart, ...dots];
+    this.#lit = this.graphics.lines(litStrokes(this.store), this.#lit);
   }
 
   redraw() {
@@ -232,7 +225,7 @@ export class ModelView {
     const [width, height] = [this.stage.clientWidth, this.stage.clientHeight];
     if (width === 0 || height === 0) return;
     Object.assign(this.orbit, { width, height });
-    if (this.#lines === null) this.#rebuild(); // the first model is fitted to the stage
+    if (this.#lines === null) this.renew(); // the first model is fitted to the stage
     this.canvas.width = Math.round(width * devicePixelRatio);
     this.canvas.height = Math.round(height * devicePixelRatio);
     this.#paint();
@@ -247,38 +240,15 @@ export class ModelView {
     const projection = {
       pixelFromWorld: product(K, rotation),
       photoSize: [photo.width, photo.height],
-      textured: this.store.texture,
+      textured: this.store.texture && this.store.colouring === "axis",
     };
     this.graphics.drawFaces(this.#faces, matrix, projection);
     this.graphics.drawLines(this.#lines, matrix, { nearer: NEARER });
     // Through the camera its pyramid would be a roof over the whole view.
     if (!this.orbit.inCamera) this.graphics.drawLines(this.#camera, matrix);
     this.graphics.drawLines(this.#lit, matrix, { always: true });
-    this.#paintGizmo();
+    paintGizmo(this.gizmo, this.orbit.axes);
     this.canvas.dispatchEvent(new Event("painted"));
-  }
-
-  /** The three axes as they lie now. */
-  #paintGizmo() {
-    const side = 72; // CSS px
-    this.gizmo.width = this.gizmo.height = side * devicePixelRatio;
-    const context = this.gizmo.getContext("2d");
-    context.scale(devicePixelRatio, devicePixelRatio);
-    context.translate(side / 2, side / 2);
-    context.font = "600 12px system-ui, sans-serif";
-    context.textAlign = "center";
-    context.textBaseline = "middle";
-    context.lineWidth = 2.4;
-    context.lineCap = "round";
-    const arms = ["x", "y", "z"].map((name, axis) => [name, this.orbit.axes.map((direction) => direction[axis])]);
-    for (const [name, [right, up]] of arms.sort((a, b) => a[1][2] - b[1][2])) {
-      context.strokeStyle = context.fillStyle = AXIS[name];
-      context.beginPath();
-      context.moveTo(0, 0);
-      context.lineTo(22 * right, -22 * up);
-      context.stroke();
-      context.fillText(name, 29 * right, -29 * up);
-    }
   }
 
   // --- the pointer ---
@@ -295,7 +265,7 @@ export class ModelView {
     on("pointerup", (event) => {
       const drag = this.#drag;
       this.#drag = null;
-      if (drag && !drag.moved && event.button === 0) this.store.set({ selection: this.#lineAt(drag.at) });
+      if (drag && !drag.moved && event.button === 0) this.onClick(drag.at);
     });
     on("pointercancel", () => (this.#drag = null));
     on("pointerleave", () => this.#drag || this.store.set({ hover: null }));
@@ -309,7 +279,7 @@ export class ModelView {
 
   #move(at) {
     const drag = this.#drag;
-    if (!drag) return this.store.set({ hover: this.#lineAt(at) });
+    if (!drag) return this.onHover(at);
     if (Math.hypot(at[0] - drag.from[0], at[1] - drag.from[1]) > CLICK_REACH) drag.moved = true;
     if (!drag.moved) return;
     const step = [at[0] - drag.at[0], at[1] - drag.at[1]];
@@ -323,8 +293,14 @@ export class ModelView {
     return w > 0 ? [((x / w + 1) / 2) * this.orbit.width, ((1 - y / w) / 2) * this.orbit.height] : null;
   }
 
+  /** The line, else the face, under a point of the stage, or null. */
+  thingAt(at) {
+    const face = faceAlong(this.store, this.orbit.sight(at));
+    return this.lineAt(at) ?? (face && { kind: "face", id: face.face.id });
+  }
+
   /** The line under a point of the stage, or null. */
-  #lineAt(at) {
+  lineAt(at) {
     const matrix = this.orbit.matrix;
     let best = null;
     let reach = LINE_REACH;

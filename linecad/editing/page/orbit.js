@@ -1,6 +1,18 @@
 // The eye that looks at the model: it turns about a point, z up, or stands in the camera of the photo.
 
-import { add, applied, cross, frustum, product4, subtract, times, transposed, viewMatrix } from "./matrices.js";
+import {
+  add,
+  applied,
+  cross,
+  frustum,
+  orthographic,
+  product4,
+  ray,
+  subtract,
+  times,
+  transposed,
+  viewMatrix,
+} from "./matrices.js";
 
 const FIELD = Math.tan((22.5 * Math.PI) / 180); // tangent of half the smaller angle of view
 const STEEPEST = (89 * Math.PI) / 180; // rad; straight down or up has no direction that is right
@@ -39,6 +51,7 @@ export class Orbit {
   elevation = 0; // rad, positive looks down
   distance = 5; // scene units from the target to the eye
   inCamera = true; // the view through the camera of the photo
+  flat = null; // {name, up, back}: without perspective, in a direction that does not turn
   width = 1; // CSS px, of the stage
   height = 1;
 
@@ -54,6 +67,7 @@ export class Orbit {
       const [right, down, forward] = this.rotation;
       return [right, times(down, -1), times(forward, -1)];
     }
+    if (this.flat) return [cross(this.flat.up, this.flat.back), this.flat.up, this.flat.back];
     const [s, c] = [Math.sin(this.azimuth), Math.cos(this.azimuth)];
     const [se, ce] = [Math.sin(this.elevation), Math.cos(this.elevation)];
     const back = [-s * ce, -c * ce, se];
@@ -68,6 +82,8 @@ export class Orbit {
   /** World to clip space for the stage as it is. */
   get matrix() {
     const far = 4 * this.size + 2 * Math.hypot(...subtract(this.target, this.eye));
+    const [x, y] = this.#tangents().map((tangent) => tangent * this.distance);
+    if (this.flat) return product4(orthographic(x, y, -far, far), viewMatrix(...this.axes, this.eye));
     const lens = this.inCamera ? this.#cameraLens(far) : this.#freeLens(far);
     return product4(lens, viewMatrix(...this.axes, this.eye));
   }
@@ -80,6 +96,23 @@ export class Orbit {
   #tangents() {
     const aspect = this.width / this.height;
     return aspect > 1 ? [FIELD * aspect, FIELD] : [FIELD, FIELD / aspect];
+  }
+
+  /** [origin, direction] of the sight through a place of the stage, CSS px. */
+  sight([left, top]) {
+    if (this.inCamera) {
+      const scale = Math.min(this.width / this.photoWidth, this.height / this.photoHeight);
+      const u = (left - this.width / 2) / scale + this.photoWidth / 2 - 0.5;
+      const v = (top - this.height / 2) / scale + this.photoHeight / 2 - 0.5;
+      return [[0, 0, 0], ray(this.K, this.rotation, [u, v])];
+    }
+    const [right, up, back] = this.axes;
+    const [x, y] = this.#tangents();
+    const [sx, sy] = [(2 * left) / this.width - 1, 1 - (2 * top) / this.height];
+    const aside = add(times(right, sx * x), times(up, sy * y));
+    if (!this.flat) return [this.eye, subtract(aside, back)];
+    const far = 4 * this.size + this.distance;
+    return [add(add(this.target, times(aside, this.distance)), times(back, far)), times(back, -1)];
   }
 
   /** All of the photo, as its camera saw it, with room on two sides where the stage has another shape. */
@@ -106,6 +139,7 @@ export class Orbit {
   }
 
   orbit(dx, dy) {
+    if (this.flat) return this.pan(dx, dy);
     this.#leaveCamera();
     this.azimuth += dx * TURN;
     this.elevation = Math.min(Math.max(this.elevation + dy * TURN, -STEEPEST), STEEPEST);
@@ -133,7 +167,21 @@ export class Orbit {
   }
 
   throughCamera() {
+    this.flat = null;
     this.inCamera = true;
+  }
+
+  /** Look without perspective along a direction, at all of these points: `{name, up, back}`. */
+  lookFlat(flat, points) {
+    this.flat = flat;
+    this.inCamera = false;
+    if (points.length > 0) this.#stepBack(points);
+  }
+
+  /** Turn freely again, in the direction of before. */
+  lookFreely() {
+    this.flat = null;
+    if (this.inCamera) this.#leaveCamera();
   }
 
   /** Remember how large a model of such points is; nothing moves. */
@@ -148,6 +196,7 @@ export class Orbit {
   fit(points) {
     if (points.length === 0) return;
     this.measure(points);
+    if (this.flat) return this.#stepBack(points);
     this.inCamera = false;
     const forward = this.rotation[2];
     this.azimuth = Math.atan2(forward[0], forward[1]) + SIDEWARDS;
@@ -170,7 +219,8 @@ export class Orbit {
       MARGIN *
       seen.reduce((distance, point) => {
         const [right, up, back] = subtract(point, middle);
-        return Math.max(distance, back + Math.abs(right) / x, back + Math.abs(up) / y);
+        const depth = this.flat ? 0 : back;
+        return Math.max(distance, depth + Math.abs(right) / x, depth + Math.abs(up) / y);
       }, this.size / 1000);
   }
 

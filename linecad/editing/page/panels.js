@@ -54,7 +54,7 @@ export class Panels {
 
   #makeLayers() {
     const counts = new Map();
-    const buttons = this.store.offeredLayers.map(({ name, label, key }) => {
+    const buttons = this.store.offeredLayers.map(({ name, label, key, about }) => {
       const count = element("span", { class: "count" });
       counts.set(name, count);
       return element(
@@ -62,7 +62,7 @@ export class Panels {
         {
           class: `layer ${name}`,
           "data-layer": name,
-          title: `Show or hide ${label.toLowerCase()} (${key})`,
+          title: `${about ?? `Show or hide ${label.toLowerCase()}`} (${key})`,
           onclick: () => this.store.toggleLayer(name),
         },
         element("i", { "aria-hidden": "true" }),
@@ -84,7 +84,8 @@ export class Panels {
       for (const button of buttons) {
         const { layer } = button.dataset;
         button.setAttribute("aria-pressed", String(this.store.layers[layer]));
-        button.disabled = map?.[layer] === null; // no model is there to compare with, or the map was left out
+        // No model is there to compare with, or the map was left out; no model tells parts.
+        button.disabled = layer === "cells" ? this.store.state.cells === null : map?.[layer] === null;
       }
     };
     this.store.listen((changed) => (changed.has("layers") || changed.has("state")) && show());
@@ -161,7 +162,7 @@ export class Panels {
     try {
       this.actions.messages.tell(`Writing ${format.toUpperCase()}…`);
       await this.actions.editing.settled();
-      this.actions.messages.tell(`Saved ${await this.actions.server.download(format)}.`);
+      this.actions.messages.tell(`Saved ${await this.actions.server.download(format, this.actions.choosing.wanted(format))}.`);
     } catch (error) {
       this.actions.messages.tell(error.message, "error");
     }
@@ -254,12 +255,13 @@ export class Panels {
   #makeLength() {
     const dialog = document.querySelector("#length-dialog");
     const value = document.querySelector("#length-value");
-    let line = null;
-    this.actions.openLength = (chosen) => {
-      line = chosen;
+    let edit = null;
+    this.actions.openLength = ({ id, points }) => {
+      edit = points ? { op: "distance", points } : { op: "length", line: id };
       const others = counted(this.store.state.lines.length - 1, "other line");
-      document.querySelector("#length-text").textContent =
-        `How long is line ${line.id}? It sets the scale of all ${others}.`;
+      document.querySelector("#length-text").textContent = points
+        ? "How far apart are the two points? It sets the scale of the model."
+        : `How long is line ${id}? It sets the scale of all ${others}.`;
       value.value = "";
       dialog.showModal();
     };
@@ -267,7 +269,7 @@ export class Panels {
     document
       .querySelector("#length-form")
       .addEventListener("submit", () =>
-        this.actions.editing.edit({ op: "length", line: line.id, metres: value.valueAsNumber }),
+        this.actions.editing.edit({ ...edit, metres: value.valueAsNumber }),
       );
   }
 }

@@ -2,6 +2,7 @@
 
 import { DepthLayers } from "./depthlayers.js";
 import { draw, drawAttention, drawDraft } from "./drawing.js";
+import { drawSelectedPlane } from "./facelight.js";
 import { Marks, markRadius } from "./marks.js";
 import { Tiles } from "./tiles.js";
 import { Viewport } from "./viewport.js";
@@ -39,6 +40,7 @@ export class PhotoView {
     this.tiles = new Tiles(server, photo, () => this.redraw("photo"));
     this.depthLayers = new DepthLayers(store, server, () => this.redraw("depth"));
     this.onView = () => {};
+    this.drawOver = () => {}; // what tools of their own draw, in CSS px of the stage
     store.listen((changed) => this.#noticed(changed));
     draft.listen(() => this.redraw("overlay"));
     new ResizeObserver(() => this.#resized()).observe(this.stage);
@@ -53,13 +55,14 @@ export class PhotoView {
     const isNew = parts.filter((name) => state[name] !== this.#drawn?.[name]);
     const relabelled = isNew.join() === "crossings" ? differing(this.#drawn?.crossings, state.crossings) : null;
     this.#drawn = state;
-    if (changed.has("layers") || changed.has("hidden") || (isNew.length > 0 && !relabelled)) {
+    const anew = ["layers", "hidden", "colouring", "shown"];
+    if (anew.some((name) => changed.has(name)) || (isNew.length > 0 && !relabelled)) {
       this.redraw("drawing", "overlay");
     } else if (relabelled) {
       this.#relabelled.push(...relabelled);
       this.redraw("marks", "overlay");
     }
-    if (changed.has("hover") || changed.has("selection")) this.redraw("overlay");
+    if (["hover", "selection", "measure"].some((name) => changed.has(name))) this.redraw("overlay");
   }
 
   /** Draw canvases again before the next picture of the screen. */
@@ -84,7 +87,7 @@ export class PhotoView {
   /** Show a line or crossing in the middle, not smaller than it takes to see it. */
   show(thing, closely = false) {
     const found = this.store.find(thing);
-    if (!found) return;
+    if (!found || thing.kind === "face") return;
     const middle = found.pixel ?? [0, 1].map((k) => (found.segment[0][k] + found.segment[1][k]) / 2);
     const scale = closely ? Math.max(this.viewport.scale, CLOSE * this.viewport.fittingScale) : this.viewport.scale;
     this.change((viewport) => viewport.centre(middle, scale));
@@ -179,8 +182,10 @@ export class PhotoView {
   #paintOverlay() {
     const context = this.#cleared("overlay");
     if (this.store.hidden) return;
+    drawSelectedPlane(context, this.store, this.viewport);
     drawAttention(context, this.store, this.viewport, this.#currentMarks());
     drawDraft(context, this.viewport, this.draft);
+    this.drawOver(context);
   }
 
   #currentMarks() {

@@ -64,18 +64,19 @@ export class Server {
     return this.#bitmap(`tile/${level}/${column}/${row}`, { signal });
   }
 
-  /** A layer of the depth map as a bitmap of the photo's shape. */
-  depthLayer(name) {
-    return this.#bitmap(`depth/${name}`);
+  /** A layer over the photo, of the depth map or the parts of the photo, as a bitmap of the photo's shape. */
+  layer(name) {
+    return this.#bitmap(name === "cells" ? name : `depth/${name}`);
   }
 
   async #bitmap(path, options) {
     return createImageBitmap(await (await this.#ask(path, options)).blob());
   }
 
-  /** Save the model in a format: name and content are the server's, the browser asks where to or takes its folder. */
-  async download(format) {
-    const answer = await this.#ask(`export/${encodeURIComponent(format)}`);
+  /** Save what is wanted of the model in a format: name and content are the server's, the browser asks where to or takes its folder. */
+  async download(format, wanted = {}) {
+    const query = new URLSearchParams({ wanted: JSON.stringify(wanted) });
+    const answer = await this.#ask(`export/${encodeURIComponent(format)}?${query}`);
     const said = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition") ?? "");
     const link = document.createElement("a");
     link.href = URL.createObjectURL(await answer.blob());

@@ -1,9 +1,12 @@
 // What the page knows: the state that the server sent, with the edits under way laid over it, and what is seen here.
 
+const PARTS = "What each part of the photo was taken for: walls, ground, sky";
+
 /**
  * The layers that can be switched on and off, in the order of their buttons; `key` is the digit that does it.
  *
- * Those of a depth map are there where the photo has one, and off at first.
+ * Those of a depth map are there where the photo has one. They, and what the parts of the photo were taken for, are off
+ * at first.
  */
 export const LAYERS = [
   { name: "real", label: "Real", key: "1" },
@@ -15,18 +18,23 @@ export const LAYERS = [
   { name: "faces", label: "Faces", key: "7" },
   { name: "depth", label: "Depth map", key: "8", ofMap: true },
   { name: "difference", label: "Map and model", key: "9", ofMap: true },
+  { name: "cells", label: "Parts", key: "shift+l", isOff: true, about: PARTS },
 ];
+
+/** The choice that leaves nothing out; as `linecad export` takes it (linecad/editing/wanted.py). */
+export const EVERYTHING = Object.freeze({ confidence: null, groups: "all", main: null, detail: "all" });
 
 /**
  * One value that all views draw. `set` stores fields and tells every listener the names of those that changed.
  *
- * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing", id}`.
+ * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing"|"face", id}`.
  */
 export class Store {
   state = null;
   lines = new Map(); // id -> line
   crossings = new Map(); // id -> crossing
-  layers = Object.fromEntries(LAYERS.map(({ name, ofMap }) => [name, !ofMap]));
+  faces = new Map(); // id -> {face, plane}
+  layers = Object.fromEntries(LAYERS.map(({ name, ofMap, isOff }) => [name, !ofMap && !isOff]));
   hidden = false; // everything over the photo, while a key is held
   hover = null;
   selection = null;
@@ -37,6 +45,10 @@ export class Store {
   solve = { state: "idle" };
   busy = 0; // edits that the server has not answered yet
   texture = true; // the photo on the faces of the model
+  colouring = "axis"; // what the colours of lines and faces tell, or "confidence"
+  choice = EVERYTHING; // what of the model is shown, and exported
+  shown = null; // {lines, faces}: Sets of the ids that the choice keeps; null: all
+  measure = { points: [], near: null }; // two points or fewer, and the one under the pointer (measuring.js)
   #listeners = [];
 
   /** Call `listener` with a Set of names of fields after each change. */
@@ -54,6 +66,9 @@ export class Store {
     if (changed.has("state")) {
       this.lines = new Map(this.state.lines.map((line) => [line.id, line]));
       this.crossings = new Map(this.state.crossings.map((crossing) => [crossing.id, crossing]));
+      this.faces = new Map(
+        this.state.planes.flatMap((plane) => (plane.faces ?? []).map((face) => [face.id, { face, plane }])),
+      );
       for (const name of ["hover", "selection"]) {
         if (this[name] && !this.find(this[name])) {
           this[name] = null;
@@ -64,10 +79,10 @@ export class Store {
     if (changed.size > 0) for (const listener of this.#listeners) listener(changed);
   }
 
-  /** The line or crossing that a `{kind, id}` names, or undefined. */
+  /** The line, crossing or `{face, plane}` that a `{kind, id}` names, or undefined. */
   find(thing) {
     if (!thing) return undefined;
-    return (thing.kind === "line" ? this.lines : this.crossings).get(thing.id);
+    return { line: this.lines, crossing: this.crossings, face: this.faces }[thing.kind].get(thing.id);
   }
 
   /** The selected line, or undefined when nothing or a crossing is selected. */
@@ -80,16 +95,32 @@ export class Store {
     return this.selection?.kind === "crossing" ? this.find(this.selection) : undefined;
   }
 
+  /** The plane of the selected face, else of the selected line the upright one with the most lines; or undefined. */
+  get selectedPlane() {
+    if (this.selection?.kind === "face") return this.find(this.selection).plane;
+    const line = this.selectedLine;
+    const planes = this.state.planes.filter((plane) => plane.lines.includes(line?.id));
+    const upright = (plane) => (plane.axis === "z" ? 0 : 1);
+    return planes.sort((a, b) => upright(b) - upright(a) || b.lines.length - a.lines.length)[0];
+  }
+
   /** The layers that this photo has. */
   get offeredLayers() {
     return LAYERS.filter(({ ofMap }) => !ofMap || this.state.depth_map !== null);
   }
 
   showsLine(line) {
+    if (this.shown && line.ends && !this.shown.lines.has(line.id)) return false;
     return this.layers[line.axis[0]]; // x2, x3 and so on of further frames go with x
   }
 
+  showsFace(face) {
+    return this.layers.faces && (!this.shown || this.shown.faces.has(face.id));
+  }
+
   showsCrossing(crossing) {
+    const isLeftOut = (id) => this.lines.get(id)?.ends && !this.shown.lines.has(id);
+    if (this.shown && crossing.lines.some(isLeftOut)) return false;
     return this.layers[isReal(crossing) ? "real" : "fake"] || (this.layers.changed && crossing.changed);
   }
 

@@ -2,6 +2,7 @@
 
 import { inNextFrame } from "./axes.js";
 import { nearest, thingsAt } from "./picking.js";
+import { faceAlong, sightOfPhoto } from "./sights.js";
 
 /** The tools in the order of their buttons. */
 export const TOOLS = [
@@ -15,6 +16,12 @@ export const TOOLS = [
   { name: "draw", label: "Draw", key: "d", hint: "Click both ends of a line, or drag; x, y or z fixes its axis" },
   { name: "split", label: "Split", key: "k", hint: "Click where a line is to be cut in two" },
   { name: "join", label: "Join", key: "j", hint: "Click two lines that are one" },
+  {
+    name: "measure",
+    label: "Measure",
+    key: "i",
+    hint: "Click two points of lines or faces, here or in the model; M gives their distance, which sets the scale",
+  },
   {
     name: "frame",
     label: "Axes",
@@ -57,7 +64,7 @@ export class Tools {
 
   /** The kinds of things that light up under the pointer. */
   get kinds() {
-    if (this.draws) return [];
+    if (this.draws || this.store.tool === "measure") return [];
     return this.store.tool === "split" || this.store.tool === "join" ? ["line"] : ["crossing", "line"];
   }
 
@@ -66,6 +73,8 @@ export class Tools {
     const [thing] = thingsAt(this.store, viewport, at, this.kinds);
     const found = this.store.find(thing);
     switch (this.store.tool) {
+      case "measure":
+        return this.actions.measuring.clickPhoto(at);
       case "correct":
         if (thing?.kind === "crossing" && !this.store.labelling) return void this.actions.flip(found);
         break;
@@ -75,7 +84,8 @@ export class Tools {
       case "join":
         return this.#join(found);
     }
-    this.store.set({ selection: thing ?? null });
+    const face = thing ? null : faceAlong(this.store, sightOfPhoto(this.store, viewport).along(at));
+    this.store.set({ selection: thing ?? (face && { kind: "face", id: face.face.id }) });
   }
 
   #join(line) {

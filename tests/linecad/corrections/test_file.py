@@ -13,12 +13,15 @@ from linecad.corrections.edits import (
     Cut,
     Delete,
     Draw,
+    FaceAnchor,
     Foot,
     Join,
+    KnownDistance,
     KnownLength,
     LabelCrossing,
     Meet,
     OnePlane,
+    Place,
     PlaceAt,
     SetAxis,
     SetFrame,
@@ -48,6 +51,7 @@ facts = st.one_of(
     st.builds(Cut, pairs),
     st.builds(PlaceAt, anchors, anchors, st.floats(-5, 5)),
 )
+places = st.builds(Place, points, anchors | st.builds(FaceAnchor, points, st.integers(0, 6)))
 edits = st.one_of(
     facts,
     st.builds(Withdraw, facts),
@@ -58,6 +62,7 @@ edits = st.one_of(
     st.builds(Join, pairs),
     st.builds(Draw, anchors),
     st.builds(KnownLength, anchors, st.none() | st.floats(1e-6, 1e6)),
+    st.builds(KnownDistance, st.tuples(places, places), st.none() | st.floats(1e-6, 1e6)),
     st.builds(SetFrame, st.lists(anchors, min_size=1, max_size=4).map(tuple)),
 )
 lists = st.lists(edits, max_size=6).map(tuple)
