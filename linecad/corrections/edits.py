@@ -52,6 +52,14 @@ class Delete:
 
 
 @dataclass(frozen=True)
+class SetEnds:
+    """A line reaches from one place to another along itself; what does not lie on it means its foot there."""
+
+    line: Anchor
+    ends: Ends
+
+
+@dataclass(frozen=True)
 class Split:
     """Two lines were found as one; they part at a point."""
 
@@ -88,7 +96,17 @@ class SetFrame:
     lines: tuple[Anchor, ...]
 
 
-Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | SetFrame
+Part = LabelCrossing | SetAxis | Delete
+
+
+@dataclass(frozen=True)
+class Many:
+    """What was done to many lines and crossings in one step, which undo takes back in one step too."""
+
+    edits: tuple[Part, ...]
+
+
+Edit = LabelCrossing | SetAxis | Delete | SetEnds | Split | Join | Draw | KnownLength | SetFrame | Many
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import assert_never, cast
 
@@ -19,8 +20,11 @@ from linecad.corrections.edits import (
     KnownLength,
     Label,
     LabelCrossing,
+    Many,
+    Part,
     Point,
     SetAxis,
+    SetEnds,
     SetFrame,
     Split,
 )
@@ -37,7 +41,8 @@ LARGEST_PHOTO = 10**6  # px along one side
 LARGEST_PIXEL = 1e7  # px from the photo's corner
 LEAST_LENGTH = 1e-3  # px, of a segment
 MOST_FRAME_LINES = 100
-OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame")
+PARTS = ("label", "axis", "delete")  # what `many` may hold
+OPERATIONS = (*PARTS, "ends", "split", "join", "draw", "length", "frame", "many")
 
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
@@ -101,6 +106,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "axis", "line": _anchor_to_json(edit.line), "axis": axis_name(edit.axis)}
         case Delete():
             return {"op": "delete", "line": _anchor_to_json(edit.line)}
+        case SetEnds():
+            return {"op": "ends", "line": _anchor_to_json(edit.line), "ends": [list(end) for end in edit.ends]}
         case Split():
             return {"op": "split", "line": _anchor_to_json(edit.line), "at": list(edit.at)}
         case Join():
@@ -111,6 +118,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "length", "line": _anchor_to_json(edit.line), "metres": edit.metres}
         case SetFrame():
             return {"op": "frame", "lines": [_anchor_to_json(line) for line in edit.lines]}
+        case Many():
+            return {"op": "many", "edits": [edit_to_json(part) for part in edit.edits]}
         case _:
             assert_never(edit)
 
@@ -125,8 +134,9 @@ def _corrections(top: Node) -> Corrections:
     if top["version"].integer() != VERSION:
         raise JsonError(f"version is {top['version'].value}, but only version {VERSION} can be read here")
     edits, undone = top["edits"].items(), top["undone"].items() if top.get("undone") else []
-    if len(edits) + len(undone) > MOST_EDITS:
-        raise JsonError(f"there are {len(edits) + len(undone)} edits, at most {MOST_EDITS} are taken")
+    count = sum(map(_count, [*edits, *undone]))
+    if count > MOST_EDITS:
+        raise JsonError(f"there are {count} edits, at most {MOST_EDITS} are taken")
     return Corrections(
         photo=top["photo"].text(),
         width=top["width"].integer(1, LARGEST_PHOTO),
@@ -136,14 +146,26 @@ def _corrections(top: Node) -> Corrections:
     )
 
 
-def _edit(node: Node) -> Edit:
-    match node["op"].one_of(OPERATIONS):
+def _count(node: Node) -> int:
+    """How many edits a value stands for, whether it is one or not."""
+    parts = node.value.get("edits") if isinstance(node.value, dict) else None
+    return len(parts) if isinstance(parts, list) else 1
+
+
+def _part(node: Node) -> Part:
+    match node["op"].one_of(PARTS):
         case "label":
             return LabelCrossing(_two(node["lines"]), point(node["pixel"]), label(node))
         case "axis":
             return SetAxis(_anchor(node["line"]), axis(node["axis"]))
-        case "delete":
+        case _:
             return Delete(_anchor(node["line"]))
+
+
+def _edit(node: Node) -> Edit:
+    match node["op"].one_of(OPERATIONS):
+        case "ends":
+            return SetEnds(_anchor(node["line"]), ends(node["ends"]))
         case "split":
             return Split(_anchor(node["line"]), point(node["at"]))
         case "join":
@@ -152,8 +174,12 @@ def _edit(node: Node) -> Edit:
             return Draw(_anchor(node["line"]))
         case "length":
             return KnownLength(_anchor(node["line"]), metres(node))
-        case _:
+        case "frame":
             return SetFrame(frame_lines(node["lines"], "segment"))
+        case "many":
+            return Many(many(node["edits"], _part))
+        case _:
+            return _part(node)
 
 
 def _anchor(node: Node, key: str = "segment") -> Anchor:
@@ -165,6 +191,14 @@ def _two(node: Node) -> tuple[Anchor, Anchor]:
     if len(items) != 2:
         raise node.wrong("a list of 2")
     return _anchor(items[0]), _anchor(items[1])
+
+
+def many(node: Node, read: Callable[[Node], Part]) -> tuple[Part, ...]:
+    """The edits that one step holds, each as `read` reads it."""
+    items = node.items()
+    if not 1 <= len(items) <= MOST_EDITS:
+        raise node.wrong(f"a list of 1 to {MOST_EDITS}")
+    return tuple(map(read, items))
 
 
 def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:

@@ -15,7 +15,9 @@ from linecad.corrections.edits import (
     Join,
     KnownLength,
     LabelCrossing,
+    Many,
     SetAxis,
+    SetEnds,
     SetFrame,
     Split,
 )
@@ -35,10 +37,15 @@ points = st.tuples(numbers, numbers)
 segments = st.tuples(points, points).filter(lambda p: abs(p[0][0] - p[1][0]) + abs(p[0][1] - p[1][1]) > 0.01)
 anchors = st.builds(Anchor, segments, st.integers(0, 2))
 pairs = st.tuples(anchors, anchors)
-edits = st.one_of(
+parts = st.one_of(
     st.builds(LabelCrossing, pairs, points, st.sampled_from([*LABELS, None])),
     st.builds(SetAxis, anchors, st.integers(0, 2)),
     st.builds(Delete, anchors),
+)
+edits = st.one_of(
+    parts,
+    st.builds(Many, st.lists(parts, min_size=1, max_size=4).map(tuple)),
+    st.builds(SetEnds, anchors, segments),
     st.builds(Split, anchors, points),
     st.builds(Join, pairs),
     st.builds(Draw, anchors),
@@ -97,6 +104,11 @@ def test_what_was_undone_may_be_missing():
         (with_edit(op="delete", line=7), "expected an object"),
         (with_edit(op="frame", lines=[]), "expected a list of 1 to 100"),
         (with_edit(op="frame", lines=[LINE] * 101), "expected a list of 1 to 100"),
+        (with_edit(op="ends", line=LINE, ends=[[1, 1], [1, 1]]), "expected two ends that differ"),
+        (with_edit(op="many", edits=[]), "expected a list of 1 to 100000"),
+        (with_edit(op="many", edits=7), r"edits\[0\].edits is 7, expected a list"),
+        (with_edit(op="many", edits=[{"op": "length"}]), r"edits\[0\].edits\[0\].op is \"length\""),
+        (with_edit(op="many", edits=[{"op": "many", "edits": []}]), "expected one of label, axis, delete"),
         ([FILE], "expected an object"),
     ],
 )
@@ -116,9 +128,9 @@ def test_numbers_that_are_none_are_refused(token):
 
 
 def test_too_many_edits_are_refused_before_any_is_read():
-    document = {**FILE, "edits": [0] * (MOST_EDITS + 1)}  # none of them is an edit
-    with pytest.raises(CorrectionsFileError, match=f"{MOST_EDITS + 1} edits, at most {MOST_EDITS}"):
-        corrections_from_json(json.dumps(document))
+    for edits in ([0] * (MOST_EDITS + 1), [0, {"op": "many", "edits": [0] * MOST_EDITS}]):  # none of them is an edit
+        with pytest.raises(CorrectionsFileError, match=f"{MOST_EDITS + 1} edits, at most {MOST_EDITS}"):
+            corrections_from_json(json.dumps({**FILE, "edits": edits}))
 
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path):
