@@ -12,6 +12,8 @@ const CASING_OPACITY = 0.75;
 const GUESS_DASHES = [6, 3]; // CSS px
 const UNSOLVED_DASHES = [2, 4]; // lines that are not in the model yet
 const FACE_OPACITY = 0.16;
+const END = 5; // CSS px, of the squares at the ends of a lit line
+const HANDLE = 8; // of the selected one's, which can be dragged
 const NEAREST_DEPTH = 1e-3; // of a scene's units; nothing nearer to the camera is drawn
 
 /** All layers that are switched on; with a `box` (left, top, width, height) only the marks that touch it. */
@@ -105,7 +107,7 @@ function dashes(line) {
   return line.guess ? GUESS_DASHES : [];
 }
 
-function strokeLines(context, viewport, lines, colour, width) {
+export function strokeLines(context, viewport, lines, colour, width) {
   context.strokeStyle = colour;
   context.lineWidth = width;
   context.beginPath();
@@ -127,6 +129,7 @@ function drawCrossings(context, store, viewport, marks, [x, y, width, height]) {
   for (const crossing of store.state.crossings) {
     const [u, v] = crossing.pixel;
     if (u < left || u > right || v < top || v > bottom || !store.showsCrossing(crossing)) continue;
+    if (!store.thinning.shows(crossing, viewport.scale)) continue;
     seen[isReal(crossing) ? "real" : "fake"].push(crossing);
     if (crossing.changed && store.layers.changed) seen.changed.push(crossing);
   }
@@ -146,24 +149,31 @@ function put(context, viewport, marks, name, pixel) {
   context.drawImage(marks.stamp(name), left, top);
 }
 
-/** What changes with the pointer: a contradiction, the selection, what is under the pointer. */
-export function drawAttention(context, store, viewport, marks) {
+/**
+ * What changes with the pointer: a contradiction, the selection and its crossings, what is under the pointer.
+ *
+ * `stretched` is the line whose end is dragged, as it would be, or null.
+ */
+export function drawAttention(context, store, viewport, marks, stretched) {
   const wrong = store.state.contradiction;
   const lit = new Set();
   const light = (id, colour, border) => {
     if (!store.lines.has(id)) return;
     lit.add(id);
-    glow(context, viewport, store.lines.get(id), colour, border);
+    const line = store.lines.get(id);
+    glow(context, viewport, id === stretched?.id ? { ...line, segment: stretched.ends } : line, colour, border);
   };
   for (const id of wrong?.lines ?? []) light(id, WRONG, 4);
   for (const id of store.selectedCrossing?.lines ?? []) light(id, INK, 0.5);
-  if (store.selectedLine) light(store.selectedLine.id, INK, 2.5);
+  if (store.selectedLine) light(store.selectedLine.id, INK, 2.5); // its ends are handles
+  for (const id of store.many?.lines ?? []) light(id, INK, 1.8);
   if (store.hover?.kind === "line") light(store.hover.id, INK, 1.2);
   // The lines lie over the marks of the canvas below: those of the lit ones come again on top.
   context.save();
   context.resetTransform();
   for (const crossing of store.state.crossings) {
-    if (crossing.lines.some((id) => lit.has(id)) && store.showsCrossing(crossing)) {
+    const isLit = crossing.lines.some((id) => lit.has(id)) || store.isNear(crossing);
+    if (isLit && store.drawsCrossing(crossing, viewport.scale)) {
       put(context, viewport, marks, markOf(crossing), crossing.pixel);
     }
   }
@@ -171,18 +181,19 @@ export function drawAttention(context, store, viewport, marks) {
     if (store.crossings.has(id)) put(context, viewport, marks, "wrong", store.crossings.get(id).pixel);
   }
   context.restore();
+  for (const id of store.many?.crossings ?? []) circleAround(context, viewport, marks, store.crossings.get(id), 1.4, 3);
   if (store.selectedCrossing) circleAround(context, viewport, marks, store.selectedCrossing, 2.6);
   if (store.hover?.kind === "crossing") circleAround(context, viewport, marks, store.find(store.hover), 1.4);
 }
 
-function circleAround(context, viewport, marks, crossing, width) {
+function circleAround(context, viewport, marks, crossing, width, away = 6.5) {
   const [x, y] = viewport.toScreen(crossing.pixel);
   for (const [wide, ink] of [
     [width + 2, CASING],
     [width, INK],
   ]) {
     context.beginPath();
-    context.arc(x, y, marks.radius + 6.5, 0, 2 * Math.PI);
+    context.arc(x, y, marks.radius + away, 0, 2 * Math.PI);
     context.lineWidth = wide;
     context.strokeStyle = ink;
     context.stroke();
@@ -201,41 +212,12 @@ function glow(context, viewport, line, colour, border) {
   ]) {
     strokeLines(context, viewport, [line], ink, wide);
   }
+  const size = border > 2 && colour === INK ? HANDLE : END;
   for (const end of line.segment) {
     const [x, y] = viewport.toScreen(end);
+    context.fillStyle = CASING;
+    context.fillRect(x - size / 2 - 1.5, y - size / 2 - 1.5, size + 3, size + 3);
     context.fillStyle = colour;
-    context.fillRect(x - 2.5, y - 2.5, 5, 5);
+    context.fillRect(x - size / 2, y - size / 2, size, size);
   }
-}
-
-/** The unfinished lines of a tool: what the person drew, thin, over what the server would make of it. */
-export function drawDraft(context, viewport, draft) {
-  context.lineCap = "round";
-  for (const { ends, axis } of draft.lines) strokeDraft(context, viewport, ends, axis);
-  const proposal = draft.proposal;
-  if (proposal) strokeDraft(context, viewport, proposal.ends, proposal.axis);
-  if (draft.rubber) {
-    context.setLineDash([4, 4]);
-    strokeLines(context, viewport, [{ segment: draft.rubber }], INK, 1);
-    context.setLineDash([]);
-  }
-  for (const point of draft.points) knob(context, viewport.toScreen(point), INK);
-  (proposal?.ends ?? []).forEach((end, index) => {
-    if (proposal.snapped?.[index]) knob(context, viewport.toScreen(end), AXIS[proposal.axis] ?? INK);
-  });
-}
-
-function strokeDraft(context, viewport, ends, axis) {
-  strokeLines(context, viewport, [{ segment: ends }], CASING, 5.5);
-  strokeLines(context, viewport, [{ segment: ends }], AXIS[axis] ?? INK, 3);
-}
-
-function knob(context, [x, y], colour) {
-  context.beginPath();
-  context.arc(x, y, 4.5, 0, 2 * Math.PI);
-  context.fillStyle = CASING;
-  context.fill();
-  context.lineWidth = 2;
-  context.strokeStyle = colour;
-  context.stroke();
 }
