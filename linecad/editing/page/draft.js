@@ -37,25 +37,29 @@ export class Draft {
     return this.#undone.length > 0;
   }
 
-  /** The next value of lines and points, as a step that undo takes back. */
-  step(lines, points) {
-    this.#done.push([this.lines, this.points]);
+  /** The next value of lines, points and question, as a step that undo takes back. */
+  step(lines, points, question = null) {
+    this.#done.push(this.#now);
     this.#undone = [];
-    this.#put([lines, points]);
+    this.#put([lines, points, question]);
   }
 
   undo() {
-    this.#undone.push([this.lines, this.points]);
+    this.#undone.push(this.#now);
     this.#put(this.#done.pop());
   }
 
   redo() {
-    this.#done.push([this.lines, this.points]);
+    this.#done.push(this.#now);
     this.#put(this.#undone.pop());
   }
 
-  #put([lines, points]) {
-    Object.assign(this, { lines, points, rubber: null, proposal: null, start: null, question: null });
+  get #now() {
+    return [this.lines, this.points, this.question];
+  }
+
+  #put([lines, points, question]) {
+    Object.assign(this, { lines, points, question, rubber: null, proposal: null, start: null });
     this.#tell();
   }
 
@@ -72,13 +76,6 @@ export class Draft {
     this.#tell();
   }
 
-  /** The line is drawn but for its axis. */
-  ask(question) {
-    this.step(this.lines, []);
-    this.question = question;
-    this.#tell();
-  }
-
   /** The line whose end is dragged, as it would be now; null when it is let go. */
   stretch(stretched) {
     if (stretched === this.stretched) return;
@@ -90,6 +87,6 @@ export class Draft {
   clear() {
     this.#done = [];
     this.#undone = [];
-    this.#put([[], []]);
+    this.#put([[], [], null]);
   }
 }

@@ -12,8 +12,7 @@ const CASING_OPACITY = 0.75;
 const GUESS_DASHES = [6, 3]; // CSS px
 const UNSOLVED_DASHES = [2, 4]; // lines that are not in the model yet
 const FACE_OPACITY = 0.16;
-const END = 5; // CSS px, of the squares at the ends of a lit line
-const HANDLE = 8; // of the selected one's, which can be dragged
+const HANDLE = 8; // CSS px, of the squares at the ends of the selected line, which can be dragged
 const NEAREST_DEPTH = 1e-3; // of a scene's units; nothing nearer to the camera is drawn
 
 /** All layers that are switched on; with a `box` (left, top, width, height) only the marks that touch it. */
@@ -165,7 +164,7 @@ export function drawAttention(context, store, viewport, marks, stretched) {
   };
   for (const id of wrong?.lines ?? []) light(id, WRONG, 4);
   for (const id of store.selectedCrossing?.lines ?? []) light(id, INK, 0.5);
-  if (store.selectedLine) light(store.selectedLine.id, INK, 2.5); // its ends are handles
+  if (store.selectedLine) light(store.selectedLine.id, INK, 2.5);
   for (const id of store.many?.lines ?? []) light(id, INK, 1.8);
   if (store.hover?.kind === "line") light(store.hover.id, INK, 1.2);
   // The lines lie over the marks of the canvas below: those of the lit ones come again on top.
@@ -181,19 +180,49 @@ export function drawAttention(context, store, viewport, marks, stretched) {
     if (store.crossings.has(id)) put(context, viewport, marks, "wrong", store.crossings.get(id).pixel);
   }
   context.restore();
-  for (const id of store.many?.crossings ?? []) circleAround(context, viewport, marks, store.crossings.get(id), 1.4, 3);
+  for (const id of store.many?.crossings ?? []) dot(context, viewport, store.crossings.get(id).pixel);
   if (store.selectedCrossing) circleAround(context, viewport, marks, store.selectedCrossing, 2.6);
   if (store.hover?.kind === "crossing") circleAround(context, viewport, marks, store.find(store.hover), 1.4);
+  if (store.selectedLine) drawHandles(context, viewport, stretched?.ends ?? store.selectedLine.segment);
 }
 
-function circleAround(context, viewport, marks, crossing, width, away = 6.5) {
+/** Squares on top of all marks. */
+function drawHandles(context, viewport, ends) {
+  for (const end of ends) {
+    const [x, y] = viewport.toScreen(end);
+    for (const [side, ink] of [
+      [HANDLE + 4, INK],
+      [HANDLE + 1, CASING],
+      [HANDLE - 3, INK],
+    ]) {
+      context.fillStyle = ink;
+      context.fillRect(x - side / 2, y - side / 2, side, side);
+    }
+  }
+}
+
+/** One of many that are selected: small, since there may be hundreds that are not drawn at this scale. */
+function dot(context, viewport, pixel) {
+  const [x, y] = viewport.toScreen(pixel);
+  for (const [radius, ink] of [
+    [3.4, CASING],
+    [2.2, INK],
+  ]) {
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fillStyle = ink;
+    context.fill();
+  }
+}
+
+function circleAround(context, viewport, marks, crossing, width) {
   const [x, y] = viewport.toScreen(crossing.pixel);
   for (const [wide, ink] of [
     [width + 2, CASING],
     [width, INK],
   ]) {
     context.beginPath();
-    context.arc(x, y, marks.radius + away, 0, 2 * Math.PI);
+    context.arc(x, y, marks.radius + 6.5, 0, 2 * Math.PI);
     context.lineWidth = wide;
     context.strokeStyle = ink;
     context.stroke();
@@ -212,12 +241,9 @@ function glow(context, viewport, line, colour, border) {
   ]) {
     strokeLines(context, viewport, [line], ink, wide);
   }
-  const size = border > 2 && colour === INK ? HANDLE : END;
   for (const end of line.segment) {
     const [x, y] = viewport.toScreen(end);
-    context.fillStyle = CASING;
-    context.fillRect(x - size / 2 - 1.5, y - size / 2 - 1.5, size + 3, size + 3);
     context.fillStyle = colour;
-    context.fillRect(x - size / 2, y - size / 2, size, size);
+    context.fillRect(x - 2.5, y - 2.5, 5, 5);
   }
 }

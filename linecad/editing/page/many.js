@@ -1,6 +1,6 @@
 // Many lines and crossings at once: what a rectangle encloses, and one step for all of them.
 
-import { frameOf, inNextFrame, letterOf } from "./axes.js";
+import { inNextFrame } from "./axes.js";
 import { counted, element, keyButton } from "./dom.js";
 
 /** What a rectangle between two pixels of the photo holds, as far as it is shown: lines with both ends. */
@@ -113,7 +113,7 @@ export class Many {
       word(null, "Solver decides", "G"),
     ];
     return [
-      element("p", {}, element("strong", {}, counts.filter(Boolean).join(", ")), ` selected${this.#axes(many)}`),
+      element("p", {}, element("strong", {}, counts.filter(Boolean).join(", ")), " selected"),
       element(
         "div",
         { class: "buttons" },
@@ -121,17 +121,5 @@ export class Many {
         ...(many.lines.length > 0 ? lines : []),
       ),
     ];
-  }
-
-  /** The axes of the lines, where they have several: ": 3 along x, 4 along z". */
-  #axes({ lines }) {
-    const numbers = new Map();
-    for (const id of lines) {
-      const { axis } = this.store.lines.get(id);
-      numbers.set(axis, (numbers.get(axis) ?? 0) + 1);
-    }
-    const order = (axis) => frameOf(axis) * 10 + "xyz".indexOf(letterOf(axis));
-    const axes = [...numbers.keys()].sort((a, b) => order(a) - order(b));
-    return axes.length > 0 ? `: ${axes.map((axis) => `${numbers.get(axis)} along ${axis}`).join(", ")}` : "";
   }
 }

@@ -25,7 +25,8 @@ export class Proposals {
       this.#next = null;
       let answer = null;
       try {
-        answer = await this.server.post("propose", asked);
+        const made = await this.server.post("propose", asked);
+        answer = made.refused ? null : made;
       } catch (error) {
         if (!(error instanceof RequestError)) throw error;
       }

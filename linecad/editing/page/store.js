@@ -42,7 +42,6 @@ export class Store {
   solve = { state: "idle" };
   busy = 0; // edits that the server has not answered yet
   texture = true; // the photo on the faces of the model
-  #inMany = new Set(); // ids of the crossings of many
   #listeners = [];
 
   /** Call `listener` with a Set of names of fields after each change. */
@@ -69,7 +68,6 @@ export class Store {
       }
     }
     if (this.many && (changed.has("state") || changed.has("selection")) && this.#keepMany()) changed.add("many");
-    if (changed.has("many")) this.#inMany = new Set(this.many?.crossings);
     if (changed.size > 0) for (const listener of this.#listeners) listener(changed);
   }
 
@@ -117,11 +115,11 @@ export class Store {
     return this.showsCrossing(crossing) && (this.thinning.shows(crossing, scale) || this.isNear(crossing));
   }
 
-  /** Whether a crossing is selected, alone or with others, or is one of the selected line or of a contradiction. */
+  /** Whether a crossing is selected, or one of the selected line or of a contradiction. */
   isNear({ id, lines }) {
     const { selection, state } = this;
-    if (selection) return selection.id === id || (selection.kind === "line" && lines.includes(selection.id));
-    return this.#inMany.has(id) || (state.contradiction?.crossings.includes(id) ?? false);
+    if (state.contradiction?.crossings.includes(id)) return true;
+    return selection?.kind === "line" ? lines.includes(selection.id) : selection?.id === id;
   }
 
   toggleLayer(name) {

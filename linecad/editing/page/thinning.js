@@ -3,7 +3,7 @@
 // click changes no other mark.
 
 const APART = 20; // CSS px between two crossings that are drawn
-const TOLD_APART = 8; // between two that a person labelled or the last solve changed
+const TOLD_APART = 12; // between two that a person labelled or the last solve changed
 const ALL_SCALE = 16; // CSS px a photo pixel: from here on all are drawn
 const FINER = Math.SQRT1_2; // from one distance to the next
 

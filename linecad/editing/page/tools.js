@@ -161,7 +161,8 @@ export class Tools {
     try {
       const made = await this.actions.server.post("propose", { ends, axis, reach });
       if (this.draft.points.length === 0) return; // taken back meanwhile
-      if (made.is_bent) this.draft.ask({ ends, reach, axes: made.axes });
+      if (made.refused) this.actions.messages.tell(made.refused, "warning");
+      else if (made.is_bent) this.draft.step(this.draft.lines, [], { ends, reach, axes: made.axes });
       else this.#draw(ends, axis, reach);
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;

@@ -262,6 +262,22 @@ class TestEdits:
         assert near["ends"][0] != at == far["ends"][0]
         assert page.post("propose", ends=[at]).json()["snapped"] == [None]
 
+    @pytest.mark.parametrize(
+        "body",
+        [
+            {"ends": [[700, 200], [701, 200]]},
+            {"line": 0, "end": 1, "at": None},
+            {"line": 10**6, "end": 0, "at": [1, 1]},
+        ],
+    )
+    def test_a_place_where_no_line_can_end_is_an_answer(self, page, body):
+        """The browser wrote an error on its console for each place that the pointer passed there."""
+        if body.get("at", 0) is None:
+            body = {**body, "at": page.state()["lines"][0]["segment"][0]}
+        answer = page.post("propose", **body)
+        assert answer.status_code == 200
+        assert list(answer.json()) == ["refused"]
+
     def test_an_end_that_is_dragged_moves_along_its_line(self, page):
         line = max(page.state()["lines"], key=lambda one: np.linalg.norm(np.subtract(*one["segment"])))
         start, end = np.array(line["segment"])
