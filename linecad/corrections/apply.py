@@ -4,6 +4,7 @@ What cannot be found again is told in a note and left out. Every line has an id 
 added or taken back: found lines are numbered in their order, new ones follow in the order of the edits.
 """
 
+from copy import copy
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal, assert_never
@@ -28,12 +29,15 @@ from linecad.corrections.edits import (
     KnownLength,
     Label,
     LabelCrossing,
+    Many,
     Meet,
     OnePlane,
+    Part,
     Place,
     PlaceAt,
     Point,
     SetAxis,
+    SetEnds,
     SetFrame,
     Split,
     Withdraw,
@@ -119,10 +123,12 @@ def correcting_of(
     lines = Correcting(segments, camera, frame, first_id=FIRST_IDS * len(frames))
     notes = []
     for number, edit in enumerate(corrections.edits):
-        try:
-            lines.apply(edit, before_frame=bool(frames) and number < frames[-1])
-        except CorrectionError as error:
-            notes.append(f"correction {number + 1} is left out: {error}")
+        # Of a step that holds many, those are left out that mean nothing any more.
+        for part in edit.edits if isinstance(edit, Many) else (edit,):
+            try:
+                lines.apply(part, before_frame=bool(frames) and number < frames[-1])
+            except CorrectionError as error:
+                notes.append(f"correction {number + 1} is left out: {error}")
     if len(notes) > MOST_NOTES:
         notes[MOST_NOTES:] = [f"{len(notes) - MOST_NOTES} more corrections name lines that are not there any more"]
     return lines, tuple(notes)
@@ -174,6 +180,13 @@ class Correcting:
                         self._put(number, turned)
             case Delete():
                 self._drop(self.find(edit.line, before_frame), ())
+            case SetEnds():
+                number = self.find(edit.line, before_frame)
+                line = self.lines[number]
+                reached = _Line(self.drawing.reaching(line.ends, np.array(edit.ends)), line.axis, line.origin)
+                self._put(number, reached)
+            case Many():
+                self._apply_all(edit.edits, before_frame)
             case Split():
                 self._split(self.find(edit.line, before_frame), edit.at)
             case Join():
@@ -234,11 +247,7 @@ class Correcting:
 
     def find(self, anchor: Anchor, any_axis: bool = False) -> int:
         """The id of the line that an anchor names (`LineTable.find`); CorrectionError when there is none."""
-        return self._lookup().find(anchor, self.drawing.width, any_axis)
-
-    def snapped(self, ends: Float, axis: int | None) -> tuple[Float, int, tuple[bool, bool]]:
-        """What a line drawn from one end to the other (2, 2) would be: ends, axis, and which ends snap to others."""
-        return self.drawing.snapped(ends, axis, self._lookup().ends.reshape(-1, 2))
+        return self.table.find(anchor, self.drawing.width, any_axis)
 
     def _tell(self, fact: Fact, before_frame: bool) -> None:
         if before_frame:
@@ -270,7 +279,9 @@ class Correcting:
         now = self._nearest(place.line, place.pixel)
         return [] if now is None else [replace(place, line=now)]
 
-    def _lookup(self) -> LineTable:
+    @property
+    def table(self) -> LineTable:
+        """The lines as they are now."""
         if self._table is None:
             lines = list(self.lines.values())
             self._table = LineTable(
@@ -279,6 +290,16 @@ class Correcting:
                 np.array([line.axis for line in lines], np.int64),
             )
         return self._table
+
+    def _apply_all(self, edits: tuple[Part, ...], before_frame: bool) -> None:
+        """Apply edits one after another, all or none."""
+        before = {name: copy(value) for name, value in vars(self).items()}
+        try:
+            for edit in edits:
+                self.apply(edit, before_frame)
+        except CorrectionError:
+            vars(self).update(before)
+            raise
 
     def _label(self, pair: tuple[int, int], pixel: Point, label: Label | None) -> None:
         self.labels.pop(pair, None)
@@ -290,7 +311,7 @@ class Correcting:
         self._table = None
 
     def _check_new(self, line: _Line) -> None:
-        if self._lookup().has(line.ends, line.axis):
+        if self.table.has(line.ends, line.axis):
             raise CorrectionError("this line is there already; draw another one")
 
     def _add(self, line: _Line) -> int:

@@ -11,7 +11,6 @@ from linecad.line_graph import ManhattanFrame
 from linecad.scene import Camera
 
 JOIN_ACROSS = PhotoLength(20.0, floor=6.0)  # between two pieces of one line
-SNAP = PhotoLength(24.0, floor=8.0)  # between the end of a drawn line and one that is there
 SHORTEST_PIECE = PhotoLength(25.0, floor=10.0)  # shorter lines take no part in the line graph
 
 
@@ -36,27 +35,22 @@ class Drawing:
 
     def turned(self, ends: Float, axis: int) -> Float:
         """A segment turned about its middle to pass through the vanishing point of an axis."""
-        return self._through(ends.mean(axis=0), ends, axis)
+        return self.through(ends.mean(axis=0), ends, axis)
 
-    def snapped(self, ends: Float, axis: int | None, there: Float) -> tuple[Float, int, tuple[bool, bool]]:
-        """What a line drawn from one end to the other would be: ends, axis, and which ends snap to points `there`.
+    def off_axes(self, ends: Float) -> Float:
+        """(K,) rad between a segment and the line from its middle to the vanishing point of each axis."""
+        angles: Float = np.arcsin(np.minimum(angles_to(ends[None], self.vanishing)[:, 0], 1.0))
+        return angles
 
-        The axis is the nearest one where None is given; `there` (M, 2) px are the ends of all other lines.
-        CorrectionError for a line that is too short.
+    def reaching(self, ends: Float, wanted: Float) -> Float:
+        """The part of a segment's own line between the feet of two places (2, 2), in the direction of the segment.
+
+        CorrectionError when it is too short to be a line.
         """
-        if np.linalg.norm(ends[1] - ends[0]) < 1:
-            raise CorrectionError("a line has two ends; draw it longer")
-        own = self.nearest_axis(ends) if axis is None else axis
-        near = []
-        for end in ends:
-            distance = np.linalg.norm(there - end, axis=1)
-            found = len(there) > 0 and bool(distance.min() <= SNAP.px(self.width))
-            near.append(there[distance.argmin()] if found else None)
-        taken = [point for point in near if point is not None]
-        target = np.array([end if point is None else point for end, point in zip(ends, near, strict=True)])
-        through = taken[0] if len(taken) == 1 else target.mean(axis=0)
-        result = self.long_enough(self._through(through, target, own))
-        return result, own, (near[0] is not None, near[1] is not None)
+        along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+        places = np.sort((wanted - ends[0]) @ along)
+        reached: Float = ends[0] + places[:, None] * along
+        return self.long_enough(reached)
 
     def split(self, ends: Float, at: Point) -> tuple[Float, Float]:
         """The two pieces of a segment that meet at the foot of a point; CorrectionError when one is too short."""
@@ -86,8 +80,11 @@ class Drawing:
         whole: Float = middle + np.array([[reach.min()], [reach.max()]]) * along
         return whole
 
-    def _through(self, point: Float, ends: Float, axis: int) -> Float:
-        """The segment on the line from a point (2,) to a vanishing point that reaches as far as `ends` do."""
+    def through(self, point: Float, ends: Float, axis: int, held: int | None = None) -> Float:
+        """The segment on the line from a point (2,) to a vanishing point that reaches as far as `ends` do.
+
+        `held`: the end that the point is.
+        """
         if axis >= len(self.vanishing):
             raise CorrectionError(f"the photo has no direction {axis_name(axis)}; choose another axis")
         along = directions_to(point, self.vanishing[axis])
@@ -98,6 +95,6 @@ class Drawing:
         # What is turned far keeps its length; what is turned little keeps the feet of its ends.
         reach = (ends - point) @ along
         if reach[1] - reach[0] < length / 2:
-            reach = np.array([-length / 2, length / 2])
+            reach = length * (np.array([-0.5, 0.5]) if held is None else np.array([0.0, 1.0]) - held)
         moved: Float = point + reach[:, None] * along
         return moved

@@ -53,6 +53,14 @@ class Delete:
 
 
 @dataclass(frozen=True)
+class SetEnds:
+    """A line reaches from one place to another along itself; what does not lie on it means its foot there."""
+
+    line: Anchor
+    ends: Ends
+
+
+@dataclass(frozen=True)
 class Split:
     """Two lines were found as one; they part at a point."""
 
@@ -111,6 +119,16 @@ class SetFrame:
     """Lines drawn along the Manhattan axes, in place of the frame that was found; equal axes are parallel in space."""
 
     lines: tuple[Anchor, ...]
+
+
+Part = LabelCrossing | SetAxis | Delete
+
+
+@dataclass(frozen=True)
+class Many:
+    """What was done to many lines and crossings in one step, which undo takes back in one step too."""
+
+    edits: tuple[Part, ...]
 
 
 # Facts: what a person knows of how the bodies of a photo stand to each other. A fact is about the bodies that its lines
@@ -177,7 +195,21 @@ def anchors_of(fact: Fact) -> tuple[Anchor, ...]:
             return fact.lines
 
 
-Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | KnownDistance | SetFrame | Fact | Withdraw
+Edit = (
+    LabelCrossing
+    | SetAxis
+    | Delete
+    | SetEnds
+    | Split
+    | Join
+    | Draw
+    | KnownLength
+    | KnownDistance
+    | SetFrame
+    | Many
+    | Fact
+    | Withdraw
+)
 
 
 @dataclass(frozen=True)

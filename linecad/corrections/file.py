@@ -2,6 +2,7 @@
 
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import assert_never, cast
 
@@ -23,17 +24,20 @@ from linecad.corrections.edits import (
     KnownLength,
     Label,
     LabelCrossing,
+    Many,
     Meet,
     OnePlane,
+    Part,
     Place,
     PlaceAt,
     SetAxis,
+    SetEnds,
     SetFrame,
     Split,
     Withdraw,
 )
 from linecad.corrections.fact_file import FACTS, fact_to_json, read_fact
-from linecad.corrections.nodes import anchor, anchor_to_json, axis, point, two, two_anchors
+from linecad.corrections.nodes import anchor, anchor_to_json, axis, ends, point, two, two_anchors
 from linecad.directions import axis_name
 from linecad.errors import CorrectionsFileError
 from linecad.io.files import read_text, write_text_atomically
@@ -45,8 +49,9 @@ SUFFIX = ".corrections.json"
 LARGEST_FILE = 64 * 2**20  # bytes; an edit takes a few hundred
 LARGEST_PHOTO = 10**6  # px along one side
 MOST_FRAME_LINES = 100
+PARTS = ("label", "axis", "delete")  # what `many` may hold
 OPERATIONS = (
-    "label", "axis", "delete", "split", "join", "draw", "length", "distance", "frame", *FACTS, "withdraw",
+    *PARTS, "ends", "split", "join", "draw", "length", "distance", "frame", "many", *FACTS, "withdraw",
 )  # fmt: skip
 
 
@@ -111,6 +116,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "axis", "line": anchor_to_json(edit.line), "axis": axis_name(edit.axis)}
         case Delete():
             return {"op": "delete", "line": anchor_to_json(edit.line)}
+        case SetEnds():
+            return {"op": "ends", "line": anchor_to_json(edit.line), "ends": [list(end) for end in edit.ends]}
         case Split():
             return {"op": "split", "line": anchor_to_json(edit.line), "at": list(edit.at)}
         case Join():
@@ -123,6 +130,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "distance", "points": [_place_to_json(one) for one in edit.places], "metres": edit.metres}
         case SetFrame():
             return {"op": "frame", "lines": [anchor_to_json(line) for line in edit.lines]}
+        case Many():
+            return {"op": "many", "edits": [edit_to_json(part) for part in edit.edits]}
         case Withdraw():
             return {"op": "withdraw", "fact": fact_to_json(edit.fact)}
         case Meet() | OnePlane() | Foot() | Cut() | PlaceAt():
@@ -144,8 +153,9 @@ def _corrections(top: Node) -> Corrections:
     if top["version"].integer() != VERSION:
         raise JsonError(f"version is {top['version'].value}, but only version {VERSION} can be read here")
     edits, undone = top["edits"].items(), top["undone"].items() if top.get("undone") else []
-    if len(edits) + len(undone) > MOST_EDITS:
-        raise JsonError(f"there are {len(edits) + len(undone)} edits, at most {MOST_EDITS} are taken")
+    count = sum(map(_count, [*edits, *undone]))
+    if count > MOST_EDITS:
+        raise JsonError(f"there are {count} edits, at most {MOST_EDITS} are taken")
     return Corrections(
         photo=top["photo"].text(),
         width=top["width"].integer(1, LARGEST_PHOTO),
@@ -155,14 +165,26 @@ def _corrections(top: Node) -> Corrections:
     )
 
 
-def _edit(node: Node) -> Edit:
-    match node["op"].one_of(OPERATIONS):
+def _count(node: Node) -> int:
+    """How many edits a value stands for, whether it is one or not."""
+    parts = node.value.get("edits") if isinstance(node.value, dict) else None
+    return len(parts) if isinstance(parts, list) else 1
+
+
+def _part(node: Node) -> Part:
+    match node["op"].one_of(PARTS):
         case "label":
             return LabelCrossing(two_anchors(node["lines"]), point(node["pixel"]), label(node))
         case "axis":
             return SetAxis(anchor(node["line"]), axis(node["axis"]))
-        case "delete":
+        case _:
             return Delete(anchor(node["line"]))
+
+
+def _edit(node: Node) -> Edit:
+    match node["op"].one_of(OPERATIONS):
+        case "ends":
+            return SetEnds(anchor(node["line"]), ends(node["ends"]))
         case "split":
             return Split(anchor(node["line"]), point(node["at"]))
         case "join":
@@ -176,8 +198,12 @@ def _edit(node: Node) -> Edit:
             return KnownDistance((_place(first), _place(second)), metres(node))
         case "frame":
             return SetFrame(frame_lines(node["lines"], "segment"))
+        case "many":
+            return Many(many(node["edits"], _part))
         case "withdraw":
             return Withdraw(read_fact(node["fact"]))
+        case "label" | "axis" | "delete":
+            return _part(node)
         case _:
             return read_fact(node)
 
@@ -187,6 +213,14 @@ def _place(node: Node) -> Place:
     if line is not None:
         return Place(pixel, anchor(line))
     return Place(pixel, FaceAnchor(point(node["face"]["pixel"]), axis(node["face"]["normal"])))
+
+
+def many(node: Node, read: Callable[[Node], Part]) -> tuple[Part, ...]:
+    """The edits that one step holds, each as `read` reads it."""
+    items = node.items()
+    if not 1 <= len(items) <= MOST_EDITS:
+        raise node.wrong(f"a list of 1 to {MOST_EDITS}")
+    return tuple(map(read, items))
 
 
 def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:

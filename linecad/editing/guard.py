@@ -20,7 +20,7 @@ HOST = "127.0.0.1"
 TOKEN_BYTES = 32
 TOKEN_HEADER = b"x-linecad-token"
 GUARDED = "/api/"
-LARGEST_BODY = 65_536  # bytes; an edit takes some hundred
+LARGEST_BODY = 2**20  # bytes; an edit takes some hundred, one of all 4,000 crossings of a photo a quarter of this
 
 HEADERS = {
     "content-security-policy": "; ".join(

@@ -17,12 +17,11 @@ from starlette.routing import Route
 
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.depth.depth_map import DepthMap
-from linecad.directions import axis_name
 from linecad.editing.body_document import places_of
 from linecad.editing.cell_layer import picture_of_cells
 from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
-from linecad.editing.edits import proposal, read_edit
+from linecad.editing.edits import proposal_to_json, read_edit
 from linecad.editing.guard import HOST, Guard, TooLargeError
 from linecad.editing.labelling import labels_to_json
 from linecad.editing.saving import Saver
@@ -178,9 +177,8 @@ class Editor:
         return JSONResponse(places_of(self.session.now(), request.path_params["body"]))
 
     def propose(self, body: Node) -> Response:
-        """POST /api/propose: what a drawn line would be."""
-        ends, axis, snapped = proposal(body, self.session.editing)
-        return JSONResponse({"axis": axis_name(axis), "ends": ends.tolist(), "snapped": list(snapped)})
+        """POST /api/propose: what a drawn line would be, or one whose end is dragged."""
+        return JSONResponse(proposal_to_json(body, self.session.editing))
 
     def shown(self, body: Node) -> Response:
         """POST /api/shown: which lines and faces `linecad export` would keep."""

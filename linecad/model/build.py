@@ -42,6 +42,7 @@ from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.shown import cells_of
 from linecad.model.regions.surfaces import GroundOfFeet
+from linecad.model.solver_notes import notes_on_solver
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Opening, Plane, Scene, SolveReport
@@ -326,18 +327,7 @@ def _notes(
     if solution.formulation == "bodies":
         is_heard = depth_map is not None and not depth_map.left_out
         by = f"where planes and heights that match{' or the depth map' if is_heard else ''} put them"
-    return (*notes, *_solver_notes(solution), *_placing_notes(found, by))
-
-
-def _solver_notes(solution: Solution) -> list[str]:
-    if solution.status == "optimal":
-        return []
-    if solution.status == "robust fit":
-        return ["depths by a robust fit to all crossings, without a search: nothing is proven, the gap is unknown"]
-    if solution.status == "heuristic":
-        return [f"the time was over before the exact search began; the gap is {solution.gap:.1%}"]
-    ended = "was interrupted" if solution.status == "interrupted" else f"reached its {solution.status}"
-    return [f"the solver {ended} with a gap of {solution.gap:.1%}: not proven optimal"]
+    return (*notes, *notes_on_solver(solution), *_placing_notes(found, by))
 
 
 def _placing_notes(found: Components, by: str) -> list[str]:

@@ -2,11 +2,14 @@
 
 import { Actions } from "./actions.js";
 import { Choosing } from "./choosing.js";
+import { Crosshair } from "./crosshair.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
+import { LineWalk } from "./linewalk.js";
+import { Many } from "./many.js";
 import { Measuring } from "./measuring.js";
 import { Messages } from "./messages.js";
 import { ModelView } from "./modelview.js";
@@ -34,11 +37,14 @@ async function start() {
   const draft = new Draft();
   const photo = new PhotoView(store, server, draft);
   const model = new ModelView(store);
-  const actions = new Actions({ store, server, editing, draft, photo, model, messages });
+  const many = new Many(store, editing, messages);
+  const lineWalk = new LineWalk(store, photo, messages);
+  const actions = new Actions({ store, server, editing, draft, photo, model, messages, many, lineWalk });
   const tools = new Tools(store, actions);
   const pointer = new Pointer(store, photo, tools);
   const measuring = new Measuring({ store, photo, model, pointer, actions });
   photo.drawOver = (context) => measuring.draw(context);
+  actions.crosshair = new Crosshair(store, photo, pointer);
   const panels = new Panels(store, actions, pointer);
   const views = new Views(store, model, messages);
   const choosing = new Choosing(store, actions);

@@ -1,13 +1,13 @@
 // The model: its lines, its faces with the photo on them, and the camera, seen from anywhere.
 
 import { INK, channels } from "./colours.js";
+import { wheelFactor } from "./gestures.js";
 import { paintGizmo } from "./gizmo.js";
 import { Graphics } from "./graphics.js";
 import { litStrokes } from "./lighting.js";
 import { product, projected } from "./matrices.js";
 import { Orbit, withoutOutliers } from "./orbit.js";
 import { distance } from "./picking.js";
-import { wheelFactor } from "./pointer.js";
 import { faceAlong } from "./sights.js";
 import { colourOf } from "./sure.js";
 

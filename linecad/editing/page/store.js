@@ -1,5 +1,7 @@
 // What the page knows: the state that the server sent, with the edits under way laid over it, and what is seen here.
 
+import { Thinning } from "./thinning.js";
+
 const PARTS = "What each part of the photo was taken for: walls, ground, sky";
 
 /**
@@ -27,7 +29,8 @@ export const EVERYTHING = Object.freeze({ confidence: null, groups: "all", main:
 /**
  * One value that all views draw. `set` stores fields and tells every listener the names of those that changed.
  *
- * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing"|"face", id}`.
+ * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing"|"face", id}`;
+ * `many` is null or what is selected in its place, ids in `{lines, crossings}`.
  */
 export class Store {
   state = null;
@@ -38,6 +41,8 @@ export class Store {
   hidden = false; // everything over the photo, while a key is held
   hover = null;
   selection = null;
+  many = null;
+  thinning = new Thinning();
   tool = "correct";
   labelling = false;
   owner = true; // false in a second tab, which only looks
@@ -69,6 +74,7 @@ export class Store {
       this.faces = new Map(
         this.state.planes.flatMap((plane) => (plane.faces ?? []).map((face) => [face.id, { face, plane }])),
       );
+      this.thinning.renew(this.state);
       for (const name of ["hover", "selection"]) {
         if (this[name] && !this.find(this[name])) {
           this[name] = null;
@@ -76,7 +82,18 @@ export class Store {
         }
       }
     }
+    if (this.many && (changed.has("state") || changed.has("selection")) && this.#keepMany()) changed.add("many");
     if (changed.size > 0) for (const listener of this.#listeners) listener(changed);
+  }
+
+  /** Of many things those that are there still, none beside a selected one; whether that changes them. */
+  #keepMany() {
+    const lines = this.many.lines.filter((id) => this.lines.has(id));
+    const crossings = this.many.crossings.filter((id) => this.crossings.has(id));
+    const isSame = lines.length === this.many.lines.length && crossings.length === this.many.crossings.length;
+    if (isSame && !this.selection) return false;
+    this.many = this.selection || lines.length + crossings.length === 0 ? null : { lines, crossings };
+    return true;
   }
 
   /** The line, crossing or `{face, plane}` that a `{kind, id}` names, or undefined. */
@@ -122,6 +139,18 @@ export class Store {
     const isLeftOut = (id) => this.lines.get(id)?.ends && !this.shown.lines.has(id);
     if (this.shown && crossing.lines.some(isLeftOut)) return false;
     return this.layers[isReal(crossing) ? "real" : "fake"] || (this.layers.changed && crossing.changed);
+  }
+
+  /** Whether a crossing is drawn at a scale, and can be clicked there: those of what is selected are at every one. */
+  drawsCrossing(crossing, scale) {
+    return this.showsCrossing(crossing) && (this.thinning.shows(crossing, scale) || this.isNear(crossing));
+  }
+
+  /** Whether a crossing is selected, or one of the selected line or of a contradiction. */
+  isNear({ id, lines }) {
+    const { selection, state } = this;
+    if (state.contradiction?.crossings.includes(id)) return true;
+    return selection?.kind === "line" ? lines.includes(selection.id) : selection?.id === id;
   }
 
   toggleLayer(name) {

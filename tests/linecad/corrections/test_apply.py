@@ -13,7 +13,10 @@ from linecad.corrections.edits import (
     Draw,
     Join,
     KnownLength,
+    LabelCrossing,
+    Many,
     SetAxis,
+    SetEnds,
     SetFrame,
     Split,
 )
@@ -67,6 +70,8 @@ def test_a_length_is_kept_by_the_line_and_can_be_taken_back(applied, anchor):
         (lambda _: Draw(Anchor(((5.0, 5.0), (6.0, 5.0)), 0)), "too short; at least 10 px"),
         (lambda anchor: Join((anchor(0), anchor(0))), "cannot be joined to itself"),
         (lambda anchor: Draw(anchor(0)), "there already"),
+        (lambda anchor: SetEnds(anchor(0), (anchor(0).ends[0], anchor(0).ends[0])), "too short; at least 10 px"),
+        (lambda anchor: Many((Delete(anchor(2)), Delete(Anchor(((5.0, 5.0), (90.0, 9.0)), 0)))), "no line runs from"),
     ],
 )
 def test_what_cannot_be_done_is_refused_in_one_line_and_changes_nothing(made, applied, anchor, edit, message):
@@ -104,3 +109,31 @@ def test_axes_named_before_the_frame_was_given_mean_nothing_any_more(made, appli
     other = 1 if made.axis[3] != 1 else 0
     lines = applied(SetAxis(anchor(3), other), SetFrame((anchor(0),)))
     assert lines.segments.axis.tolist() == made.axis.tolist()
+
+
+def test_the_ends_of_a_line_move_along_it_and_it_stays_the_same_line(made, applied, anchor):
+    start, end = made.pixels[0]
+    along = (end - start) / np.linalg.norm(end - start)
+    across = np.array([-along[1], along[0]])
+    wanted = (start - 30 * along + 5 * across, end + 12 * along)
+    label = LabelCrossing((anchor(0), anchor(1)), tuple(start.tolist()), "fake")
+    lines = applied(label, SetEnds(anchor(0), tuple(tuple(at.tolist()) for at in wanted)))
+    assert lines.ids.tolist() == list(range(len(made.axis)))
+    assert lines.segments.ends[0] == pytest.approx(np.array([start - 30 * along, end + 12 * along]))
+    assert lines.origin[0] == "found"
+    assert lines.labels == applied(label).labels
+
+
+def test_of_many_edits_in_one_step_those_that_mean_something_still_apply(made, applied, anchor):
+    lost = Anchor(((5.0, 5.0), (90.0, 9.0)), 0)
+    lines = applied(Many((Delete(anchor(2)), Delete(lost), Delete(anchor(4)))))
+    assert lines.ids.tolist() == [number for number in range(len(made.axis)) if number not in (2, 4)]
+    assert [note.split(":")[0] for note in lines.notes] == ["correction 1 is left out"]
+
+
+def test_many_edits_in_one_step_do_what_they_do_one_after_another(made, applied, anchor):
+    other = 1 if made.axis[3] != 1 else 0
+    edits = (SetAxis(anchor(3), other), Delete(anchor(5)), LabelCrossing((anchor(0), anchor(1)), (9.0, 9.0), "real"))
+    once, each = applied(Many(edits)), applied(*edits)
+    assert once.is_like(each)
+    assert once.labels == each.labels != {}

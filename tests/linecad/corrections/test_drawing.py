@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.corrections.apply import Correcting
 from linecad.corrections.drawing import Drawing
 from linecad.corrections.edits import Anchor, Draw, SetAxis
 from linecad.errors import CorrectionError
@@ -32,21 +31,16 @@ def test_a_drawn_line_passes_through_its_vanishing_point(made, applied):
     assert lines.segments.ends[-1] == pytest.approx(np.array([[700, 300], [900, 320]]), abs=20)
 
 
-class TestSnap:
-    def test_an_end_near_another_line_ends_there(self, made):
-        lines = Correcting(made.segments, made.camera, made.frame)
-        start = made.pixels[0, 0]
-        ends, axis, snapped = lines.snapped(start + np.array([[3, 2], [3, 160]]), 2)
-        assert snapped == (True, False)
-        assert ends[0] == pytest.approx(start, abs=3)
-        along, to = ends[1] - ends[0], start - ends[0]
-        assert abs(along[0] * to[1] - along[1] * to[0]) < 1e-6 * np.linalg.norm(along)
-        assert off_axis(made, ends, axis) < 1e-9
+class TestReaching:
+    def test_ends_become_their_feet_on_the_line_itself(self, made):
+        ends = np.array([[100.0, 100.0], [200.0, 100.0]])
+        drawing = Drawing(made.camera, made.frame)
+        assert drawing.reaching(ends, np.array([[80.0, 107.0], [260.0, 91.0]])).tolist() == [[80, 100], [260, 100]]
 
-    def test_the_axis_is_that_of_the_nearest_vanishing_point(self, made):
-        lines = Correcting(made.segments, made.camera, made.frame)
-        for line in range(0, len(made.axis), 5):
-            assert lines.snapped(made.pixels[line] + np.array([0.6, -0.4]), None)[1] == made.axis[line]
+    def test_they_keep_the_direction_of_a_line_that_was_found_the_other_way_round(self, made):
+        ends = np.array([[200.0, 100.0], [100.0, 100.0]])
+        wanted = np.array([[80.0, 100.0], [260.0, 100.0]])
+        assert Drawing(made.camera, made.frame).reaching(ends, wanted).tolist() == [[260, 100], [80, 100]]
 
 
 def test_a_line_that_takes_no_part_in_the_graph_is_refused(made):

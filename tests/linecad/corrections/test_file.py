@@ -19,14 +19,15 @@ from linecad.corrections.edits import (
     KnownDistance,
     KnownLength,
     LabelCrossing,
+    Many,
     Meet,
     OnePlane,
     Place,
     PlaceAt,
     SetAxis,
+    SetEnds,
     SetFrame,
     Split,
-    Withdraw,
 )
 from linecad.corrections.file import (
     LARGEST_FILE,
@@ -52,12 +53,17 @@ facts = st.one_of(
     st.builds(PlaceAt, anchors, anchors, st.floats(-5, 5)),
 )
 places = st.builds(Place, points, anchors | st.builds(FaceAnchor, points, st.integers(0, 6)))
-edits = st.one_of(
-    facts,
-    st.builds(Withdraw, facts),
+parts = st.one_of(
     st.builds(LabelCrossing, pairs, points, st.sampled_from([*LABELS, None])),
     st.builds(SetAxis, anchors, st.integers(0, 2)),
     st.builds(Delete, anchors),
+)
+edits = st.one_of(
+    parts,
+    facts,
+    st.builds(Withdraw, facts),
+    st.builds(Many, st.lists(parts, min_size=1, max_size=4).map(tuple)),
+    st.builds(SetEnds, anchors, segments),
     st.builds(Split, anchors, points),
     st.builds(Join, pairs),
     st.builds(Draw, anchors),
@@ -122,6 +128,11 @@ def test_what_was_undone_may_be_missing():
         (with_edit(op="place", line=LINE, to=LINE, log_ratio=5.1), "log_ratio is 5.1, expected a finite number of at"),
         (with_edit(op="withdraw", fact={"op": "delete", "line": LINE}), 'fact.op is "delete", expected one of meet'),
         (with_edit(op="frame", lines=[LINE] * 101), "expected a list of 1 to 100"),
+        (with_edit(op="ends", line=LINE, ends=[[1, 1], [1, 1]]), "expected two ends that differ"),
+        (with_edit(op="many", edits=[]), "expected a list of 1 to 100000"),
+        (with_edit(op="many", edits=7), r"edits\[0\].edits is 7, expected a list"),
+        (with_edit(op="many", edits=[{"op": "length"}]), r"edits\[0\].edits\[0\].op is \"length\""),
+        (with_edit(op="many", edits=[{"op": "many", "edits": []}]), "expected one of label, axis, delete"),
         ([FILE], "expected an object"),
     ],
 )
@@ -141,9 +152,9 @@ def test_numbers_that_are_none_are_refused(token):
 
 
 def test_too_many_edits_are_refused_before_any_is_read():
-    document = {**FILE, "edits": [0] * (MOST_EDITS + 1)}  # none of them is an edit
-    with pytest.raises(CorrectionsFileError, match=f"{MOST_EDITS + 1} edits, at most {MOST_EDITS}"):
-        corrections_from_json(json.dumps(document))
+    for edits in ([0] * (MOST_EDITS + 1), [0, {"op": "many", "edits": [0] * MOST_EDITS}]):  # none of them is an edit
+        with pytest.raises(CorrectionsFileError, match=f"{MOST_EDITS + 1} edits, at most {MOST_EDITS}"):
+            corrections_from_json(json.dumps({**FILE, "edits": edits}))
 
 
 def test_a_file_that_is_too_large_is_not_read(tmp_path):

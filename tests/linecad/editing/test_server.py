@@ -12,6 +12,7 @@ from exporters.formats import FORMATS
 from linecad.cli.main import main
 from linecad.confidence import with_lines
 from linecad.corrections.file import corrections_from_json, corrections_to_json
+from linecad.corrections.snapping import Proposal, Snap
 from linecad.editing.depth_layers import DIVERGING
 from linecad.editing.document import document_of
 from linecad.editing.tiles import TILE
@@ -235,11 +236,80 @@ class TestEdits:
         assert page.post("propose", ends=ends, axis="x").json()["axis"] == "x"
         assert page.edit(op="draw", ends=ends, axis="x")["lines"][-1]["axis"] == "x"
 
+    def test_a_line_far_off_every_axis_is_drawn_along_none_unasked(self, page):
+        ends = [[700.0, 200.0], [790.0, 420.0]]
+        proposed = page.post("propose", ends=ends).json()
+        assert proposed["is_bent"]
+        assert proposed["off"] > 4
+        assert [proposed["axis"], proposed["off"]] == proposed["axes"][0]
+        assert sorted(name for name, _ in proposed["axes"]) == ["x", "y", "z"]
+        text = page.refused(422, "edit", edit={"op": "draw", "ends": ends, "axis": None})
+        assert f"{proposed['off']:.0f} degrees off {proposed['axis']}, the nearest axis; say which" in text
+        assert page.edit(op="draw", ends=ends, axis="z")["lines"][-1]["axis"] == "z"
+
     def test_an_axis_of_a_further_frame_is_proposed_by_its_name(self, page, monkeypatch):
-        ends = np.array([[700.0, 200.0], [702.0, 420.0]])
-        monkeypatch.setattr("linecad.editing.server.proposal", lambda *_: (ends, 4, (False, True)))
-        proposed = page.post("propose", ends=ends.tolist()).json()
-        assert proposed == {"axis": "y2", "ends": ends.tolist(), "snapped": [False, True]}
+        found = Proposal(np.array([[700.0, 200.0], [702.0, 420.0]]), 4, (None, Snap(np.zeros(2), 7, True)), 0.1)
+        monkeypatch.setattr("linecad.editing.edits.propose", lambda *_: found)
+        proposed = page.post("propose", ends=found.ends.tolist()).json()
+        assert (proposed["axis"], proposed["ends"]) == ("y2", found.ends.tolist())
+        assert proposed["snapped"] == [None, {"line": 7, "is_end": True}]
+
+    def test_a_point_snaps_as_far_as_the_page_reaches(self, page):
+        line = page.state()["lines"][0]
+        at = np.add(line["segment"][0], [3.0, 0.0]).tolist()
+        near, far = (page.post("propose", ends=[at], reach=reach).json() for reach in (5, 1e-3))
+        assert near["snapped"][0]["is_end"]
+        assert near["ends"][0] != at == far["ends"][0]
+        assert page.post("propose", ends=[at]).json()["snapped"] == [None]
+
+    @pytest.mark.parametrize(
+        "body",
+        [
+            {"ends": [[700, 200], [701, 200]]},
+            {"line": 0, "end": 1, "at": None},
+            {"line": 10**6, "end": 0, "at": [1, 1]},
+        ],
+    )
+    def test_a_place_where_no_line_can_end_is_an_answer(self, page, body):
+        """The browser wrote an error on its console for each place that the pointer passed there."""
+        if body.get("at", 0) is None:
+            body = {**body, "at": page.state()["lines"][0]["segment"][0]}
+        answer = page.post("propose", **body)
+        assert answer.status_code == 200
+        assert list(answer.json()) == ["refused"]
+
+    def test_an_end_that_is_dragged_moves_along_its_line(self, page):
+        line = max(page.state()["lines"], key=lambda one: np.linalg.norm(np.subtract(*one["segment"])))
+        start, end = np.array(line["segment"])
+        at = (start + 0.7 * (end - start)).tolist()
+        proposed = page.post("propose", line=line["id"], end=1, at=at).json()
+        state = page.edit(op="ends", line=line["id"], end=1, at=at)
+        now = next(one for one in state["lines"] if one["id"] == line["id"])
+        assert now["segment"] == proposed["ends"]
+        assert now["segment"] == pytest.approx(np.array([start, at]))
+        assert page.change("undo")["lines"] == page.state()["lines"]
+        assert next(one for one in page.state()["lines"] if one["id"] == line["id"]) == line
+
+    def test_many_edits_are_one_step_all_or_none(self, page):
+        before = page.state()
+        lines = [line["id"] for line in before["lines"][:3]]
+        crossings = [each["id"] for each in before["crossings"] if not set(each["lines"]) & set(lines)][:4]
+        edits = [{"op": "delete", "line": line} for line in lines]
+        edits += [{"op": "label", "crossing": crossing, "value": "fake"} for crossing in crossings]
+        text = page.refused(422, "edit", edit={"op": "many", "edits": [*edits, {"op": "delete", "line": 10**6}]})
+        assert "no line 1000000 any more" in text
+        state = page.edit(op="many", edits=edits)
+        assert not {line["id"] for line in state["lines"]} & set(lines)
+        assert [each["id"] for each in state["crossings"] if each["label"] == "fake"] == crossings
+        assert state["undo"] == 1
+        assert page.change("undo")["crossings"] == before["crossings"]
+
+    def test_all_crossings_of_a_photo_are_labelled_in_one_request(self, page):
+        known = [each["id"] for each in page.state()["crossings"]]
+        edits = [{"op": "label", "crossing": crossing, "value": "unsure"} for crossing in known]
+        assert page.edit(op="many", edits=edits)["labelling"]["done"] == len(known)
+        longest = [{"op": "label", "crossing": 2**53 - 1, "value": "unsure"}] * 5000
+        assert page.post("edit", base_version=page.version, edit={"op": "many", "edits": longest}).status_code == 422
 
     def test_a_length_sets_the_scale_without_a_solve_and_undo_takes_it_back(self, page):
         line = next(one for one in page.solve()["lines"] if one["component"] == 0)
@@ -274,6 +344,10 @@ class TestEdits:
             ({"op": "split", "line": 0, "at": [1e308, 0]}, "at most"),
             ({"op": "draw", "ends": [[0, 0], [0, 0]], "axis": None}, "two ends that differ"),
             ({"op": "draw", "ends": [[0, 0], [2, 0]], "axis": "x"}, "too short"),
+            ({"op": "ends", "line": 10**6, "end": 0, "at": [5, 5]}, "no line 1000000 any more"),
+            ({"op": "ends", "line": 0, "end": 2, "at": [5, 5]}, "whole number from 0 to 1"),
+            ({"op": "many", "edits": []}, "list of 1 to"),
+            ({"op": "many", "edits": [{"op": "draw"}]}, "one of label, axis, delete"),
             ({"op": "length", "line": 0, "metres": 0}, "length from"),
             ({"op": "join", "lines": [0]}, "list of 2"),
             ({"op": "frame", "lines": []}, "list of 1 to 100"),
@@ -320,7 +394,7 @@ class TestUndo:
                     edit = {"op": "split", "line": line["id"], "at": middle}
                 case 3:
                     drawn += 1
-                    edit = {"op": "draw", "ends": [[100 + 9 * number, 100], [300 + 9 * number, 140]], "axis": None}
+                    edit = {"op": "draw", "ends": [[100 + 9 * number, 100], [300 + 9 * number, 140]], "axis": "x"}
                 case _:
                     edit = {"op": "delete", "line": line["id"]}
             states.append(page.edit(**edit))
