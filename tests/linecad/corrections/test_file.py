@@ -28,6 +28,7 @@ from linecad.corrections.edits import (
     SetEnds,
     SetFrame,
     Split,
+    Withdraw,
 )
 from linecad.corrections.file import (
     LARGEST_FILE,
