@@ -11,6 +11,7 @@ export class Actions {
     Object.assign(this, parts); // store, editing, draft, photo, model, messages, server
     this.redoBeforeDraft = 0;
     this.openLength = () => {};
+    this.hasAsked = true; // for the solve that runs, or ran last; the page asks by itself after a word about bodies
   }
 
   // --- crossings ---
@@ -82,6 +83,7 @@ export class Actions {
   solveOrStop() {
     if (this.store.solve.state === "running")
       return this.server.post("stop").catch((error) => this.messages.tell(error.message, "error"));
+    this.hasAsked = true;
     return this.editing.solve();
   }
 
@@ -121,7 +123,7 @@ export class Actions {
   escape() {
     if (!this.draft.isEmpty) this.draft.clear();
     else if (this.store.labelling) this.toggleLabelling();
-    else if (this.store.selection) this.store.set({ selection: null });
+    else if (this.store.selection || this.store.body !== null) this.store.set({ selection: null, body: null });
     else if (this.store.tool !== "correct") this.store.set({ tool: "correct" });
   }
 }

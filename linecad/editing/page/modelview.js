@@ -36,6 +36,7 @@ export class ModelView {
     this.gizmo = document.querySelector("#gizmo");
     this.orbit = new Orbit(store.state.photo, store.state.K, store.state.R_cam_from_world);
     this.onView = () => {};
+    this.overlays = []; // functions of the graphics and the matrix that draw more
     try {
       this.graphics = new Graphics(this.canvas);
     } catch {
@@ -253,6 +254,7 @@ export class ModelView {
     this.graphics.drawLines(this.#lines, matrix, { nearer: NEARER });
     // Through the camera its pyramid would be a roof over the whole view.
     if (!this.orbit.inCamera) this.graphics.drawLines(this.#camera, matrix);
+    for (const draw of this.overlays) draw(this.graphics, matrix);
     this.graphics.drawLines(this.#lit, matrix, { always: true });
     this.#paintGizmo();
     this.canvas.dispatchEvent(new Event("painted"));
