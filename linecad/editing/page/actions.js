@@ -11,6 +11,7 @@ export class Actions {
     Object.assign(this, parts); // store, editing, draft, photo, model, messages, server, many, lineWalk
     this.redoBeforeDraft = 0;
     this.openLength = () => {};
+    this.hasAsked = true; // for the solve that runs, or ran last; the page asks by itself after a word about bodies
   }
 
   // --- crossings ---
@@ -88,6 +89,7 @@ export class Actions {
   solveOrStop() {
     if (this.store.solve.state === "running")
       return this.server.post("stop").catch((error) => this.messages.tell(error.message, "error"));
+    this.hasAsked = true;
     return this.editing.solve();
   }
 
@@ -134,7 +136,9 @@ export class Actions {
     else if (!this.measuring.isEmpty) this.measuring.clear();
     else if (this.store.labelling) this.toggleLabelling();
     else if (this.crosshair.isShown) this.crosshair.leave();
-    else if (this.store.selection || this.store.many) this.store.set({ selection: null, many: null });
+    else if (this.store.selection || this.store.many || this.store.body !== null) {
+      this.store.set({ selection: null, many: null, body: null });
+    }
     else if (this.store.tool !== "correct") this.store.set({ tool: "correct" });
   }
 }

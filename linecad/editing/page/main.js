@@ -1,6 +1,7 @@
 // Starts the page: asks for the state, builds the views, and wires them to the keys.
 
 import { Actions } from "./actions.js";
+import { startBodies } from "./bodystart.js";
 import { Choosing } from "./choosing.js";
 import { Crosshair } from "./crosshair.js";
 import { Draft } from "./draft.js";
@@ -49,14 +50,15 @@ async function start() {
   const views = new Views(store, model, messages);
   const choosing = new Choosing(store, actions);
   Object.assign(actions, { measuring, views, choosing });
+  const bodies = startBodies({ store, actions, photo, model });
   new Labelling(store, actions);
   new Inspector(store, actions, tools);
   new Solving(store, actions);
-  const table = keyTable({ store, actions, tools, pointer, panels, views, choosing });
+  const table = [...keyTable({ store, actions, tools, pointer, panels, views, choosing }), bodies.keys];
   listenToKeys(table);
   document.querySelector("#help-columns").append(...keyHelp(table));
   await guardTab(server, store, messages, editing);
-  globalThis.linecad = { store, editing, photo, model, draft }; // for the console, and for the tests
+  globalThis.linecad = { store, editing, photo, model, draft, bodies }; // for the console, and for the tests
   document.body.dataset.ready = "yes";
   await model.loadPhoto(server);
   document.body.dataset.photo = "shown";

@@ -48,6 +48,7 @@ export class ModelView {
     this.onView = () => {};
     this.onClick = (at) => this.store.set({ selection: this.thingAt(at) });
     this.onHover = (at) => this.store.set({ hover: this.lineAt(at) });
+    this.overlays = []; // functions of the graphics and the matrix that draw more
     try {
       this.graphics = new Graphics(this.canvas);
     } catch {
@@ -246,6 +247,7 @@ export class ModelView {
     this.graphics.drawLines(this.#lines, matrix, { nearer: NEARER });
     // Through the camera its pyramid would be a roof over the whole view.
     if (!this.orbit.inCamera) this.graphics.drawLines(this.#camera, matrix);
+    for (const draw of this.overlays) draw(this.graphics, matrix);
     this.graphics.drawLines(this.#lit, matrix, { always: true });
     paintGizmo(this.gizmo, this.orbit.axes);
     this.canvas.dispatchEvent(new Event("painted"));

@@ -69,8 +69,11 @@ export class Solving {
       return;
     }
     const { contradiction, crossings, solve } = this.store.state;
+    const { hasAsked } = this.actions;
+    this.actions.hasAsked = false;
     if (contradiction) return; // a notice says so
     if (solve.error) this.actions.messages.tell(solve.error, "error");
+    else if (!hasAsked) return; // the scene was built anew behind what was said of bodies
     else if (!solve.fresh) this.actions.messages.tell("The lines changed while it was solved; solve again.", "warning");
     else {
       const changed = crossings.filter((crossing) => crossing.changed).length;
@@ -84,11 +87,12 @@ export class Solving {
     const { store } = this;
     const { solve } = store;
     this.button.textContent = this.running ? "Stop" : "Solve again";
-    this.button.classList.toggle("running", this.running);
+    this.button.classList.toggle("running", this.running && this.actions.hasAsked);
     this.button.disabled = !store.owner;
     const { fresh } = solve;
     this.button.classList.toggle("waiting", !this.running && !fresh);
-    this.text.textContent = this.running ? progressText(solve) : resultText(solve, fresh);
+    const isBehind = this.running && !this.actions.hasAsked;
+    this.text.textContent = isBehind ? "Building the scene anew" : this.running ? progressText(solve) : resultText(solve, fresh);
     this.bar.hidden = !this.running;
     if (typeof solve.gap === "number") this.bar.value = Math.max(0, 1 - Math.min(solve.gap, 1));
     else this.bar.removeAttribute("value");
@@ -104,8 +108,14 @@ export class Solving {
       this.store.set({ selection: thing });
       this.actions.photo.show(thing, true);
     };
+    const facts = this.store.state.facts.filter(({ edit }) => contradiction?.facts.includes(edit));
+    const withdraw = facts.map(({ edit, words, lines }) => [
+      `Withdraw “${words}”${facts.length > 1 ? ` of line ${lines[0]}` : ""}`,
+      () => this.actions.editing.edit({ op: "withdraw", edit }),
+    ]);
     this.actions.messages.keep("contradiction", contradiction?.text ?? null, "error", [
       ["Show it", show],
+      ...withdraw,
       ["Undo the last change", () => this.actions.undo()],
     ]);
   }

@@ -17,6 +17,7 @@ export const TOOLS = [
   },
   { name: "select", label: "Select", key: "v", hint: "Click a line or a crossing, or drag a rectangle around many" },
   { name: "draw", label: "Draw", key: "d", hint: "Click both ends of a line, or drag; x, y or z fixes its axis" },
+  { name: "body", label: "Body", key: "b", hint: "Click a line or a face, in either view, to select the body that it is of" },
   { name: "split", label: "Split", key: "k", hint: "Click where a line is to be cut in two" },
   { name: "join", label: "Join", key: "j", hint: "Click two lines that are one" },
   {
@@ -75,7 +76,7 @@ export class Tools {
   /** The kinds of things that light up under the pointer. */
   get kinds() {
     if (this.draws || this.store.tool === "measure") return [];
-    return this.store.tool === "split" || this.store.tool === "join" ? ["line"] : ["crossing", "line"];
+    return ["body", "split", "join"].includes(this.store.tool) ? ["line"] : ["crossing", "line"];
   }
 
   /** A click that did not move; `at` in CSS px of the stage. */
@@ -88,6 +89,8 @@ export class Tools {
       case "correct":
         if (thing?.kind === "crossing" && !this.store.labelling) return void this.actions.flip(found);
         break;
+      case "body":
+        return this.actions.clickBody(at, viewport);
       case "split":
         if (found) this.#edit({ op: "split", line: found.id, at: nearest(viewport.toPhoto(at), found.segment) });
         return;
