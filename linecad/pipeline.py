@@ -108,6 +108,7 @@ def reconstruct_lines(
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:
         decision = decision.within(found_components.kept, graph)
+    on_stage("building planes and faces")
     scene = build_scene(view, graph, solution, decision, found_components, placed)
     return Reconstruction(whole, graph, solution, decision, lifted, scene)
 

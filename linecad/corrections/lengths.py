@@ -4,30 +4,33 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.arrays import Float
+from exporters.bands import GUESS, bands_of
+from linecad.arrays import Bool, Float
 from linecad.corrections.apply import CorrectedLines
 from linecad.directions import components
 from linecad.geometry import depths_beside, world_rays
 from linecad.scene import Scene
 
+UNSURE = "stands at a depth that is a guess"
 LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
 
 
 def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     """The scene with the scale that known lengths give it: the geometric mean of what each says.
 
-    Only lengths on component 0 count, since the scales of the others are guesses.
+    A note tells of each that says nothing (`measurable`).
     """
     if not corrected.lengths:
         return scene
     axes = enumerate(scene.lines.axis.tolist())
     row = {(axis, ends.tobytes()): number for number, axis in axes for ends in scene.lines.segments_of(number)}
-    scales, notes = [], []
+    tells, scales, notes = measurable(scene), [], []
     for number, metres in corrected.lengths.items():
         own = int(np.flatnonzero(corrected.ids == number)[0])
         key = (int(corrected.segments.axis[own]), corrected.segments.ends[own].tobytes())
-        if key not in row or scene.lines.component[row[key]] != 0:
-            notes.append(f"a line of known length ({metres:g} m) is not on component 0, so its length says nothing")
+        if key not in row or not tells[row[key]]:
+            why = "is not in the model" if key not in row else UNSURE
+            notes.append(f"a line of known length ({metres:g} m) {why}, so its length says nothing about the scale")
             continue
         scales.append(metres / _length(scene, row[key], corrected.segments.ends[own]))
     if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
@@ -39,6 +42,17 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
         else ""
     )
     return replace(scene, metres_per_unit=metres_per_unit, scale_source=source, notes=scene.notes + tuple(notes))
+
+
+def measurable(scene: Scene) -> Bool:
+    """(N,) whether the length of each line says how long a unit is: where its depth is no guess.
+
+    Where the scene tells probabilities, all components have one scale, and a length is as far off as the depth of its
+    line is (docs/decisions/0108); where it tells none, each has a scale of its own, and component 0 is what is measured.
+    """
+    bands = bands_of(scene.lines)
+    tells: Bool = scene.lines.component == 0 if bands is None else bands != GUESS
+    return tells
 
 
 def _length(scene: Scene, row: int, segment: Float) -> float:

@@ -12,6 +12,7 @@ from exporters.model import build_model
 from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary
+from linecad.corrections.lengths import measurable
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.depth_layers import document_of_layers
@@ -22,7 +23,7 @@ from linecad.scene import Face, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
-    "by_depth_map": False,
+    "by_depth_map": False, "sets_scale": False,
 }  # fmt: skip
 
 
@@ -66,7 +67,10 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
 
 def solve_of(now: Now) -> dict[str, object]:
     """How the solve stands: the one that runs, else the last one."""
-    known: dict[str, object] = {"objective": None, "bound": None, "gap": None, "seconds": None, "status": None}
+    known: dict[str, object] = {
+        "objective": None, "bound": None, "gap": None, "seconds": None, "status": None,
+        "stage": now.stage if now.is_running else "",
+    }  # fmt: skip
     if now.progress is not None and now.is_running:
         at = now.progress
         known |= {"objective": at.objective, "bound": _finite(at.bound), "gap": _finite(at.gap), "seconds": at.seconds}
@@ -105,6 +109,7 @@ def _lines(now: Now) -> list[dict[str, object]]:
             "segment": ends.tolist(),
             **in_space.get((axis, ends.tobytes()), NOT_IN_SPACE),
             "origin": origin[number],
+            "metres": corrected.lengths.get(number),
         }
         for number, axis, ends in zip(now.lines.ids, graph.axis.tolist(), graph.segments.ends, strict=True)
     ]
@@ -114,7 +119,7 @@ def _lines(now: Now) -> list[dict[str, object]]:
 def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
     """What a scene says about each line, by axis and segment."""
     lines = scene.lines
-    guess = _is_guess(scene)
+    guess, sets_scale = _is_guess(scene), measurable(scene)
     return {
         look: {
             "ends": lines.ends[row].tolist(),
@@ -124,6 +129,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "probability": float(lines.probability[row]) if len(lines.probability) else None,
             "guess": bool(guess[row]),
             "by_depth_map": bool(lines.by_depth_map[row]),
+            "sets_scale": bool(sets_scale[row]),
         }
         for look, row in _rows(scene).items()
     }

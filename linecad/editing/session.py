@@ -71,7 +71,7 @@ class Model:
     version: int  # of the state that it was solved for
     decided: dict[int, Decided]  # by the id of the crossing
     changed: frozenset[int]  # crossings whose decision differs from that of the model before
-    seconds: float  # of the solver
+    seconds: float  # from the lines to the scene
 
 
 @dataclass(frozen=True)
@@ -93,7 +93,8 @@ class Now:
     lines: Lines
     corrections: Corrections
     model: Model | None
-    progress: Progress | None  # of the solve that runs, or of the last one
+    progress: Progress | None  # of the search of the solve that runs, or of the last one
+    stage: str  # what the solve that runs is at, in words; empty while it searches
     is_fresh: bool  # the model holds all edits
     is_running: bool
     error: str  # of the last solve
@@ -127,6 +128,7 @@ class Session:
         self._task = 0  # number of the last solve that was asked for
         self._solving: tuple[int, Content] | None = None  # number and content of the one that runs
         self._progress: Progress | None = None
+        self._stage = ""
         self._error = ""
         self._contradiction: Contradiction | None = None
         self._editing, self._notes = self._replay(corrections)
@@ -143,6 +145,7 @@ class Session:
                 self._corrections,
                 self._model,
                 self._progress,
+                self._stage,
                 self._solved is not None and self._models.get(self._content()) is self._solved,
                 self._solving is not None,
                 self._error,
@@ -210,7 +213,7 @@ class Session:
             self._check(base)
             self._task += 1
             self._solving = (self._task, self._content())
-            self._progress, self._error, self._contradiction = None, "", None
+            self._progress, self._stage, self._error, self._contradiction = None, "", "", None
             # The process that solves has the photo already.
             return Task(self._task, replace(self._found_now(), pixels=None), self._lines.corrected)
 
@@ -218,7 +221,7 @@ class Session:
         """Take note of how far a solve has come."""
         with self._lock:
             if self._solving is not None and self._solving[0] == step.number:
-                self._progress = step.progress
+                self._progress, self._stage = step.progress or self._progress, step.stage
 
     def take(self, answer: Answer) -> None:
         """Take over the answer of a solve, unless another one was asked for or the lines have changed since."""
@@ -235,7 +238,7 @@ class Session:
                 crossings = tuple(crossing_id(*pair) for pair in answer.crossings)
                 self._contradiction = Contradiction(answer.lines, crossings, answer.error)
             if answer.made is not None:
-                self._models[content] = self._model_of(answer.made)
+                self._models[content] = self._model_of(answer.made, answer.seconds)
                 self._show(self._models[content])
                 while len(self._models) > MODELS_KEPT:
                     self._models.popitem(last=False)
@@ -304,13 +307,13 @@ class Session:
         self._solved = model
         self._model = replace(model, scene=measured(model.scene, self._lines.corrected))
 
-    def _model_of(self, made: Reconstruction) -> Model:
+    def _model_of(self, made: Reconstruction, seconds: float) -> Model:
         now = decisions(made, self._lines, self.options.largest_component)
         before = {} if self._model is None else self._model.decided
         changed = frozenset(
             crossing for crossing, found in now.items() if before.get(crossing, found).real != found.real
         )
-        return Model(made.scene, self._version, now, changed, made.solution.seconds)
+        return Model(made.scene, self._version, now, changed, seconds)
 
 
 def crossing_id(one: int, other: int) -> int:

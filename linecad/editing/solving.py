@@ -9,6 +9,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
@@ -23,6 +24,7 @@ from linecad.errors import ContradictionError, LinecadError
 from linecad.finding import FoundLines
 from linecad.options import Options
 from linecad.pipeline import Reconstruction, reconstruct_lines
+from linecad.progress import StageReport, silent
 from solver.options import Progress
 
 if TYPE_CHECKING:
@@ -57,14 +59,16 @@ class Answer:
     error: str = ""
     lines: tuple[int, ...] = ()  # ids of lines that stand in a contradiction
     crossings: tuple[tuple[int, int], ...] = ()  # pairs of line ids whose crossings cannot all be real
+    seconds: float = 0.0  # that the whole of it took; told, and nothing more
 
 
 @dataclass(frozen=True)
 class Step:
-    """How far a task has come."""
+    """How far a task has come: the search of its program, or another stage of its work in words."""
 
     number: int
-    progress: Progress
+    progress: Progress | None = None
+    stage: str = ""
 
 
 class SolvingProcess:
@@ -199,16 +203,25 @@ def _solve(
         if asked.value == task.number:
             signal.raise_signal(signal.SIGINT)
 
-    return solve_task(task, photo, options, tell, depth)
+    began = time.monotonic()
+    answer = solve_task(
+        task, photo, options, tell, depth, on_stage=lambda words: pipe.send(Step(task.number, stage=words))
+    )
+    return replace(answer, seconds=time.monotonic() - began)
 
 
 def solve_task(
-    task: Task, photo: Photo, options: Options, tell: Callable[[Progress], None], depth: DepthMap | None = None
+    task: Task,
+    photo: Photo,
+    options: Options,
+    tell: Callable[[Progress], None],
+    depth: DepthMap | None = None,
+    on_stage: StageReport = silent,
 ) -> Answer:
     """The answer to a task, in this process; `depth` is a map on the photo's pixels."""
     try:
         found = replace(task.found, pixels=photo.pixels)
-        made = reconstruct_lines(photo.name, found, options, tell, corrected=task.corrected, depth=depth)
+        made = reconstruct_lines(photo.name, found, options, tell, on_stage, task.corrected, depth)
     except ContradictionError as error:
         return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings)
     except LinecadError as error:

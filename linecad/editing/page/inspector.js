@@ -110,9 +110,11 @@ export class Inspector {
       line.boundary ? "boundary" : null,
       line.confidence,
       line.probability === null ? null : `depth ${Math.round(100 * line.probability)} % sure`,
+      line.ends && line.guess ? "its depth is a guess" : null,
       line.by_depth_map ? "placed by the depth map" : null,
       line.component > 0 ? `component ${line.component}` : null,
       ORIGINS[line.origin],
+      line.metres === null ? null : `known to be ${line.metres} m`,
       this.#length(line),
     ];
     const text = element(

@@ -6,6 +6,7 @@ import { Editing } from "./editing.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
+import { LengthDialog } from "./lengthdialog.js";
 import { Messages } from "./messages.js";
 import { ModelView } from "./modelview.js";
 import { Panels } from "./panels.js";
@@ -36,6 +37,7 @@ async function start() {
   const pointer = new Pointer(store, photo, tools);
   const panels = new Panels(store, actions, pointer);
   new Labelling(store, actions);
+  new LengthDialog(actions);
   new Inspector(store, actions, tools);
   new Solving(store, actions);
   const table = keyTable({ store, actions, tools, pointer, panels });

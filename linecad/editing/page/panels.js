@@ -1,6 +1,6 @@
 // The bars, menus and dialogs around the two views.
 
-import { counted, element, icon } from "./dom.js";
+import { element, icon } from "./dom.js";
 import { isReal } from "./store.js";
 import { TOOLS } from "./tools.js";
 
@@ -20,7 +20,6 @@ export class Panels {
     this.#makeZoom();
     this.#makeModelBar();
     this.#makeNotes();
-    this.#makeLength();
     this.#makeExport();
     this.#makeSplitter();
     document.querySelector("#photo-name").textContent = store.state.photo.name;
@@ -247,27 +246,5 @@ export class Panels {
       const step = { ArrowLeft: -DIVIDER_STEP, ArrowRight: DIVIDER_STEP }[event.key];
       if (step) put(now() + step);
     });
-  }
-
-  // --- the known length ---
-
-  #makeLength() {
-    const dialog = document.querySelector("#length-dialog");
-    const value = document.querySelector("#length-value");
-    let line = null;
-    this.actions.openLength = (chosen) => {
-      line = chosen;
-      const others = counted(this.store.state.lines.length - 1, "other line");
-      document.querySelector("#length-text").textContent =
-        `How long is line ${line.id}? It sets the scale of all ${others}.`;
-      value.value = "";
-      dialog.showModal();
-    };
-    document.querySelector("#length-cancel").addEventListener("click", () => dialog.close());
-    document
-      .querySelector("#length-form")
-      .addEventListener("submit", () =>
-        this.actions.editing.edit({ op: "length", line: line.id, metres: value.valueAsNumber }),
-      );
   }
 }
