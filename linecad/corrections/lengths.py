@@ -48,7 +48,7 @@ def measurable(scene: Scene) -> Bool:
     """(N,) whether the length of each line says how long a unit is: where its depth is no guess.
 
     Where the scene tells probabilities, all components have one scale, and a length is as far off as the depth of its
-    line is (docs/decisions/0108); where it tells none, each has a scale of its own, and component 0 is what is measured.
+    line is (docs/decisions/0108); where it tells none, each has a scale of its own, and only component 0 is measured.
     """
     bands = bands_of(scene.lines)
     tells: Bool = scene.lines.component == 0 if bands is None else bands != GUESS

@@ -203,11 +203,9 @@ def _solve(
         if asked.value == task.number:
             signal.raise_signal(signal.SIGINT)
 
-    began = time.monotonic()
-    answer = solve_task(
+    return solve_task(
         task, photo, options, tell, depth, on_stage=lambda words: pipe.send(Step(task.number, stage=words))
     )
-    return replace(answer, seconds=time.monotonic() - began)
 
 
 def solve_task(
@@ -219,6 +217,7 @@ def solve_task(
     on_stage: StageReport = silent,
 ) -> Answer:
     """The answer to a task, in this process; `depth` is a map on the photo's pixels."""
+    began = time.monotonic()
     try:
         found = replace(task.found, pixels=photo.pixels)
         made = reconstruct_lines(photo.name, found, options, tell, on_stage, task.corrected, depth)
@@ -226,4 +225,4 @@ def solve_task(
         return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings)
     except LinecadError as error:
         return Answer(task.number, error=str(error))
-    return Answer(task.number, made)
+    return Answer(task.number, made, seconds=time.monotonic() - began)
