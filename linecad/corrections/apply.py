@@ -4,7 +4,7 @@ What cannot be found again is told in a note and left out. Every line has an id 
 added or taken back: found lines are numbered in their order, new ones follow in the order of the edits.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from itertools import product
 from typing import Literal, assert_never
 
@@ -23,6 +23,7 @@ from linecad.corrections.edits import (
     KnownLength,
     Label,
     LabelCrossing,
+    NameGroup,
     Point,
     SetAxis,
     SetFrame,
@@ -51,6 +52,7 @@ class CorrectedLines:
     lengths: dict[int, float]  # m, by id
     parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
     notes: tuple[str, ...]  # what could not be found again
+    names: dict[int, str] = field(default_factory=dict)  # of groups, by the id of a line of each; the newest last
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -104,6 +106,7 @@ class Correcting:
         self.became: dict[int, tuple[int, ...]] = {}  # lines that were split or joined, and their successors
         self.labels: dict[tuple[int, int], tuple[Point, Label]] = {}
         self.lengths: dict[int, float] = {}
+        self.names: dict[int, str] = {}
         self.parted: list[tuple[int, int]] = []
         self._table: LineTable | None = None
 
@@ -143,6 +146,11 @@ class Correcting:
                 self.lengths.pop(number, None)
                 if edit.metres is not None:
                     self.lengths[number] = edit.metres
+            case NameGroup():
+                number = self.find(edit.line, before_frame)
+                self.names.pop(number, None)
+                if edit.name is not None:
+                    self.names[number] = edit.name
             case SetFrame():
                 pass  # the lines were found with it
             case _:
@@ -160,6 +168,7 @@ class Correcting:
             lengths={own: metres for number, metres in self.lengths.items() for own in self._now(number)[:1]},
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
             notes=notes,
+            names={own: name for number, name in self.names.items() for own in self._now(number)[:1]},
         )
 
     def anchor(self, number: int) -> Anchor:

@@ -14,6 +14,7 @@ LABELS: tuple[Label, ...] = get_args(Label)
 MOST_EDITS = 100_000  # in one file; a photo has some thousand crossings
 SHORTEST = 1e-6  # m, of a known length
 LONGEST = 1e6  # m
+LONGEST_NAME = 60  # characters, of a group
 
 Point = tuple[float, float]  # px
 Ends = tuple[Point, Point]  # px
@@ -82,13 +83,21 @@ class KnownLength:
 
 
 @dataclass(frozen=True)
+class NameGroup:
+    """What a person calls the group that a line is in; None takes the name back. It changes nothing in the model."""
+
+    line: Anchor
+    name: str | None
+
+
+@dataclass(frozen=True)
 class SetFrame:
     """Lines drawn along the Manhattan axes, in place of the frame that was found; equal axes are parallel in space."""
 
     lines: tuple[Anchor, ...]
 
 
-Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | SetFrame
+Edit = LabelCrossing | SetAxis | Delete | Split | Join | Draw | KnownLength | NameGroup | SetFrame
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from typing import assert_never, cast
 from linecad.corrections.edits import (
     LABELS,
     LONGEST,
+    LONGEST_NAME,
     MOST_EDITS,
     SHORTEST,
     Anchor,
@@ -19,6 +20,7 @@ from linecad.corrections.edits import (
     KnownLength,
     Label,
     LabelCrossing,
+    NameGroup,
     Point,
     SetAxis,
     SetFrame,
@@ -37,7 +39,7 @@ LARGEST_PHOTO = 10**6  # px along one side
 LARGEST_PIXEL = 1e7  # px from the photo's corner
 LEAST_LENGTH = 1e-3  # px, of a segment
 MOST_FRAME_LINES = 100
-OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame")
+OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "name", "frame")
 
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
@@ -109,6 +111,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "draw", "line": _anchor_to_json(edit.line)}
         case KnownLength():
             return {"op": "length", "line": _anchor_to_json(edit.line), "metres": edit.metres}
+        case NameGroup():
+            return {"op": "name", "line": _anchor_to_json(edit.line), "text": edit.name}
         case SetFrame():
             return {"op": "frame", "lines": [_anchor_to_json(line) for line in edit.lines]}
         case _:
@@ -152,6 +156,8 @@ def _edit(node: Node) -> Edit:
             return Draw(_anchor(node["line"]))
         case "length":
             return KnownLength(_anchor(node["line"]), metres(node))
+        case "name":
+            return NameGroup(_anchor(node["line"]), name(node))
         case _:
             return SetFrame(frame_lines(node["lines"], "segment"))
 
@@ -216,4 +222,15 @@ def metres(node: Node) -> float | None:
     found = member.number(LONGEST)
     if found < SHORTEST:
         raise member.wrong(f"a length from {SHORTEST:g} to {LONGEST:g} m")
+    return found
+
+
+def name(node: Node) -> str | None:
+    """The member "text": a name of one line, or null."""
+    member = node.get("text")
+    if member is None or member.value is None:
+        return None
+    found = member.text().strip()
+    if not 0 < len(found) <= LONGEST_NAME or not found.isprintable():
+        raise member.wrong(f"a name of 1 to {LONGEST_NAME} characters")
     return found

@@ -11,6 +11,8 @@ from linecad.directions import components
 from linecad.geometry import depths_beside, world_rays
 from linecad.scene import Scene
 
+SAYS_NOTHING = "its length says nothing about the scale"  # of notes on lengths, also for who looks for them
+DISAGREE = "the known lengths disagree"
 UNSURE = "stands at a depth that is a guess"
 LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
 
@@ -30,11 +32,11 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
         key = (int(corrected.segments.axis[own]), corrected.segments.ends[own].tobytes())
         if key not in row or not tells[row[key]]:
             why = "is not in the model" if key not in row else UNSURE
-            notes.append(f"a line of known length ({metres:g} m) {why}, so its length says nothing about the scale")
+            notes.append(f"a line of known length ({metres:g} m) {why}, so {SAYS_NOTHING}")
             continue
         scales.append(metres / _length(scene, row[key], corrected.segments.ends[own]))
     if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
-        notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
+        notes.append(f"{DISAGREE} by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
     metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
     source = (
         f"{len(scales)} known length{'s' if len(scales) > 1 else ''} of lines, so a unit is {metres_per_unit:.6g} m"

@@ -5,17 +5,18 @@ from functools import lru_cache
 
 import numpy as np
 
-from exporters.bands import GUESS, bands_of
 from exporters.faces import FlatFace
 from exporters.formats import FORMATS, SCENE_FILE
 from exporters.model import build_model
 from exporters.triangulation import triangulate
-from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.corrections.lengths import measurable
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.depth_layers import document_of_layers
+from linecad.editing.groups import Group, groups_of
+from linecad.editing.in_model import is_guess, rows_by_look
+from linecad.editing.notes import notes_of
 from linecad.editing.session import Model, Now
 from linecad.editing.tiles import TILE
 from linecad.errors import OutputError
@@ -31,6 +32,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
     """The answer to GET /api/state; `levels` of the photo's tiles, `depth` a map on its pixels."""
     camera = now.found.camera
     scene = None if now.model is None else now.model.scene
+    groups = groups_of(now)
     labelled = sum(label is not None for label in now.lines.annotations.label)
     return {
         "version": now.version,
@@ -45,7 +47,9 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "lines": _lines(now),
         "crossings": _crossings(now),
         "planes": [] if now.model is None else _planes(now, now.model),
-        "notes": list(now.found.notes if scene is None else scene.notes),
+        "groups": [_group(group) for group in groups],
+        "notes": list(notes_of(now, groups)),
+        "details": list(now.found.notes if scene is None else scene.notes),
         "depth_map": None if depth is None else document_of_layers(depth, now),
         "solve": solve_of(now),
         "undo": len(now.corrections.edits),
@@ -59,7 +63,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
                 "text": now.contradiction.text,
             }
         ),
-        "labelling": {"done": labelled, "total": len(now.lines.crossings)},
+        "labelling": {"done": labelled, "total": len(now.lines.crossings), "order": now.order},
         "saved": is_saved,
         "formats": formats(),
     }  # fmt: skip
@@ -119,7 +123,7 @@ def _lines(now: Now) -> list[dict[str, object]]:
 def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
     """What a scene says about each line, by axis and segment."""
     lines = scene.lines
-    guess, sets_scale = _is_guess(scene), measurable(scene)
+    guess, sets_scale = is_guess(scene), measurable(scene)
     return {
         look: {
             "ends": lines.ends[row].tolist(),
@@ -131,15 +135,20 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "by_depth_map": bool(lines.by_depth_map[row]),
             "sets_scale": bool(sets_scale[row]),
         }
-        for look, row in _rows(scene).items()
+        for look, row in rows_by_look(scene).items()
     }
 
 
-def _is_guess(scene: Scene) -> Bool:
-    """(N,) whether the depth of each line is more likely wrong than right; where the scene does not tell, is weak."""
-    bands = bands_of(scene.lines)
-    guess: Bool = scene.lines.confidence == "weak" if bands is None else bands == GUESS
-    return guess
+def _group(group: Group) -> dict[str, object]:
+    return {
+        "component": group.component,
+        "name": group.name,
+        "named": group.is_named,
+        "line": group.line,
+        "lines": group.lines,
+        "share": group.share,
+        "guess": group.guess,
+    }
 
 
 def _crossings(now: Now) -> list[dict[str, object]]:
@@ -179,10 +188,10 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         )
     }
     numbers: dict[int, list[int]] = {int(line): [] for line in scene.lines.id}
-    for look, row in _rows(scene).items():
+    for look, row in rows_by_look(scene).items():
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
-    guesses = set(scene.lines.id[_is_guess(scene)].tolist())
+    guesses = set(scene.lines.id[is_guess(scene)].tolist())
     triangles = _triangles(scene)
     return [
         {
@@ -226,12 +235,6 @@ def _turned_rings(face: Face, flat: FlatFace) -> list[list[list[float]]]:
 def _same_direction(ring: np.ndarray, turned: np.ndarray) -> bool:
     scale = np.linalg.norm(turned[0]) / max(np.linalg.norm(ring[0]), np.finfo(float).tiny)
     return bool(np.abs(ring * scale - turned).max() <= np.abs(ring[::-1] * scale - turned).max())
-
-
-def _rows(scene: Scene) -> dict[tuple[int, bytes], int]:
-    """The row of each line of a scene by axis and segment, that of a line joined from pieces by each of these."""
-    axes = enumerate(scene.lines.axis.tolist())
-    return {(axis, ends.tobytes()): row for row, axis in axes for ends in scene.lines.segments_of(row)}
 
 
 def _finite(number: float) -> float | None:

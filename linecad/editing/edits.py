@@ -13,11 +13,12 @@ from linecad.corrections.edits import (
     Join,
     KnownLength,
     LabelCrossing,
+    NameGroup,
     SetAxis,
     SetFrame,
     Split,
 )
-from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label, metres, point
+from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label, metres, name, point
 from linecad.editing.session import Session
 from linecad.io.strict_json import Node
 
@@ -47,6 +48,8 @@ def read_edit(node: Node, session: Session) -> Edit:
             return Draw(Anchor(_plain(drawn), own))
         case "length":
             return KnownLength(_line(node, lines), metres(node))
+        case "name":
+            return NameGroup(_line(node, lines), name(node))
         case _:
             return SetFrame(frame_lines(node["lines"], "ends"))
 

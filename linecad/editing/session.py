@@ -12,9 +12,10 @@ from functools import cached_property
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import Annotations, annotations_of, rows_of
 from linecad.corrections.apply import CorrectedLines, Correcting, correcting_of
-from linecad.corrections.edits import Corrections, Edit, KnownLength, SetFrame
+from linecad.corrections.edits import Corrections, Edit, KnownLength, NameGroup, SetFrame
 from linecad.corrections.lengths import measured
 from linecad.editing.solving import Answer, Step, Task
+from linecad.editing.telling import Order
 from linecad.errors import CorrectionError, LinecadError
 from linecad.finding import FoundLines, connect_all, name_lines
 from linecad.line_graph import LineGraph, Segments
@@ -99,6 +100,7 @@ class Now:
     is_running: bool
     error: str  # of the last solve
     contradiction: Contradiction | None
+    order: tuple[int, ...]  # ids of all crossings, the most telling first (linecad.editing.telling)
 
 
 Content = tuple[Edit, ...]
@@ -131,6 +133,7 @@ class Session:
         self._stage = ""
         self._error = ""
         self._contradiction: Contradiction | None = None
+        self._orders = Order()
         self._editing, self._notes = self._replay(corrections)
         self._lines = self._connect()
 
@@ -150,6 +153,7 @@ class Session:
                 self._solving is not None,
                 self._error,
                 self._contradiction,
+                self._order(),
             )
 
     def edit(self, base: int, make: Callable[["Session"], Edit]) -> None:
@@ -197,13 +201,12 @@ class Session:
         return divmod(crossing, CROSSING_BASE)
 
     def next_unlabelled(self, after: int | None) -> int | None:
-        """The next crossing without a label behind `after`, in the order of the state and around."""
+        """The next crossing without a label behind `after`, the most telling first and around."""
         with self._lock:
-            lines = self._lines
-            start = lines.edge.get(after, -1) + 1 if after is not None else 0
-            for edge in [*range(start, len(lines.crossings)), *range(start)]:
-                if lines.annotations.label[edge] is None:
-                    crossing: int = lines.crossings[edge]
+            lines, order = self._lines, self._order()
+            start = order.index(after) + 1 if after in lines.edge else 0
+            for crossing in (*order[start:], *order[:start]):
+                if lines.annotations.label[lines.edge[crossing]] is None:
                     return crossing
             return None
 
@@ -298,9 +301,16 @@ class Session:
         crossings = tuple(crossing_id(*pair) for pair in ids[graph.edges].tolist())
         return Lines(corrected, graph, annotations_of(graph, corrected), tuple(ids.tolist()), crossings)
 
+    def _order(self) -> tuple[int, ...]:
+        model = self._solved
+        decided = {} if model is None else model.decided
+        real = frozenset(crossing for crossing, found in decided.items() if found.real)
+        scene = None if model is None else model.scene
+        return self._orders.of(self._lines.graph, self._lines.crossings, scene, real.__contains__)
+
     def _content(self) -> Content:
         """The edits that bear on the solve."""
-        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength))
+        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength | NameGroup))
 
     def _show(self, model: Model) -> None:
         """Show a model, with the scale that known lengths give now."""

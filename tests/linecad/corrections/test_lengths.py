@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from linecad.corrections.lengths import measured
+from linecad.corrections.lengths import measurable, measured
 from linecad.geometry import project
 from linecad.line_graph import Segments
 from linecad.scene import Camera, Intersections, Lines, Scene, SolveReport
@@ -40,3 +40,18 @@ def test_the_length_of_a_piece_is_its_own(scene, piece, units):
 def test_the_length_of_a_line_in_one_piece_is_from_end_to_end(scene):
     alone = replace(scene, lines=replace(scene.lines, pieces=()))
     assert measured(alone, corrected(seen(WHOLE), 3.0)).metres_per_unit == pytest.approx(3.0 / 4.0)
+
+
+@pytest.mark.parametrize(("component", "probability", "scale"), [(3, 0.6, 0.75), (3, 0.4, None), (0, 0.4, None)])
+def test_where_probabilities_are_told_all_but_guesses_set_the_scale(scene, component, probability, scale):
+    """A length on a weak group once promised a scale and did nothing, also where all groups have one scale."""
+    lines = replace(scene.lines, pieces=(), component=[component], probability=[probability])
+    told = measured(replace(scene, lines=lines), corrected(seen(WHOLE), 3.0))
+    assert told.metres_per_unit == (None if scale is None else pytest.approx(scale))
+    assert len(told.notes) == (scale is None)
+
+
+def test_where_none_are_told_component_0_alone_sets_it(scene):
+    for component, tells in ((0, True), (1, False)):
+        lines = replace(scene.lines, component=[component])
+        assert measurable(replace(scene, lines=lines)).tolist() == [tells]
