@@ -30,6 +30,7 @@ function drawFaces(context, store, viewport) {
   context.clip();
   context.globalAlpha = FACE_OPACITY;
   for (const plane of store.state.planes) {
+    if (!store.showsPlane(plane)) continue;
     context.fillStyle = AXIS[plane.axis];
     for (const face of plane.faces ?? []) {
       context.beginPath();

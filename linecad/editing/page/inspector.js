@@ -44,7 +44,7 @@ export class Inspector {
     if (store.labelling) return this.panel.replaceChildren(...this.#labelling());
     if (store.tool === "frame") return this.panel.replaceChildren(...this.#frame());
     if (store.tool === "draw") return this.panel.replaceChildren(...this.#drawing());
-    const thing = store.selection ?? store.hover;
+    const thing = store.meant;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());
     this.panel.replaceChildren(...(thing.kind === "line" ? this.#line(found) : this.#crossing(found)));

@@ -3,19 +3,23 @@
 import { Actions } from "./actions.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
+import { GroupList } from "./groups.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
 import { LengthDialog } from "./lengthdialog.js";
+import { fillLegends } from "./legend.js";
 import { Messages } from "./messages.js";
 import { ModelView } from "./modelview.js";
 import { Panels } from "./panels.js";
 import { PhotoView } from "./photoview.js";
 import { Pointer } from "./pointer.js";
+import { remember } from "./remember.js";
 import { RequestError, Server, takeToken } from "./server.js";
 import { Solving } from "./solving.js";
 import { Store } from "./store.js";
 import { guardTab } from "./tabs.js";
+import { startTheme } from "./theme.js";
 import { Tools } from "./tools.js";
 
 const messages = new Messages();
@@ -38,11 +42,15 @@ async function start() {
   const panels = new Panels(store, actions, pointer);
   new Labelling(store, actions);
   new LengthDialog(actions);
+  new GroupList(store, actions);
+  fillLegends();
   new Inspector(store, actions, tools);
   new Solving(store, actions);
   const table = keyTable({ store, actions, tools, pointer, panels });
   listenToKeys(table);
   document.querySelector("#help-columns").append(...keyHelp(table));
+  startTheme(store);
+  remember(store, photo, model);
   await guardTab(server, store, messages, editing);
   globalThis.linecad = { store, editing, photo, model, draft }; // for the console, and for the tests
   document.body.dataset.ready = "yes";

@@ -1,17 +1,19 @@
 // The model: its lines, its faces with the photo on them, and the camera, seen from anywhere.
 
-import { AXIS, INK, WRONG, channels } from "./colours.js";
+import { AXIS, WRONG, channels } from "./colours.js";
+import { dashed } from "./dashes.js";
 import { Graphics } from "./graphics.js";
 import { nearestToRay, product, projected, ray } from "./matrices.js";
 import { Orbit, withoutOutliers } from "./orbit.js";
 import { distance } from "./picking.js";
 import { wheelFactor } from "./pointer.js";
+import { themeColour } from "./theme.js";
 
-const PAPER = [0.965, 0.965, 0.97];
 const FACE_COLOURS = { x: [0.88, 0.83, 0.82], y: [0.83, 0.86, 0.82], z: [0.82, 0.84, 0.89] };
 const FACE_OPACITY = { textured: 1, plain: 0.92 };
 const WIDTH = { boundary: 2.6, other: 1.3, lit: 4.5 }; // CSS px
-const GUESS_OPACITY = 0.45;
+const GUESS_OPACITY = 0.7;
+const GUESS_FACE = 0.25; // instead of an opacity: the shader makes such a face pale (graphics.js)
 const NEARER = 0.0006; // share of the depth, so that lines are not eaten by the faces they bound
 const TEXTURE_SIDE = 4096; // px; a larger photo takes more memory than it shows
 const CAMERA_SHARE = 0.06; // of the size of the model, how large the camera is drawn
@@ -64,7 +66,7 @@ export class ModelView {
   #noticed(changed) {
     const { lines, planes, contradiction } = this.store.state;
     const isNew = changed.has("state") && (lines !== this.#built?.lines || planes !== this.#built.planes);
-    if (isNew || changed.has("layers") || changed.has("texture")) this.#rebuild();
+    if (isNew || changed.has("layers") || ["texture", "unseen", "theme"].some((name) => changed.has(name))) this.#rebuild();
     else if (changed.has("hover") || changed.has("selection") || contradiction !== this.#built?.contradiction)
       this.#lightUp();
     else return;
@@ -139,6 +141,7 @@ export class ModelView {
   #modelLines() {
     return this.store.state.lines
       .filter((line) => line.ends && this.store.showsLine(line))
+      .flatMap((line) => (line.guess ? dashed(line, this.orbit.size) : [line]))
       .map((line) => ({
         start: line.ends[0],
         end: line.ends[1],
@@ -150,7 +153,7 @@ export class ModelView {
   /** The camera as a pyramid: its eye, its picture, and a mark on the upper side. */
   #cameraLines() {
     const corners = this.orbit.photoCorners(CAMERA_SHARE * this.orbit.size);
-    const colour = [...channels(INK), 1];
+    const colour = [...themeColour("--model-ink"), 1];
     const width = 1.4 * devicePixelRatio;
     const mark = corners[0].map((at, k) => (at + corners[1][k]) / 2 - (corners[3][k] - corners[0][k]) * 0.3);
     const pairs = corners.flatMap((corner, index) => [
@@ -165,10 +168,12 @@ export class ModelView {
     const opacity = this.store.texture ? FACE_OPACITY.textured : FACE_OPACITY.plain;
     const corners = [];
     for (const plane of this.store.state.planes) {
+      if (!this.store.showsPlane(plane)) continue;
       const colour = [...FACE_COLOURS[plane.axis[0]], opacity]; // walls of further frames as those of x and y
       for (const face of plane.faces ?? []) {
         const points = [face.outline, ...(face.holes ?? [])].flat();
-        for (const index of face.triangles.flat()) corners.push([...points[index], ...colour]);
+        const shown = face.guess ? [...colour.slice(0, 3), GUESS_FACE] : colour;
+        for (const index of face.triangles.flat()) corners.push([...points[index], ...shown]);
       }
     }
     return corners;
@@ -186,7 +191,7 @@ export class ModelView {
     this.#built = { ...this.#built, contradiction: this.store.state.contradiction };
     const wrong = this.store.state.contradiction?.lines ?? [];
     const lit = wrong.map((id) => [{ kind: "line", id }, channels(WRONG)]);
-    for (const thing of [this.store.selection, this.store.hover]) if (thing) lit.push([thing, channels(INK)]);
+    for (const thing of [this.store.selection, this.store.hover]) if (thing) lit.push([thing, themeColour("--model-ink")]);
     this.#lit = this.graphics.lines(
       lit.flatMap(([thing, colour]) => this.#litLines(thing, colour)),
       this.#lit,
@@ -243,11 +248,13 @@ export class ModelView {
     if (this.#lines === null) return; // the stage has no size yet
     const matrix = this.orbit.matrix;
     const { K, R_cam_from_world: rotation, photo } = this.store.state;
-    this.graphics.begin(PAPER);
+    const paper = themeColour("--model-paper");
+    this.graphics.begin(paper);
     const projection = {
       pixelFromWorld: product(K, rotation),
       photoSize: [photo.width, photo.height],
       textured: this.store.texture,
+      paper,
     };
     this.graphics.drawFaces(this.#faces, matrix, projection);
     this.graphics.drawLines(this.#lines, matrix, { nearer: NEARER });

@@ -205,11 +205,13 @@ export class Panels {
       button.setAttribute("aria-expanded", String(!list.hidden));
     });
     const show = () => {
-      const { camera, notes } = this.store.state;
-      const lines = camera === null ? notes : [camera, ...notes];
-      button.disabled = lines.length === 0;
+      const { notes, details } = this.store.state;
+      button.disabled = notes.length + details.length === 0;
       button.querySelector(".count").textContent = String(notes.length);
-      list.replaceChildren(...lines.map((line) => element("li", {}, line)));
+      const rows = (lines) => element("ul", {}, ...lines.map((line) => element("li", {}, line)));
+      const isOpen = list.querySelector("details")?.open ?? false;
+      const told = details.length > 0 && element("details", { open: isOpen }, element("summary", {}, "What the program did"), rows(details));
+      list.replaceChildren(rows(notes), ...(told ? [told] : []));
     };
     this.store.listen((changed) => changed.has("state") && show());
     show();

@@ -53,7 +53,7 @@ export class PhotoView {
     const isNew = parts.filter((name) => state[name] !== this.#drawn?.[name]);
     const relabelled = isNew.join() === "crossings" ? differing(this.#drawn?.crossings, state.crossings) : null;
     this.#drawn = state;
-    if (changed.has("layers") || changed.has("hidden") || (isNew.length > 0 && !relabelled)) {
+    if (["layers", "hidden", "unseen"].some((name) => changed.has(name)) || (isNew.length > 0 && !relabelled)) {
       this.redraw("drawing", "overlay");
     } else if (relabelled) {
       this.#relabelled.push(...relabelled);
