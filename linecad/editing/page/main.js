@@ -27,7 +27,7 @@ const messages = new Messages();
 async function start() {
   const token = takeToken();
   if (!token)
-    return messages.keep("token", "Open the address that linecad edit printed: this one lacks its token.", "error");
+    return messages.keep("token", "Open the whole address that linecad edit printed: its end, from # on, is missing here.", "error");
   const server = new Server(token);
   const store = new Store();
   const editing = new Editing(server, store, (text, kind) => messages.tell(text, kind));

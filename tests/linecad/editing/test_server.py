@@ -529,10 +529,17 @@ class TestExport:
 
 class TestTabs:
     def test_the_second_tab_is_told_so_and_may_take_over(self, page):
-        assert page.post("hello", tab="a").json() == {"owner": True}
-        assert page.post("hello", tab="b").json() == {"owner": False}
-        assert page.post("hello", tab="b", take_over=True).json() == {"owner": True}
-        assert page.post("hello", tab="a").json() == {"owner": False}
+        def owns(tab, **more):
+            return page.post("hello", tab=tab, **more).json()["owner"]
+
+        assert (owns("a"), owns("b")) == (True, False)
+        assert (owns("b", take_over=True), owns("a")) == (True, False)
+
+    def test_the_tab_that_looks_is_told_when_the_state_is_another(self, page):
+        page.post("hello", tab="a")
+        before = page.post("hello", tab="b").json()["version"]
+        page.edit(op="label", crossing=page.state()["crossings"][0]["id"], value="real")
+        assert page.post("hello", tab="b").json()["version"] == page.version > before
 
     @pytest.mark.parametrize("tab", ["", "x" * 101, 7, None])
     def test_a_tab_has_a_short_name(self, page, tab):

@@ -301,7 +301,7 @@ def test_without_webgl_the_photo_side_works_and_the_model_says_why(new_screen, s
 def test_without_its_token_the_page_says_what_to_do(new_screen, shared_screen):
     screen = new_screen(shared_screen.served)
     screen.page.goto(screen.served.origin)
-    screen.page.get_by_text("Open the address that linecad edit printed").wait_for()
+    screen.page.get_by_text("Open the whole address that linecad edit printed").wait_for()
 
 
 def test_every_button_has_a_name_and_every_key_is_in_the_help(screen):
