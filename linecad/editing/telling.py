@@ -2,8 +2,8 @@
 
 Lines that no single line parts from each other keep one shape whatever is said about one crossing
 (`linecad.decide.blocks`). An answer about a crossing between two such *parts* moves one of them, so it is worth the
-length of that one in the photo, as far as its depth is not sure. Several crossings of the same two parts ask the same
-question: each further one is worth half of the one before. Crossings inside a part come last.
+length of that one in the photo, as far as its depth is not sure. Once a part is asked about, the next crossing that
+would move it is worth half of the one before. Crossings inside a part come last.
 """
 
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from linecad.editing.in_model import rows_in_scene, sureness
 from linecad.line_graph import LineGraph
 from linecad.scene import Scene
 
-AGAIN = 0.5  # of the worth of a question, when it is asked once more
+AGAIN = 0.5  # of the worth of a crossing, when one that moves the same part came before
 
 
 def by_worth(graph: LineGraph, real: Bool, probability: Float) -> Int:
@@ -37,11 +37,11 @@ def by_worth(graph: LineGraph, real: Bool, probability: Float) -> Int:
     worth = np.where((one != other) & in_model, unsure[moved], 0.0)
     seen = length[graph.edges].min(axis=1)
     doubt = 1 - probability[graph.edges].min(axis=1)
-    # In one question the crossing of the longest lines is asked first: what it shows is seen best.
-    within = np.lexsort((-seen, np.maximum(one, other), np.minimum(one, other)))
-    pairs = np.sort(np.column_stack([one, other]), axis=1)[within]
-    starts = np.r_[True, (pairs[1:] != pairs[:-1]).any(axis=1)][: len(pairs)]
-    number = np.arange(len(pairs)) - np.maximum.accumulate(np.where(starts, np.arange(len(pairs)), 0))
+    # Of one part the crossing of the longest lines is asked about first: what it shows is seen best.
+    about = np.where(worth > 0, moved, -1)
+    within = np.lexsort((-seen, about))
+    starts = np.r_[True, np.diff(about[within]) != 0][: len(within)]
+    number = np.arange(len(within)) - np.maximum.accumulate(np.where(starts, np.arange(len(within)), 0))
     worth[within] *= AGAIN**number
     order: Int = np.lexsort((-seen, -doubt, -worth))
     return order
