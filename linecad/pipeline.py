@@ -180,6 +180,7 @@ def reconstruct_prepared(
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:
         decision = decision.within(found_components.kept, graph)
+    on_stage("building planes and faces")
     scene = build_scene(view, graph, solution, decision, found_components, placed)
     places = None if placed is None else placed.places
     return Reconstruction(whole, graph, solution, decision, lifted, scene, places)

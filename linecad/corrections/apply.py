@@ -5,7 +5,7 @@ added or taken back: found lines are numbered in their order, new ones follow in
 """
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Literal, assert_never
 
@@ -31,6 +31,7 @@ from linecad.corrections.edits import (
     LabelCrossing,
     Many,
     Meet,
+    NameGroup,
     OnePlane,
     Part,
     Place,
@@ -86,6 +87,7 @@ class CorrectedLines:
     notes: tuple[str, ...]  # what could not be found again
     facts: tuple[ToldFact, ...] = ()  # about the bodies of lines, by id
     distances: tuple[tuple[FoundPlace, FoundPlace, float], ...] = ()  # m, between two points
+    names: dict[int, str] = field(default_factory=dict)  # of groups, by the id of a line of each; the newest last
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -155,6 +157,7 @@ class Correcting:
         self.labels: dict[tuple[int, int], tuple[Point, Label]] = {}
         self.lengths: dict[int, float] = {}
         self.distances: dict[tuple[Place, Place], tuple[FoundPlace, FoundPlace, float]] = {}
+        self.names: dict[int, str] = {}
         self.parted: list[tuple[int, int]] = []
         self.facts: dict[Fact, tuple[int, ...]] = {}
         self._table: LineTable | None = None
@@ -212,6 +215,11 @@ class Correcting:
                 self.distances.pop(edit.places, None)
                 if edit.metres is not None:
                     self.distances[edit.places] = (first_place, second_place, edit.metres)
+            case NameGroup():
+                number = self.find(edit.line, before_frame)
+                self.names.pop(number, None)
+                if edit.name is not None:
+                    self.names[number] = edit.name
             case SetFrame():
                 pass  # the lines were found with it
             case _:
@@ -235,6 +243,7 @@ class Correcting:
                 for first, second, metres in self.distances.values()
                 for one, other in product(self._place_now(first), self._place_now(second))
             ),
+            names={own: name for number, name in self.names.items() for own in self._now(number)[:1]},
         )
 
     def anchor(self, number: int) -> Anchor:

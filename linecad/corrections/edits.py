@@ -15,6 +15,7 @@ MOST_EDITS = 100_000  # in one file; a photo has some thousand crossings
 SHORTEST = 1e-6  # m, of a known length
 LONGEST = 1e6  # m
 LARGEST_LOG_RATIO = 5.0  # of two depths: nothing in a photo is 150 times as far as something else
+LONGEST_NAME = 60  # characters, of a group
 
 Point = tuple[float, float]  # px
 Ends = tuple[Point, Point]  # px
@@ -115,6 +116,14 @@ class KnownDistance:
 
 
 @dataclass(frozen=True)
+class NameGroup:
+    """What a person calls the group that a line is in; None takes the name back. It changes nothing in the model."""
+
+    line: Anchor
+    name: str | None
+
+
+@dataclass(frozen=True)
 class SetFrame:
     """Lines drawn along the Manhattan axes, in place of the frame that was found; equal axes are parallel in space."""
 
@@ -205,6 +214,7 @@ Edit = (
     | Draw
     | KnownLength
     | KnownDistance
+    | NameGroup
     | SetFrame
     | Many
     | Fact

@@ -9,6 +9,7 @@ from typing import assert_never, cast
 from linecad.corrections.edits import (
     LABELS,
     LONGEST,
+    LONGEST_NAME,
     MOST_EDITS,
     SHORTEST,
     Anchor,
@@ -26,6 +27,7 @@ from linecad.corrections.edits import (
     LabelCrossing,
     Many,
     Meet,
+    NameGroup,
     OnePlane,
     Part,
     Place,
@@ -51,7 +53,7 @@ LARGEST_PHOTO = 10**6  # px along one side
 MOST_FRAME_LINES = 100
 PARTS = ("label", "axis", "delete")  # what `many` may hold
 OPERATIONS = (
-    *PARTS, "ends", "split", "join", "draw", "length", "distance", "frame", "many", *FACTS, "withdraw",
+    *PARTS, "ends", "split", "join", "draw", "length", "distance", "name", "frame", "many", *FACTS, "withdraw",
 )  # fmt: skip
 
 
@@ -128,6 +130,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "length", "line": anchor_to_json(edit.line), "metres": edit.metres}
         case KnownDistance():
             return {"op": "distance", "points": [_place_to_json(one) for one in edit.places], "metres": edit.metres}
+        case NameGroup():
+            return {"op": "name", "line": anchor_to_json(edit.line), "text": edit.name}
         case SetFrame():
             return {"op": "frame", "lines": [anchor_to_json(line) for line in edit.lines]}
         case Many():
@@ -196,6 +200,8 @@ def _edit(node: Node) -> Edit:
         case "distance":
             first, second = two(node["points"])
             return KnownDistance((_place(first), _place(second)), metres(node))
+        case "name":
+            return NameGroup(anchor(node["line"]), name(node))
         case "frame":
             return SetFrame(frame_lines(node["lines"], "segment"))
         case "many":
@@ -245,4 +251,15 @@ def metres(node: Node) -> float | None:
     found = member.number(LONGEST)
     if found < SHORTEST:
         raise member.wrong(f"a length from {SHORTEST:g} to {LONGEST:g} m")
+    return found
+
+
+def name(node: Node) -> str | None:
+    """The member "text": a name of one line, or null."""
+    member = node.get("text")
+    if member is None or member.value is None:
+        return None
+    found = member.text().strip()
+    if not 0 < len(found) <= LONGEST_NAME or not found.isprintable():
+        raise member.wrong(f"a name of 1 to {LONGEST_NAME} characters")
     return found

@@ -5,9 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from exporters.bands import GUESS, bands_of
 from exporters.formats import FORMATS, SCENE_FILE
-from linecad.arrays import Bool
 from linecad.camera.text import summary
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
@@ -16,14 +14,17 @@ from linecad.editing.body_document import facts_of_page, list_bodies, moved_by_l
 from linecad.editing.cell_layer import document_of_cells
 from linecad.editing.depth_layers import document_of_layers
 from linecad.editing.faces import facades_in, triangles_of
+from linecad.editing.groups import Group, groups_of
+from linecad.editing.in_model import is_guess
+from linecad.editing.notes import notes_of
 from linecad.editing.state import Model, Now
 from linecad.editing.tiles import TILE
-from linecad.model.known_lengths import rows_by_segment
+from linecad.model.known_lengths import measurable, rows_by_segment
 from linecad.scene import Plane, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
-    "by_depth_map": False,
+    "by_depth_map": False, "sets_scale": False,
 }  # fmt: skip
 
 
@@ -31,6 +32,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
     """The answer to GET /api/state; `levels` of the photo's tiles, `depth` a map on its pixels."""
     camera = now.found.camera
     scene = None if now.model is None else now.model.scene
+    groups = groups_of(now)
     labelled = sum(label is not None for label in now.lines.annotations.label)
     return {
         "version": now.version,
@@ -48,7 +50,9 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "bodies": list_bodies(now),
         "facts": facts_of_page(now),
         "moved": moved_by_last(now),
-        "notes": list(now.found.notes if scene is None else scene.notes),
+        "groups": [_group(group) for group in groups],
+        "notes": list(notes_of(now, groups)),
+        "details": list(now.found.notes if scene is None else scene.notes),
         "depth_map": None if depth is None else document_of_layers(depth, now),
         "cells": document_of_cells(now),
         "solve": solve_of(now),
@@ -64,7 +68,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
                 "facts": [each["edit"] for each in facts_of_page(now) if each["contradicted"]],
             }
         ),
-        "labelling": {"done": labelled, "total": len(now.lines.crossings)},
+        "labelling": {"done": labelled, "total": len(now.lines.crossings), "order": now.order},
         "saved": is_saved,
         "formats": formats(),
     }  # fmt: skip
@@ -72,7 +76,10 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
 
 def solve_of(now: Now) -> dict[str, object]:
     """How the solve stands: the one that runs, else the last one."""
-    known: dict[str, object] = {"objective": None, "bound": None, "gap": None, "seconds": None, "status": None}
+    known: dict[str, object] = {
+        "objective": None, "bound": None, "gap": None, "seconds": None, "status": None,
+        "stage": now.stage if now.is_running else "",
+    }  # fmt: skip
     if now.progress is not None and now.is_running:
         at = now.progress
         known |= {"objective": at.objective, "bound": _finite(at.bound), "gap": _finite(at.gap), "seconds": at.seconds}
@@ -112,6 +119,7 @@ def _lines(now: Now) -> list[dict[str, object]]:
             "segment": ends.tolist(),
             **_moved(in_space.get((axis, ends.tobytes()), NOT_IN_SPACE), bodies, number),
             "origin": origin[number],
+            "metres": corrected.lengths.get(number),
         }
         for number, axis, ends in zip(now.lines.ids, graph.axis.tolist(), graph.segments.ends, strict=True)
     ]
@@ -129,7 +137,7 @@ def _moved(line: dict[str, object], bodies: ShownBodies | None, number: int) -> 
 def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
     """What a scene says about each line, by axis and segment."""
     lines = scene.lines
-    guess = _is_guess(scene)
+    guess, sets_scale = is_guess(scene), measurable(scene)
     return {
         look: {
             "ends": lines.ends[row].tolist(),
@@ -139,16 +147,22 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "probability": float(lines.probability[row]) if len(lines.probability) else None,
             "guess": bool(guess[row]),
             "by_depth_map": bool(lines.by_depth_map[row]),
+            "sets_scale": bool(sets_scale[row]),
         }
         for look, row in rows_by_segment(scene).items()
     }
 
 
-def _is_guess(scene: Scene) -> Bool:
-    """(N,) whether the depth of each line is more likely wrong than right; where the scene does not tell, is weak."""
-    bands = bands_of(scene.lines)
-    guess: Bool = scene.lines.confidence == "weak" if bands is None else bands == GUESS
-    return guess
+def _group(group: Group) -> dict[str, object]:
+    return {
+        "component": group.component,
+        "name": group.name,
+        "named": group.is_named,
+        "line": group.line,
+        "lines": group.lines,
+        "share": group.share,
+        "guess": group.guess,
+    }
 
 
 def _crossings(now: Now) -> list[dict[str, object]]:
@@ -192,7 +206,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
     for look, row in rows_by_segment(scene).items():
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
-    guesses = set(scene.lines.id[_is_guess(scene)].tolist())
+    guesses = set(scene.lines.id[is_guess(scene)].tolist())
     triangles, facades, told = triangles_of(scene), facades_in(scene), _probabilities(scene)
     components, found = scene.components_of_planes, []
     for plane in scene.planes:

@@ -22,6 +22,7 @@ from linecad.corrections.edits import (
     LabelCrossing,
     Many,
     Meet,
+    NameGroup,
     OnePlane,
     Part,
     Place,
@@ -33,7 +34,7 @@ from linecad.corrections.edits import (
     Withdraw,
 )
 from linecad.corrections.fact_file import FACTS
-from linecad.corrections.file import OPERATIONS, PARTS, frame_lines, label, many, metres
+from linecad.corrections.file import OPERATIONS, PARTS, frame_lines, label, many, metres, name
 from linecad.corrections.nodes import axis, ends, point, two
 from linecad.corrections.snapping import LONGEST_REACH, Proposal, find_snap, propose, stretch
 from linecad.directions import axis_name
@@ -67,6 +68,8 @@ def read_edit(node: Node, session: Session) -> Edit:
             return KnownLength(_line(node, lines), metres(node))
         case "distance":
             return _known_distance(node, session)
+        case "name":
+            return NameGroup(_line(node, lines), name(node))
         case "frame":
             return SetFrame(frame_lines(node["lines"], "ends"))
         case "many":

@@ -50,6 +50,8 @@ def edit(photo: Photo, options: EditOptions, on_ready: Callable[[str], None], on
     another page writes the same file, and CorrectionsFileError, DepthMapError or ReconstructionError for a file or a
     photo that cannot be used.
     """
+    if options.reconstruct.solve.fast:
+        raise EditorError("the page solves with what you say of crossings, which a fast fit cannot; leave out --fast")
     check_output(options.corrections)
     with contextlib.ExitStack() as stack:
         for path in (options.corrections, options.labels):

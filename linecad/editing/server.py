@@ -204,7 +204,8 @@ class Editor:
         if leaving is not None and leaving.boolean():
             self.tabs.leave(tab)
             return JSONResponse({"owner": False})
-        return JSONResponse({"owner": self.tabs.hello(tab, takes_over is not None and takes_over.boolean())})
+        owner = self.tabs.hello(tab, takes_over is not None and takes_over.boolean())
+        return JSONResponse({"owner": owner, "version": self.session.now().version})
 
     def next_unlabelled(self, request: Request) -> Response:
         """GET /api/next-unlabelled?after=CROSSING."""

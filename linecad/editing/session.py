@@ -18,6 +18,7 @@ from linecad.corrections.edits import (
     Fact,
     KnownDistance,
     KnownLength,
+    NameGroup,
     SetFrame,
     Withdraw,
     anchors_of,
@@ -37,6 +38,7 @@ from linecad.editing.state import (
     decisions,
     lines_of_crossing,
 )
+from linecad.editing.telling import Order
 from linecad.errors import ContradictionError, CorrectionError
 from linecad.finding import FoundLines, connect_all, name_lines
 from linecad.line_graph import Segments
@@ -75,8 +77,10 @@ class Session:
         self._task = 0  # number of the last solve that was asked for
         self._solving: tuple[int, Content] | None = None  # number and content of the one that runs
         self._progress: Progress | None = None
+        self._stage = ""
         self._error = ""
         self._contradiction: Contradiction | None = None
+        self._orders = Order()
         self._editing, self._notes = self._replay(corrections)
         self._lines = self._connect()
 
@@ -91,10 +95,12 @@ class Session:
                 self._corrections,
                 self._model,
                 self._progress,
+                self._stage,
                 self._solved is not None and self._models.get(self._content()) is self._solved,
                 self._solving is not None,
                 self._error,
                 self._contradiction,
+                self._order(),
             )
 
     def edit(self, base: int, make: Callable[["Session"], Edit]) -> None:
@@ -171,13 +177,12 @@ class Session:
         return lines_of_crossing(crossing)
 
     def next_unlabelled(self, after: int | None) -> int | None:
-        """The next crossing without a label behind `after`, in the order of the state and around."""
+        """The next crossing without a label behind `after`, the most telling first and around."""
         with self._lock:
-            lines = self._lines
-            start = lines.edge.get(after, -1) + 1 if after is not None else 0
-            for edge in [*range(start, len(lines.crossings)), *range(start)]:
-                if lines.annotations.label[edge] is None:
-                    crossing: int = lines.crossings[edge]
+            lines, order = self._lines, self._order()
+            start = order.index(after) + 1 if after in lines.edge else 0
+            for crossing in (*order[start:], *order[:start]):
+                if lines.annotations.label[lines.edge[crossing]] is None:
                     return crossing
             return None
 
@@ -187,7 +192,7 @@ class Session:
             self._check(base)
             self._task += 1
             self._solving = (self._task, self._content())
-            self._progress, self._error, self._contradiction = None, "", None
+            self._progress, self._stage, self._error, self._contradiction = None, "", "", None
             # The process that solves has the photo already.
             return Task(self._task, replace(self._found_now(), pixels=None), self._lines.corrected)
 
@@ -195,7 +200,7 @@ class Session:
         """Take note of how far a solve has come."""
         with self._lock:
             if self._solving is not None and self._solving[0] == step.number:
-                self._progress = step.progress
+                self._progress, self._stage = step.progress or self._progress, step.stage
 
     def take(self, answer: Answer) -> None:
         """Take over the answer of a solve, unless another one was asked for or the lines have changed since."""
@@ -211,7 +216,7 @@ class Session:
             if answer.lines:
                 self._contradiction = contradiction_of(answer.lines, answer.crossings, answer.error, answer.facts)
             if answer.made is not None:
-                self._models[content] = self._model_of(answer.made)
+                self._models[content] = self._model_of(answer.made, answer.seconds)
                 self._show(self._models[content])
                 while len(self._models) > MODELS_KEPT:
                     self._models.popitem(last=False)
@@ -303,16 +308,24 @@ class Session:
         crossings = tuple(crossing_id(*pair) for pair in ids[graph.edges].tolist())
         return Lines(corrected, graph, annotations_of(graph, corrected), tuple(ids.tolist()), crossings)
 
+    def _order(self) -> tuple[int, ...]:
+        model = self._solved
+        decided = {} if model is None else model.decided
+        real = frozenset(crossing for crossing, found in decided.items() if found.real)
+        scene = None if model is None else model.scene
+        return self._orders.of(self._lines.graph, self._lines.crossings, scene, real.__contains__)
+
     def _content(self) -> Content:
         """The edits that bear on the solve."""
-        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, KnownLength | KnownDistance))
+        idle = KnownLength | KnownDistance | NameGroup
+        return tuple(edit for edit in self._corrections.edits if not isinstance(edit, idle))
 
     def _show(self, model: Model) -> None:
         """Show a model, with the scale that known lengths give now."""
         self._solved = model
         self._model = replace(model, scene=measured(model.scene, self._lines.corrected))
 
-    def _model_of(self, made: Reconstruction) -> Model:
+    def _model_of(self, made: Reconstruction, seconds: float) -> Model:
         now = decisions(made, self._lines, self.options.largest_component)
         before = {} if self._model is None else self._model.decided
         changed = frozenset(
@@ -322,7 +335,7 @@ class Session:
         if made.places is not None:
             bodies = ShownBodies.of(made.places, made.graph, self._lines.corrected)
         far = distant(changed, self._place(changed), self._edited_since(), self.photo.width)
-        return Model(made.scene, self._version, now, changed, made.solution.seconds, far, bodies)
+        return Model(made.scene, self._version, now, changed, seconds, far, bodies)
 
     def _edited_since(self) -> list[Edit]:
         """The edits that the model which is shown does not hold, and those that it does and were taken back."""

@@ -9,6 +9,7 @@ import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from multiprocessing.connection import Connection
@@ -24,6 +25,7 @@ from linecad.errors import ContradictionError, LinecadError
 from linecad.finding import FoundLines
 from linecad.options import Options
 from linecad.pipeline import Prepared, Reconstruction, prepare, reconstruct_prepared
+from linecad.progress import StageReport, silent
 from solver.options import Progress
 
 if TYPE_CHECKING:
@@ -59,14 +61,16 @@ class Answer:
     lines: tuple[int, ...] = ()  # ids of lines that stand in a contradiction
     crossings: tuple[tuple[int, int], ...] = ()  # pairs of line ids whose crossings cannot all be real
     facts: tuple[Fact, ...] = ()  # that cannot all hold
+    seconds: float = 0.0  # that the whole of it took; told, and nothing more
 
 
 @dataclass(frozen=True)
 class Step:
-    """How far a task has come."""
+    """How far a task has come: the search of its program, or another stage of its work in words."""
 
     number: int
-    progress: Progress
+    progress: Progress | None = None
+    stage: str = ""
 
 
 class SolvingProcess:
@@ -181,7 +185,7 @@ def work(pipe: Connection, asked: "Synchronized[int]") -> None:
         solver = TaskSolver(photo, options, depth)
         while True:
             task = pipe.recv()
-            pipe.send(solver.answer(task, _teller(task, pipe, asked)))
+            pipe.send(solver.answer(task, _teller(task, pipe, asked), _stage_teller(task, pipe)))
 
 
 def _pass(_number: int, _frame: FrameType | None) -> None:
@@ -203,6 +207,10 @@ def _teller(task: Task, pipe: Connection, asked: "Synchronized[int]") -> Callabl
     return tell
 
 
+def _stage_teller(task: Task, pipe: Connection) -> StageReport:
+    return lambda words: pipe.send(Step(task.number, stage=words))
+
+
 class TaskSolver:
     """Solves tasks of one photo in this process; what two of them have in common is found once."""
 
@@ -211,10 +219,11 @@ class TaskSolver:
         self._photo, self._options, self._depth = photo, options, depth
         self._prepared: Prepared | None = None
 
-    def answer(self, task: Task, tell: Callable[[Progress], None]) -> Answer:
+    def answer(self, task: Task, tell: Callable[[Progress], None], on_stage: StageReport = silent) -> Answer:
         """The answer to a task."""
+        began = time.monotonic()
         try:
-            made = self._made(task, tell)
+            made = self._made(task, tell, on_stage)
         except ContradictionError as error:
             facts = tuple(told.fact for told in task.corrected.facts if told.fact in error.facts)
             return Answer(task.number, error=str(error), lines=error.lines, crossings=error.crossings, facts=facts)
@@ -223,12 +232,12 @@ class TaskSolver:
         if made.places is not None:
             evidence = made.places.evidence.without_photo()
             made = replace(made, places=replace(made.places, evidence=evidence))
-        return Answer(task.number, made)
+        return Answer(task.number, made, seconds=time.monotonic() - began)
 
-    def _made(self, task: Task, tell: Callable[[Progress], None]) -> Reconstruction:
+    def _made(self, task: Task, tell: Callable[[Progress], None], on_stage: StageReport) -> Reconstruction:
         prepared = self._prepared
         if prepared is None or not prepared.is_for(task.corrected):
             found = replace(task.found, pixels=self._photo.pixels)
-            prepared = prepare(found, self._options, corrected=task.corrected, depth=self._depth)
+            prepared = prepare(found, self._options, on_stage, task.corrected, self._depth)
             self._prepared = prepared
-        return reconstruct_prepared(self._photo.name, prepared, self._options, tell, corrected=task.corrected)
+        return reconstruct_prepared(self._photo.name, prepared, self._options, tell, on_stage, task.corrected)

@@ -62,7 +62,7 @@ class Model:
     version: int  # of the state that it was solved for
     decided: dict[int, Decided]  # by the id of the crossing
     changed: frozenset[int]  # crossings whose decision differs from that of the model before
-    seconds: float  # of the solver
+    seconds: float  # from the lines to the scene
     far: frozenset[int] = frozenset()  # of `changed`, those far from all that was edited (`linecad.editing.distant`)
     bodies: ShownBodies | None = None  # None for programs without them
 
@@ -87,11 +87,13 @@ class Now:
     lines: Lines
     corrections: Corrections
     model: Model | None
-    progress: Progress | None  # of the solve that runs, or of the last one
+    progress: Progress | None  # of the search of the solve that runs, or of the last one
+    stage: str  # what the solve that runs is at, in words; empty while it searches
     is_fresh: bool  # the model holds all edits
     is_running: bool
     error: str  # of the last solve
     contradiction: Contradiction | None
+    order: tuple[int, ...]  # ids of all crossings, the most telling first (linecad.editing.telling)
 
 
 def contradiction_of(

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from linecad.arrays import Float
+from exporters.bands import GUESS, bands_of
+from linecad.arrays import Bool, Float
 from linecad.corrections.apply import CorrectedLines, FoundPlace
 from linecad.directions import components
 from linecad.errors import ScaleError
@@ -12,6 +13,9 @@ from linecad.geometry import depths_beside, world_rays
 from linecad.model.scale import SHORTEST, depth_on_face, nearest_on_line
 from linecad.scene import Plane, Scene
 
+SAYS_NOTHING = "its length says nothing about the scale"  # of notes on lengths, also for who looks for them
+DISAGREE = "the known lengths disagree"
+UNSURE = "stands at a depth that is a guess"
 LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
 GRAZING = 1e-6  # of a ray's part across a plane; what is less meets it nowhere
 
@@ -19,16 +23,17 @@ GRAZING = 1e-6  # of a ray's part across a plane; what is less meets it nowhere
 def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     """The scene with the scale that known lengths give it: the geometric mean of what each says.
 
-    Only lengths on component 0 count, since the scales of the others are guesses.
+    A note tells of each that says nothing (`measurable`).
     """
     if not corrected.lengths and not corrected.distances:
         return scene
-    row = rows_by_segment(scene)
+    row, tells = rows_by_segment(scene), measurable(scene)
     scales, notes = [], []
     for number, metres in corrected.lengths.items():
         key = _look(corrected, number)
-        if key not in row or scene.lines.component[row[key]] != 0:
-            notes.append(f"a line of known length ({metres:g} m) is not on component 0, so its length says nothing")
+        if key not in row or not tells[row[key]]:
+            why = "is not in the model" if key not in row else UNSURE
+            notes.append(f"a line of known length ({metres:g} m) {why}, so {SAYS_NOTHING}")
             continue
         scales.append(metres / _length(scene, row[key], corrected, number))
     for first, second, metres in corrected.distances:
@@ -37,10 +42,21 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
         except ScaleError as error:
             notes.append(f"a known distance ({metres:g} m) says nothing: {error}")
     if scales and max(scales) > LENGTHS_DISAGREE * min(scales):
-        notes.append(f"the known lengths disagree by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
+        notes.append(f"{DISAGREE} by up to {max(scales) / min(scales) - 1:.0%}; their mean is taken")
     metres_per_unit = float(np.exp(np.mean(np.log(scales)))) if scales else None
     source = _source(corrected, len(scales), metres_per_unit) if metres_per_unit else ""
     return replace(scene, metres_per_unit=metres_per_unit, scale_source=source, notes=scene.notes + tuple(notes))
+
+
+def measurable(scene: Scene) -> Bool:
+    """(N,) whether the length of each line says how long a unit is: where its depth is no guess.
+
+    Where the scene tells probabilities, all components have one scale, and a length is as far off as the depth of its
+    line is (docs/decisions/0108); where it tells none, each has a scale of its own, and only component 0 is measured.
+    """
+    bands = bands_of(scene.lines)
+    tells: Bool = scene.lines.component == 0 if bands is None else bands != GUESS
+    return tells
 
 
 def units_between(scene: Scene, corrected: CorrectedLines, places: tuple[FoundPlace, FoundPlace]) -> float:
@@ -69,8 +85,8 @@ def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
     ray = world_rays(np.array(place.pixel), scene.camera.matrix, scene.rotation)
     if place.line is not None:
         row = rows_by_segment(scene).get(_look(corrected, place.line))
-        if row is None or scene.lines.component[row] != 0:
-            raise ScaleError(f"the line at {u:.0f},{v:.0f} px is not on component 0, whose scale alone is no guess")
+        if row is None or not measurable(scene)[row]:
+            raise ScaleError(f"the line at {u:.0f},{v:.0f} px {UNSURE}")
         point: Float = nearest_on_line(ray[None], scene.lines.ends[row])[0]
         return point
     # A place is on a line or in a plane.

@@ -172,7 +172,7 @@ class TestLengths:
         other = next(line for line in range(len(house.made.axis)) if length_in_scene(scene, house, line)[1] > 0)
         scene = house.scene(KnownLength(house.anchor(other), 3.5))
         assert scene.metres_per_unit is None
-        assert any("3.5 m) is not on component 0" in note for note in scene.notes)
+        assert any("3.5 m) stands at a depth that is a guess" in note for note in scene.notes)
 
 
 class TestContradiction:

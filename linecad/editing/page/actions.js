@@ -16,10 +16,9 @@ export class Actions {
 
   // --- crossings ---
 
-  /** The crossing that keys mean: the one under the pointer, else the selected one. */
+  /** The crossing that keys mean: the one that the strip shows. */
   get crossing() {
-    const { hover, selection, labelling } = this.store;
-    const meant = !labelling && hover?.kind === "crossing" ? hover : selection;
+    const { meant } = this.store;
     return meant?.kind === "crossing" ? this.store.find(meant) : undefined;
   }
 
@@ -38,11 +37,10 @@ export class Actions {
 
   // --- lines ---
 
+  /** The line that keys mean: the one that the strip shows. */
   get line() {
-    const { hover, selection } = this.store;
-    return (
-      this.store.selectedLine ?? (selection === null && hover?.kind === "line" ? this.store.find(hover) : undefined)
-    );
+    const { meant } = this.store;
+    return meant?.kind === "line" ? this.store.find(meant) : undefined;
   }
 
   #withLine(action) {

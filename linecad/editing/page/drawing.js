@@ -32,6 +32,7 @@ function drawFaces(context, store, viewport) {
   context.clip();
   context.globalAlpha = FACE_OPACITY;
   for (const plane of store.state.planes) {
+    if (!store.showsPlane(plane)) continue;
     context.fillStyle = colourOf(store, plane);
     for (const face of plane.faces ?? []) {
       if (!store.showsFace(face)) continue;

@@ -109,6 +109,12 @@ export class Editing {
       this.tell("Another tab edits this photo. Take over first.", "warning");
       return Promise.resolve(false);
     }
+    const locked = edit ? this.store.lockedBy(edit) : undefined;
+    if (locked !== undefined) {
+      const group = this.store.state.groups.find(({ component }) => component === locked);
+      this.tell(`${group?.name ?? `Group ${locked}`} is locked; unlock it in the list of groups.`, "warning");
+      return Promise.resolve(false);
+    }
     return new Promise((done) => {
       this.#queue.push({ path, edit, done, again: false });
       this.#show();

@@ -48,12 +48,15 @@ void main() { world = point; shade = colour; gl_Position = clip_from_world * vec
 // A pixel's centre is a whole number in K, the texture begins at the corner: half a pixel between them.
 const FACE_FRAGMENT = `#version 300 es
 precision highp float;
+const float GUESS_BELOW = 0.5;  // opacities below it mark faces whose depth is a guess
+const float PALE = 0.5;
 in vec3 world;
 in vec4 shade;
 uniform mat3 pixel_from_world;
 uniform vec2 photo_size;
 uniform sampler2D photo;
 uniform bool textured;
+uniform vec3 paper;  // of the background, which guesses fade into
 out vec4 result;
 void main() {
   vec4 colour = shade;
@@ -62,6 +65,7 @@ void main() {
   vec3 texel = texture(photo, at).rgb;
   bool inside = seen.z > 0.0 && at == clamp(at, 0.0, 1.0);
   if (textured && inside) colour = vec4(gl_FrontFacing ? texel : mix(texel, shade.rgb, 0.35), 1.0);
+  if (shade.a < GUESS_BELOW) colour = vec4(mix(colour.rgb, paper, PALE), 1.0);
   result = vec4(colour.rgb * colour.a, colour.a);
 }`;
 
@@ -185,7 +189,7 @@ export class Graphics {
     gl.depthFunc(gl.LEQUAL);
   }
 
-  drawFaces(made, matrix, { pixelFromWorld, photoSize, textured }) {
+  drawFaces(made, matrix, { pixelFromWorld, photoSize, textured, paper }) {
     if (made.count === 0) return;
     const gl = this.gl;
     gl.useProgram(this.faceProgram);
@@ -194,6 +198,7 @@ export class Graphics {
     gl.uniformMatrix3fv(at("pixel_from_world"), true, pixelFromWorld.flat());
     gl.uniform2f(at("photo_size"), ...photoSize);
     gl.uniform1i(at("textured"), textured && this.photo !== null);
+    gl.uniform3f(at("paper"), ...paper);
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.photo ?? this.grey);
     gl.bindVertexArray(made.array);

@@ -50,7 +50,7 @@ export class Inspector {
     if (store.many) return this.panel.replaceChildren(...this.actions.many.panel());
     const isDrawn = store.selectedLine && this.actions.draft.isEmpty; // the line that was drawn last
     if (store.tool === "draw" && !isDrawn) return this.panel.replaceChildren(...this.#drawing());
-    const thing = store.selection ?? store.hover;
+    const thing = store.meant;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());
     const tell = { line: () => this.#line(found), crossing: () => this.#crossing(found), face: () => this.#face(found) };
@@ -117,9 +117,11 @@ export class Inspector {
       line.boundary ? "boundary" : null,
       line.confidence,
       line.probability === null ? null : `depth ${Math.round(100 * line.probability)} % sure`,
+      line.ends && line.guess ? "its depth is a guess" : null,
       line.by_depth_map ? "placed by the depth map" : null,
       line.component > 0 ? `component ${line.component}` : null,
       ORIGINS[line.origin],
+      line.metres === null ? null : `known to be ${line.metres} m`,
       this.#length(line),
     ];
     const text = element(

@@ -1,9 +1,11 @@
 // Labelling: one unlabelled crossing after the other in the middle of the photo, a key for each answer.
 
-/** The next crossing without a label behind one, in the order of the state and around; undefined when there is none. */
-export function nextUnlabelled(crossings, after) {
-  const start = crossings.findIndex((crossing) => crossing.id === after) + 1;
-  return [...crossings.slice(start), ...crossings.slice(0, start)].find((crossing) => crossing.label === null);
+/** The next crossing without a label behind one, the most telling first and around; undefined when there is none. */
+export function nextUnlabelled({ crossings, labelling }, after) {
+  const byId = new Map(crossings.map((crossing) => [crossing.id, crossing]));
+  const start = labelling.order.indexOf(after) + 1;
+  const order = [...labelling.order.slice(start), ...labelling.order.slice(0, start)];
+  return order.map((id) => byId.get(id)).find((crossing) => crossing?.label === null);
 }
 
 /** Adds `labelAndGoOn`, `nextUnlabelled` and `toggleLabelling` to the actions. */
@@ -35,7 +37,7 @@ export class Labelling {
   }
 
   #next() {
-    const next = nextUnlabelled(this.store.state.crossings, this.store.selectedCrossing?.id);
+    const next = nextUnlabelled(this.store.state, this.store.selectedCrossing?.id);
     this.store.set({ selection: next ? { kind: "crossing", id: next.id } : null });
     this.actions.showSelection();
   }

@@ -1,8 +1,9 @@
 // What is lit up in the model: strokes over everything, for what is selected, hovered, contradicted or measured.
 
-import { INK, WRONG, channels } from "./colours.js";
+import { WRONG, channels } from "./colours.js";
 import { nearestToRay, ray } from "./matrices.js";
 import { colourOf } from "./sure.js";
+import { themeColour } from "./theme.js";
 
 const LINE_WIDTH = 4.5; // CSS px
 const THIN = 2.8; // of one of many
@@ -13,7 +14,7 @@ export const MEASURE = "#e0007a"; // of what is measured
 export function litStrokes(store) {
   const wrong = store.state.contradiction?.lines ?? [];
   const lit = wrong.map((id) => [{ kind: "line", id }, channels(WRONG)]);
-  for (const thing of [store.selection, store.hover]) if (thing) lit.push([thing, channels(INK)]);
+  for (const thing of [store.selection, store.hover]) if (thing) lit.push([thing, themeColour("--model-ink")]);
   return [...lit.flatMap(([thing, colour]) => strokesOf(store, thing, colour)), ...measured(store)];
 }
 

@@ -6,9 +6,12 @@ import { Choosing } from "./choosing.js";
 import { Crosshair } from "./crosshair.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
+import { GroupList } from "./groups.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
+import { fillLegends } from "./legend.js";
+import { LengthDialog } from "./lengthdialog.js";
 import { LineWalk } from "./linewalk.js";
 import { Many } from "./many.js";
 import { Measuring } from "./measuring.js";
@@ -17,10 +20,12 @@ import { ModelView } from "./modelview.js";
 import { Panels } from "./panels.js";
 import { PhotoView } from "./photoview.js";
 import { Pointer } from "./pointer.js";
+import { remember } from "./remember.js";
 import { RequestError, Server, takeToken } from "./server.js";
 import { Solving } from "./solving.js";
 import { Store } from "./store.js";
 import { guardTab } from "./tabs.js";
+import { startTheme } from "./theme.js";
 import { Tools } from "./tools.js";
 import { Views } from "./views.js";
 
@@ -29,7 +34,7 @@ const messages = new Messages();
 async function start() {
   const token = takeToken();
   if (!token)
-    return messages.keep("token", "Open the address that linecad edit printed: this one lacks its token.", "error");
+    return messages.keep("token", "Open the whole address that linecad edit printed: its end, from # on, is missing here.", "error");
   const server = new Server(token);
   const store = new Store();
   const editing = new Editing(server, store, (text, kind) => messages.tell(text, kind));
@@ -52,11 +57,16 @@ async function start() {
   Object.assign(actions, { measuring, views, choosing });
   const bodies = startBodies({ store, actions, photo, model });
   new Labelling(store, actions);
+  new LengthDialog(actions);
+  new GroupList(store, actions);
+  fillLegends();
   new Inspector(store, actions, tools);
   new Solving(store, actions);
   const table = [...keyTable({ store, actions, tools, pointer, panels, views, choosing }), bodies.keys];
   listenToKeys(table);
   document.querySelector("#help-columns").append(...keyHelp(table));
+  startTheme(store);
+  remember(store, photo, model);
   await guardTab(server, store, messages, editing);
   globalThis.linecad = { store, editing, photo, model, draft, bodies }; // for the console, and for the tests
   document.body.dataset.ready = "yes";

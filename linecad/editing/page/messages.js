@@ -1,6 +1,7 @@
 // What the page tells: short news that float and go by themselves, and notices below the bar that stay while they hold.
 
 const SECONDS = { info: 5, warning: 8, error: 12 };
+const MOST = 2; // messages that float at a time; an older one gives way
 
 export class Messages {
   #list = document.querySelector("#messages");
@@ -12,6 +13,7 @@ export class Messages {
     for (const shown of this.#list.children) if (shown.dataset.text === text) shown.remove();
     const message = this.#add(this.#list, text, kind);
     message.append(button("×", () => message.remove(), "Close this message"));
+    while (this.#list.children.length > MOST) this.#list.firstChild.remove();
     setTimeout(() => message.remove(), 1000 * SECONDS[kind]);
   }
 

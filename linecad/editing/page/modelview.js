@@ -1,6 +1,7 @@
 // The model: its lines, its faces with the photo on them, and the camera, seen from anywhere.
 
-import { INK, channels } from "./colours.js";
+import { channels } from "./colours.js";
+import { dashed } from "./dashes.js";
 import { wheelFactor } from "./gestures.js";
 import { paintGizmo } from "./gizmo.js";
 import { Graphics } from "./graphics.js";
@@ -10,13 +11,14 @@ import { Orbit, withoutOutliers } from "./orbit.js";
 import { distance } from "./picking.js";
 import { faceAlong } from "./sights.js";
 import { colourOf } from "./sure.js";
+import { themeColour } from "./theme.js";
 
-const PAPER = [0.965, 0.965, 0.97];
 const FACE_COLOURS = { x: [0.88, 0.83, 0.82], y: [0.83, 0.86, 0.82], z: [0.82, 0.84, 0.89] };
 const FACE_OPACITY = { textured: 1, plain: 0.92 };
 const WIDTH = { boundary: 2.6, other: 1.3, wall: 3.2 }; // CSS px
 const PALER = 0.45; // what is left of the colour that tells how sure a face is
-const GUESS_OPACITY = 0.45;
+const GUESS_OPACITY = 0.7;
+const GUESS_FACE = 0.25; // instead of an opacity: the shader makes such a face pale (graphics.js)
 const NEARER = 0.0006; // share of the depth, so that lines are not eaten by the faces they bound
 const TEXTURE_SIDE = 4096; // px; a larger photo takes more memory than it shows
 const CAMERA_SHARE = 0.06; // of the size of the model, how large the camera is drawn
@@ -77,7 +79,7 @@ export class ModelView {
   #noticed(changed) {
     const { lines, planes, contradiction } = this.store.state;
     const isNew = changed.has("state") && (lines !== this.#built?.lines || planes !== this.#built.planes);
-    const rebuilding = ["layers", "texture", "colouring", "shown"];
+    const rebuilding = ["layers", "texture", "colouring", "shown", "unseen", "theme"];
     if (isNew || rebuilding.some((name) => changed.has(name))) this.renew();
     else if (["hover", "selection", "measure"].some((name) => changed.has(name)) || contradiction !== this.#built?.contradiction)
       this.#lightUp();
@@ -163,6 +165,7 @@ export class ModelView {
   #modelLines() {
     const lines = this.store.state.lines
       .filter((line) => line.ends && this.store.showsLine(line))
+      .flatMap((line) => (line.guess ? dashed(line, this.orbit.size) : [line]))
       .map((line) => ({
         start: line.ends[0],
         end: line.ends[1],
@@ -174,7 +177,7 @@ export class ModelView {
 
   /** Walls as a plan shows them: faces that stand upright are seen on edge there, as nothing. */
   #walls() {
-    const look = { colour: [...channels(INK), 1], width: WIDTH.wall * devicePixelRatio };
+    const look = { colour: [...themeColour("--model-ink"), 1], width: WIDTH.wall * devicePixelRatio };
     const faces = [...this.store.faces.values()].filter(({ face, plane }) => plane.normal[2] === 0 && this.store.showsFace(face));
     return faces.flatMap(({ face: { outline } }) =>
       outline.map((start, index) => ({ start, end: outline[(index + 1) % outline.length], ...look })),
@@ -184,7 +187,7 @@ export class ModelView {
   /** The camera as a pyramid: its eye, its picture, and a mark on the upper side. */
   #cameraLines() {
     const corners = this.orbit.photoCorners(CAMERA_SHARE * this.orbit.size);
-    const colour = [...channels(INK), 1];
+    const colour = [...themeColour("--model-ink"), 1];
     const width = 1.4 * devicePixelRatio;
     const mark = corners[0].map((at, k) => (at + corners[1][k]) / 2 - (corners[3][k] - corners[0][k]) * 0.3);
     const pairs = corners.flatMap((corner, index) => [
@@ -200,12 +203,14 @@ export class ModelView {
     const opacity = store.texture && !tells ? FACE_OPACITY.textured : FACE_OPACITY.plain;
     const corners = [];
     for (const plane of store.state.planes) {
+      if (!store.showsPlane(plane)) continue;
       // Walls of further frames as those of x and y.
       const colour = [...(tells ? paler(channels(colourOf(store, plane))) : FACE_COLOURS[plane.axis[0]]), opacity];
       for (const face of plane.faces ?? []) {
         if (!store.showsFace(face) || (face.kind === "ceiling" && this.orbit.flat?.name === "plan")) continue;
         const points = [face.outline, ...(face.holes ?? [])].flat();
-        for (const index of face.triangles.flat()) corners.push([...points[index], ...colour]);
+        const shown = face.guess ? [...colour.slice(0, 3), GUESS_FACE] : colour;
+        for (const index of face.triangles.flat()) corners.push([...points[index], ...shown]);
       }
     }
     return corners;
@@ -237,11 +242,13 @@ export class ModelView {
     if (this.#lines === null) return; // the stage has no size yet
     const matrix = this.orbit.matrix;
     const { K, R_cam_from_world: rotation, photo } = this.store.state;
-    this.graphics.begin(PAPER);
+    const paper = themeColour("--model-paper");
+    this.graphics.begin(paper);
     const projection = {
       pixelFromWorld: product(K, rotation),
       photoSize: [photo.width, photo.height],
       textured: this.store.texture && this.store.colouring === "axis",
+      paper,
     };
     this.graphics.drawFaces(this.#faces, matrix, projection);
     this.graphics.drawLines(this.#lines, matrix, { nearer: NEARER });

@@ -1,6 +1,6 @@
 // The bars, menus and dialogs around the two views.
 
-import { counted, element, icon } from "./dom.js";
+import { element, icon } from "./dom.js";
 import { isReal } from "./store.js";
 import { TOOLS } from "./tools.js";
 
@@ -20,7 +20,6 @@ export class Panels {
     this.#makeZoom();
     this.#makeModelBar();
     this.#makeNotes();
-    this.#makeLength();
     this.#makeExport();
     this.#makeSplitter();
     document.querySelector("#photo-name").textContent = store.state.photo.name;
@@ -207,11 +206,13 @@ export class Panels {
       button.setAttribute("aria-expanded", String(!list.hidden));
     });
     const show = () => {
-      const { camera, notes } = this.store.state;
-      const lines = camera === null ? notes : [camera, ...notes];
-      button.disabled = lines.length === 0;
+      const { notes, details } = this.store.state;
+      button.disabled = notes.length + details.length === 0;
       button.querySelector(".count").textContent = String(notes.length);
-      list.replaceChildren(...lines.map((line) => element("li", {}, line)));
+      const rows = (lines) => element("ul", {}, ...lines.map((line) => element("li", {}, line)));
+      const isOpen = list.querySelector("details")?.open ?? false;
+      const told = details.length > 0 && element("details", { open: isOpen }, element("summary", {}, "What the program did"), rows(details));
+      list.replaceChildren(rows(notes), ...(told ? [told] : []));
     };
     this.store.listen((changed) => changed.has("state") && show());
     show();
@@ -248,28 +249,5 @@ export class Panels {
       const step = { ArrowLeft: -DIVIDER_STEP, ArrowRight: DIVIDER_STEP }[event.key];
       if (step) put(now() + step);
     });
-  }
-
-  // --- the known length ---
-
-  #makeLength() {
-    const dialog = document.querySelector("#length-dialog");
-    const value = document.querySelector("#length-value");
-    let edit = null;
-    this.actions.openLength = ({ id, points }) => {
-      edit = points ? { op: "distance", points } : { op: "length", line: id };
-      const others = counted(this.store.state.lines.length - 1, "other line");
-      document.querySelector("#length-text").textContent = points
-        ? "How far apart are the two points? It sets the scale of the model."
-        : `How long is line ${id}? It sets the scale of all ${others}.`;
-      value.value = "";
-      dialog.showModal();
-    };
-    document.querySelector("#length-cancel").addEventListener("click", () => dialog.close());
-    document
-      .querySelector("#length-form")
-      .addEventListener("submit", () =>
-        this.actions.editing.edit({ ...edit, metres: value.valueAsNumber }),
-      );
   }
 }

@@ -58,7 +58,7 @@ export class PhotoView {
     const isNew = parts.filter((name) => state[name] !== this.#drawn?.[name]);
     const relabelled = isNew.join() === "crossings" ? differing(this.#drawn?.crossings, state.crossings) : null;
     this.#drawn = state;
-    const anew = ["layers", "hidden", "colouring", "shown"];
+    const anew = ["layers", "hidden", "colouring", "shown", "unseen"];
     if (anew.some((name) => changed.has(name)) || (isNew.length > 0 && !relabelled)) {
       this.redraw("drawing", "overlay");
     } else if (relabelled) {

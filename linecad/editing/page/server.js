@@ -2,6 +2,12 @@
 
 const TOKEN_KEY = "linecad-token";
 
+// What a user is to do when linecad edit has ended, or another one runs at its address.
+const GONE =
+  "linecad edit has ended, or does not answer. What you corrected is saved: start it again with the same photo and go on in the page that it opens.";
+const OTHER =
+  "linecad edit was started again. What you corrected is saved: close this tab and go on in the page that it opened, or open the address that it printed.";
+
 /** An answer of the server that is no success; `status` is the HTTP status, 0 where no answer came at all. */
 export class RequestError extends Error {
   constructor(status, text) {
@@ -31,7 +37,7 @@ export class Server {
     try {
       answer = await fetch(`/api/${path}`, { ...options, headers, cache: "no-store" });
     } catch {
-      throw new RequestError(0, "The server does not answer. Is linecad edit still running?");
+      throw new RequestError(0, GONE);
     }
     if (!answer.ok) throw new RequestError(answer.status, await reason(answer));
     return answer;
@@ -95,6 +101,6 @@ async function reason(answer) {
   } catch {
     // Not JSON: the status has to do.
   }
-  if (answer.status === 401) return "The address lacks its token: open the address that linecad edit printed.";
+  if (answer.status === 401) return OTHER;
   return `The server answered ${answer.status} ${answer.statusText}.`;
 }

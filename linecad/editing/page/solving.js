@@ -9,6 +9,7 @@ const LAZY_POLL = 1000; // ms, while something is not saved yet
 export class Solving {
   #timer = null;
   #ran = false;
+  #since = 0; // ms, when the search was first seen to run
 
   constructor(store, actions) {
     Object.assign(this, { store, actions });
@@ -30,6 +31,7 @@ export class Solving {
 
   #noticed(changed) {
     const ended = this.#ran && !this.running;
+    if (this.running && !this.#ran) this.#since = performance.now();
     this.#ran = this.running;
     if (ended) this.#ended();
     if (changed.has("solve") || changed.has("state") || changed.has("saved") || changed.has("owner")) {
@@ -92,9 +94,12 @@ export class Solving {
     const { fresh } = solve;
     this.button.classList.toggle("waiting", !this.running && !fresh);
     const isBehind = this.running && !this.actions.hasAsked;
-    this.text.textContent = isBehind ? "Building the scene anew" : this.running ? progressText(solve) : resultText(solve, fresh);
+    const ran = () => (this.running ? progressText(solve, performance.now() - this.#since) : resultText(solve, fresh));
+    this.text.textContent = isBehind ? "Building the scene anew" : ran();
     this.bar.hidden = !this.running;
-    if (typeof solve.gap === "number") this.bar.value = Math.max(0, 1 - Math.min(solve.gap, 1));
+    // A gap that is closed is not the end: planes and faces are still to be built.
+    const isSearching = !solve.stage && typeof solve.gap === "number" && solve.gap > 0;
+    if (isSearching) this.bar.value = Math.max(0, 1 - Math.min(solve.gap, 1));
     else this.bar.removeAttribute("value");
     this.saved.textContent = store.saved && store.busy === 0 ? "Saved" : "Saving…";
   }
@@ -121,19 +126,20 @@ export class Solving {
   }
 }
 
-function progressText(solve) {
+function progressText(solve, elapsed) {
   const known = [];
-  if (typeof solve.objective === "number") known.push(`best ${rounded(solve.objective)}`);
-  if (typeof solve.bound === "number") known.push(`bound ${rounded(solve.bound)}`);
-  if (typeof solve.gap === "number") known.push(`gap ${percent(solve.gap)}`);
-  if (typeof solve.seconds === "number") known.push(`${solve.seconds.toFixed(1)} s`);
-  return known.length > 0 ? known.join(" · ") : "starting";
+  const isSearching = !solve.stage && typeof solve.objective === "number";
+  if (solve.stage) known.push(solve.stage);
+  if (isSearching) known.push(`best ${rounded(solve.objective)}`);
+  if (isSearching && typeof solve.bound === "number") known.push(`bound ${rounded(solve.bound)}`);
+  if (isSearching && typeof solve.gap === "number") known.push(`gap ${percent(solve.gap)}`);
+  return [...(known.length > 0 ? known : ["starting"]), `${(elapsed / 1000).toFixed(0)} s`].join(" · ");
 }
 
 function resultText(solve, fresh) {
   if (!fresh) return "Your corrections are not in the model yet";
   if (typeof solve.seconds !== "number") return "";
-  const gap = typeof solve.gap === "number" ? ` · gap ${percent(solve.gap)}` : "";
+  const gap = typeof solve.gap === "number" && solve.gap > 0 ? ` · gap ${percent(solve.gap)}` : "";
   return `${solve.status ?? "solved"} in ${solve.seconds.toFixed(1)} s${gap}`;
 }
 

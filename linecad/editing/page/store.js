@@ -54,6 +54,11 @@ export class Store {
   choice = EVERYTHING; // what of the model is shown, and exported
   shown = null; // {lines, faces}: Sets of the ids that the choice keeps; null: all
   measure = { points: [], near: null }; // two points or fewer, and the one under the pointer (measuring.js)
+  unseen = new Set(); // ids of lines whose groups are hidden in this tab: a model numbers its groups anew
+  locked = new Set(); // ids of lines whose groups this tab does not edit
+  hiddenGroups = new Set(); // the components of these lines in the model that is shown
+  lockedGroups = new Set();
+  theme = "light";
   #listeners = [];
 
   /** Call `listener` with a Set of names of fields after each change. */
@@ -83,7 +88,28 @@ export class Store {
       }
     }
     if (this.many && (changed.has("state") || changed.has("selection")) && this.#keepMany()) changed.add("many");
+    if (["state", "unseen", "locked"].some((name) => changed.has(name))) {
+      this.hiddenGroups = this.#componentsOf(this.unseen);
+      this.lockedGroups = this.#componentsOf(this.locked);
+    }
     if (changed.size > 0) for (const listener of this.#listeners) listener(changed);
+  }
+
+  #componentsOf(ids) {
+    return new Set([...ids].map((id) => this.lines.get(id)?.component).filter((component) => component >= 0));
+  }
+
+  /** What keys act on, and what the strip shows: a crossing under the pointer, the selection, what is hovered. */
+  get meant() {
+    const isCrossing = !this.labelling && this.hover?.kind === "crossing";
+    return isCrossing ? this.hover : (this.selection ?? (this.labelling ? null : this.hover));
+  }
+
+  /** Whether an edit would change a line or crossing of a locked group; then the group's component, else undefined. */
+  lockedBy({ op, line, lines, crossing }) {
+    if (op === "name" || this.lockedGroups.size === 0) return undefined;
+    const own = [line, ...(op === "join" ? lines : []), ...(this.crossings.get(crossing)?.lines ?? [])];
+    return own.map((id) => this.lines.get(id)?.component).find((component) => this.lockedGroups.has(component));
   }
 
   /** Of many things those that are there still, none beside a selected one; whether that changes them. */
@@ -128,7 +154,8 @@ export class Store {
 
   showsLine(line) {
     if (this.shown && line.ends && !this.shown.lines.has(line.id)) return false;
-    return this.layers[line.axis[0]]; // x2, x3 and so on of further frames go with x
+    // x2, x3 and so on of further frames go with x.
+    return this.layers[line.axis[0]] && !this.hiddenGroups.has(line.component);
   }
 
   showsFace(face) {
@@ -138,6 +165,7 @@ export class Store {
   showsCrossing(crossing) {
     const isLeftOut = (id) => this.lines.get(id)?.ends && !this.shown.lines.has(id);
     if (this.shown && crossing.lines.some(isLeftOut)) return false;
+    if (this.hiddenGroups.size > 0 && crossing.lines.some((id) => this.#isHidden(id))) return false;
     return this.layers[isReal(crossing) ? "real" : "fake"] || (this.layers.changed && crossing.changed);
   }
 
@@ -151,6 +179,15 @@ export class Store {
     const { selection, state } = this;
     if (state.contradiction?.crossings.includes(id)) return true;
     return selection?.kind === "line" ? lines.includes(selection.id) : selection?.id === id;
+  }
+
+  /** Whether the faces of a plane are seen: not where all its lines are of hidden groups. */
+  showsPlane(plane) {
+    return this.hiddenGroups.size === 0 || plane.lines.length === 0 || !plane.lines.every((id) => this.#isHidden(id));
+  }
+
+  #isHidden(id) {
+    return this.hiddenGroups.has(this.lines.get(id)?.component);
   }
 
   toggleLayer(name) {

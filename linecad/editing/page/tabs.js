@@ -16,16 +16,17 @@ export async function guardTab(server, store, messages, editing) {
 
   async function ask(takeOver = false) {
     try {
-      const { owner } = await server.post("hello", { tab, ...(takeOver && { take_over: true }) });
+      const { owner, version } = await server.post("hello", { tab, ...(takeOver && { take_over: true }) });
       messages.keep("server", null);
       const isNew = owner && !store.owner;
       store.set({ owner });
-      if (isNew) await editing.refresh();
+      // A tab that only looks shows what the other one does.
+      if (isNew || (!owner && version !== store.state.version)) await editing.refresh();
       const text = "This photo is open in another tab, which edits it. This one only looks.";
       messages.keep("tab", owner ? null : text, "warning", [["Edit here", () => ask(true)]]);
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
-      messages.keep("server", `${error.message} What you corrected is saved.`, "error");
+      messages.keep("server", error.message, "error");
     }
   }
 

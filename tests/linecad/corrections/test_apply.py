@@ -15,6 +15,7 @@ from linecad.corrections.edits import (
     KnownLength,
     LabelCrossing,
     Many,
+    NameGroup,
     SetAxis,
     SetEnds,
     SetFrame,
@@ -60,6 +61,14 @@ def test_a_length_is_kept_by_the_line_and_can_be_taken_back(applied, anchor):
     known = KnownLength(anchor(4), 3.5)
     assert applied(known).lengths == {4: 3.5}
     assert applied(known, replace(known, metres=None)).lengths == {}
+
+
+def test_a_name_of_a_group_goes_with_its_line_and_can_be_taken_back(made, applied, anchor):
+    named = NameGroup(anchor(4), "Right tower")
+    assert applied(named).names == {4: "Right tower"}
+    pieces = applied(named, Split(anchor(4), tuple(made.pixels[4].mean(axis=0).tolist())))
+    assert pieces.names == {pieces.ids[-2]: "Right tower"}
+    assert applied(named, replace(named, name=None)).names == {}
 
 
 @pytest.mark.parametrize(

@@ -21,6 +21,7 @@ from linecad.corrections.edits import (
     LabelCrossing,
     Many,
     Meet,
+    NameGroup,
     OnePlane,
     Place,
     PlaceAt,
@@ -46,6 +47,7 @@ points = st.tuples(numbers, numbers)
 segments = st.tuples(points, points).filter(lambda p: abs(p[0][0] - p[1][0]) + abs(p[0][1] - p[1][1]) > 0.01)
 anchors = st.builds(Anchor, segments, st.integers(0, 2))
 pairs = st.tuples(anchors, anchors)
+names = st.text(st.characters(categories=["L", "N", "P"]), min_size=1, max_size=60)
 facts = st.one_of(
     st.builds(Meet, pairs),
     st.builds(OnePlane, pairs, st.integers(0, 6)),
@@ -70,6 +72,7 @@ edits = st.one_of(
     st.builds(Draw, anchors),
     st.builds(KnownLength, anchors, st.none() | st.floats(1e-6, 1e6)),
     st.builds(KnownDistance, st.tuples(places, places), st.none() | st.floats(1e-6, 1e6)),
+    st.builds(NameGroup, anchors, st.none() | names),
     st.builds(SetFrame, st.lists(anchors, min_size=1, max_size=4).map(tuple)),
 )
 lists = st.lists(edits, max_size=6).map(tuple)
@@ -192,3 +195,9 @@ def test_corrections_of_a_photo_of_another_size_are_refused():
 def test_where_nothing_can_be_written_it_is_said(tmp_path):
     with pytest.raises(OutputError):
         write_corrections(Corrections("a.jpg", 1, 1), tmp_path / "none" / "a.json")
+
+
+@pytest.mark.parametrize("text", ["", "  ", "two\nlines", "x" * 61])
+def test_a_name_of_a_group_is_one_line_of_text(text):
+    with pytest.raises(CorrectionsFileError, match="a name of 1 to 60 characters"):
+        corrections_from_json(json.dumps(with_edit(op="name", line=LINE, text=text)))

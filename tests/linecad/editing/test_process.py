@@ -212,6 +212,11 @@ class TestRefusals:
         assert "is an input too" in fails("room.jpg", "--camera", "room.json", "-o", "room.json")
         assert (folder / "room.json").read_bytes() == before
 
+    def test_a_fast_fit_that_cannot_keep_to_what_is_said(self, fails, folder):
+        """The page once took corrections and then refused to solve."""
+        assert "a fast fit cannot; leave out --fast" in fails("room.jpg", "--fast")
+        assert not (folder / "room.jpg.corrections.json").exists()
+
     def test_labels_that_would_not_lie_beside_the_photo(self, fails, folder):
         (folder / "sub").mkdir()
         assert "must lie beside room.jpg" in fails("room.jpg", "--labels", "sub/room.labels.json")

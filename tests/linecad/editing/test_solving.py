@@ -9,12 +9,14 @@ import pytest
 import linecad.pipeline
 from linecad.corrections.edits import Corrections
 from linecad.depth.depth_map import DepthMap
+from linecad.editing.document import solve_of
 from linecad.editing.run import EditOptions, edit
 from linecad.editing.session import Session
-from linecad.editing.solving import SolvingProcess, TaskSolver
+from linecad.editing.solving import SolvingProcess, Step, TaskSolver
 from linecad.errors import DepthMapError, ReconstructionError
 from linecad.lines.segments import find_segments
 from linecad.options import Options
+from solver.options import Progress
 
 
 def test_the_pipe_is_closed_by_the_thread_that_listens_to_it(made_photo):
@@ -66,3 +68,26 @@ def test_the_page_reads_the_map_and_hands_it_to_the_process_that_solves(made_pho
     with pytest.raises(DepthMapError, match="is empty"):
         edit(made_photo, options, lambda _: None, lambda _: None)
     assert not (tmp_path / "said.json").exists()
+
+
+def test_a_solve_tells_its_stages_to_the_end(made_photo, task):
+    """The gap was closed after a tenth of a second, and the page waited for the faces without a word."""
+    stages = []
+    answer = TaskSolver(made_photo, Options()).answer(task, lambda _: None, stages.append)
+    assert answer.made is not None
+    assert any(stage.startswith("placing") for stage in stages)
+    assert stages[-1] == "building planes and faces"
+    assert answer.seconds > answer.made.solution.seconds
+
+
+def test_a_stage_is_told_until_the_search_begins(made_photo):
+    corrections = Corrections(made_photo.name, made_photo.width, made_photo.height)
+    session = Session(made_photo, find_segments(made_photo.grey), Options(), corrections, lambda _: None)
+    number = session.task(session.now().version).number
+    session.hear(Step(number, stage="finding what ties 3 bodies"))
+    assert solve_of(session.now())["stage"] == "finding what ties 3 bodies"
+    session.hear(Step(number, Progress(0.1, 5.0, 6.0, 0.2, 1)))
+    assert (solve_of(session.now())["stage"], solve_of(session.now())["bound"]) == ("", 6.0)
+    session.hear(Step(number, stage="building planes and faces"))
+    told = solve_of(session.now())
+    assert (told["stage"], told["bound"]) == ("building planes and faces", 6.0)

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from linecad.corrections.apply import FoundPlace
 from linecad.geometry import project
 from linecad.line_graph import Segments
-from linecad.model.known_lengths import measured, seen_plane
+from linecad.model.known_lengths import measurable, measured, seen_plane
 from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
 
 CAMERA = Camera(3000, 2000, np.array([[2500.0, 0, 1499.5], [0, 2500, 999.5], [0, 0, 1]]), "file")
@@ -114,7 +114,7 @@ def test_the_normal_tells_faces_at_one_place_apart(town):
         ((on_face((0, 10, 0), (0, 10, 0)), on_face((0, 10, 0), (0, 10, 0))), "two points are one"),
         ((on_face((0, 10, 0), (0, 10, 0)), on_face((4, BACK, 0), (4, BACK, 0))), "plane 1 is not of component 0"),
         ((on_face((0, 10, 0), (0, 10, 0)), on_face((0, 10, 0), (0, 10, 3.9), 0)), "no face .* any more"),
-        ((on_face((0, 10, 0), (0, 10, 0)), FoundPlace(pixel_of((0, BACK, 1)), line=2)), "not on component 0"),
+        ((on_face((0, 10, 0), (0, 10, 0)), FoundPlace(pixel_of((0, BACK, 1)), line=2)), "depth that is a guess"),
         ((on_face((0, 10, 0), (0, 10, 0)), FoundPlace((0, 0), face=pixel_of((0, 9, GROUND)), normal=2)), "not meet"),
     ],
 )
@@ -138,3 +138,18 @@ def test_of_two_faces_the_nearer_one_is_seen(town):
     assert seen_plane(town, pixel_of((4, BACK, 0)), 1).id == 1
     assert seen_plane(town, pixel_of((0, 10, 0)), None).id == 0
     assert seen_plane(town, pixel_of((0, 9, GROUND)), None).id == 2
+
+
+@pytest.mark.parametrize(("component", "probability", "scale"), [(3, 0.6, 0.75), (3, 0.4, None), (0, 0.4, None)])
+def test_where_probabilities_are_told_all_but_guesses_set_the_scale(scene, component, probability, scale):
+    """A length on a weak group once promised a scale and did nothing, also where all groups have one scale."""
+    lines = replace(scene.lines, pieces=(), component=[component], probability=[probability])
+    told = measured(replace(scene, lines=lines), corrected(seen(WHOLE), 3.0))
+    assert told.metres_per_unit == (None if scale is None else pytest.approx(scale))
+    assert len(told.notes) == (scale is None)
+
+
+def test_where_none_are_told_component_0_alone_sets_it(scene):
+    for component, tells in ((0, True), (1, False)):
+        lines = replace(scene.lines, component=[component])
+        assert measurable(replace(scene, lines=lines)).tolist() == [tells]

@@ -252,7 +252,7 @@ def test_a_known_length_sets_the_scale(screen):
     screen.press("v")
     screen.click(free_place(screen.state, line))
     screen.press("m")
-    screen.page.get_by_label("Length in metres").fill("7.5")
+    screen.page.get_by_label("Length", exact=True).fill("7,5 m")
     screen.page.get_by_role("button", name="Set the scale").click()
     screen.wait("linecad.store.state.metres_per_unit !== null")
     units = np.linalg.norm(np.subtract(*line["ends"]))
@@ -356,18 +356,19 @@ def test_a_contradiction_is_named_and_lit_up(screen, made):
 
 def test_labelling_goes_from_one_crossing_to_the_next(screen):
     screen.press("l")
-    order = [each["id"] for each in screen.state["crossings"]]
+    order = screen.state["labelling"]["order"]
     for number, (key, value) in enumerate((("r", "real"), ("f", "fake"), ("u", "unsure"))):
         screen.wait(f"linecad.store.selection?.id === {order[number]}")
-        at = screen.on_screen(screen.state["crossings"][number]["pixel"])
+        at = screen.on_screen(by_id(screen.state, "crossings", order[number])["pixel"])
         stage = screen.stage
         assert at == pytest.approx((stage["x"] + stage["width"] / 2, stage["y"] + stage["height"] / 2), abs=1)
         screen.press(key)
         screen.wait(f"linecad.store.state.labelling.done === {number + 1}")
-        assert screen.served.ask("state")["crossings"][number]["label"] == value
+        assert by_id(screen.served.ask("state"), "crossings", order[number])["label"] == value
     screen.page.keyboard.type("rr")  # faster than the server answers
     screen.settle()
-    assert [each["label"] for each in screen.served.ask("state")["crossings"][3:6]] == ["real", "real", None]
+    state = screen.served.ask("state")
+    assert [by_id(state, "crossings", each)["label"] for each in order[3:6]] == ["real", "real", None]
     assert f"5 of {len(order)} labelled" in screen.page.locator("#inspector").inner_text()
     screen.press("l")
     assert screen.run("linecad.store.labelling") is False

@@ -42,6 +42,13 @@ def test_the_model_is_drawn(screen):
 
 
 def test_through_the_camera_the_faces_carry_their_own_part_of_the_photo(screen):
+    screen.run(
+        """() => {
+          const { state } = linecad.store;
+          const sure = (plane) => ({ ...plane, faces: plane.faces.map((face) => ({ ...face, guess: false })) });
+          linecad.store.set({ state: { ...state, planes: state.planes.map(sure) } }); // guesses are pale
+        }"""
+    )
     screen.button("Through the camera").click()
     for name in ("x", "y", "z"):
         screen.page.locator(f"[data-layer={name}]").click()
@@ -301,7 +308,7 @@ def test_without_webgl_the_photo_side_works_and_the_model_says_why(new_screen, s
 def test_without_its_token_the_page_says_what_to_do(new_screen, shared_screen):
     screen = new_screen(shared_screen.served)
     screen.page.goto(screen.served.origin)
-    screen.page.get_by_text("Open the address that linecad edit printed").wait_for()
+    screen.page.get_by_text("Open the whole address that linecad edit printed").wait_for()
 
 
 def test_every_button_has_a_name_and_every_key_is_in_the_help(screen):
