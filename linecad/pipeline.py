@@ -102,8 +102,9 @@ def reconstruct_lines(
     notes = found.notes + annotations.notes + decision.notes + _notes_on_map(depth, placed, found.camera)
     sketch = None if found.raw is None or not options.roofs else Sketch(found.raw, whole.segments.ends, whole.axis)
     view = View(
-        photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch
-    )
+        photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch,
+        () if corrected is None else corrected.faces,
+    )  # fmt: skip
     lifted = lift(graph, decision.real, solution.log_depth)
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:

@@ -5,6 +5,7 @@ added or taken back: found lines are numbered in their order, new ones follow in
 """
 
 from dataclasses import dataclass
+from functools import partial
 from itertools import product
 from typing import Literal, assert_never
 
@@ -19,15 +20,21 @@ from linecad.corrections.edits import (
     Delete,
     Draw,
     Edit,
+    FaceEdit,
     Join,
     KnownLength,
     Label,
     LabelCrossing,
+    NoWindow,
     Point,
+    Region,
     SetAxis,
     SetFrame,
     Split,
+    WallByEdges,
+    Window,
 )
+from linecad.corrections.faces import ToldFace, told
 from linecad.corrections.lookup import LineTable
 from linecad.directions import axis_name
 from linecad.errors import CorrectionError
@@ -51,6 +58,7 @@ class CorrectedLines:
     lengths: dict[int, float]  # m, by id
     parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
     notes: tuple[str, ...]  # what could not be found again
+    faces: tuple[FaceEdit, ...] = ()  # what is known about faces, in order, by lines as they look now
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -105,6 +113,7 @@ class Correcting:
         self.labels: dict[tuple[int, int], tuple[Point, Label]] = {}
         self.lengths: dict[int, float] = {}
         self.parted: list[tuple[int, int]] = []
+        self.faces: list[ToldFace] = []
         self._table: LineTable | None = None
 
     def apply(self, edit: Edit, before_frame: bool = False) -> None:
@@ -145,6 +154,9 @@ class Correcting:
                     self.lengths[number] = edit.metres
             case SetFrame():
                 pass  # the lines were found with it
+            case Region() | Window() | NoWindow() | WallByEdges():
+                find = partial(self.find, any_axis=before_frame)
+                self.faces.append(told(edit, find, self._look, before_frame))
             case _:
                 assert_never(edit)
 
@@ -152,6 +164,9 @@ class Correcting:
         """The lines as they are now."""
         lines = list(self.lines.values())
         ends = np.array([line.ends for line in lines]).reshape(-1, 2, 2)
+        faces = [face.now(self._look) for face in self.faces]
+        if None in faces:
+            notes = (*notes, "a wall by four edges is left out: one of its edges was taken away")
         return CorrectedLines(
             segments=Segments(ends, np.array([line.axis for line in lines], np.int64)),
             ids=np.array(list(self.lines), np.int64),
@@ -160,6 +175,7 @@ class Correcting:
             lengths={own: metres for number, metres in self.lengths.items() for own in self._now(number)[:1]},
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
             notes=notes,
+            faces=tuple(face for face in faces if face is not None),
         )
 
     def anchor(self, number: int) -> Anchor:
@@ -169,6 +185,11 @@ class Correcting:
         line = self.lines[number]
         (a, b), (c, d) = line.ends.tolist()
         return Anchor(((a, b), (c, d)), line.axis)
+
+    def _look(self, number: int) -> Anchor | None:
+        """What a line looks like now, or the first piece of what it has become; None when nothing is left of it."""
+        now = self._now(number)
+        return self.anchor(now[0]) if now else None
 
     def find(self, anchor: Anchor, any_axis: bool = False) -> int:
         """The id of the line that an anchor names (`LineTable.find`); CorrectionError when there is none."""

@@ -19,12 +19,17 @@ from linecad.corrections.edits import (
     KnownLength,
     Label,
     LabelCrossing,
-    Point,
+    NoWindow,
+    Region,
     SetAxis,
     SetFrame,
     Split,
+    WallByEdges,
+    Window,
 )
-from linecad.directions import axis_name, axis_of
+from linecad.corrections.face_file import FACE_OPERATIONS, face_edit, face_edit_to_json
+from linecad.corrections.values import anchor, anchor_to_json, axis, point
+from linecad.directions import axis_name
 from linecad.errors import CorrectionsFileError
 from linecad.io.files import read_text, write_text_atomically
 from linecad.io.strict_json import JsonError, Node, parse
@@ -34,10 +39,8 @@ VERSION = 1
 SUFFIX = ".corrections.json"
 LARGEST_FILE = 64 * 2**20  # bytes; an edit takes a few hundred
 LARGEST_PHOTO = 10**6  # px along one side
-LARGEST_PIXEL = 1e7  # px from the photo's corner
-LEAST_LENGTH = 1e-3  # px, of a segment
 MOST_FRAME_LINES = 100
-OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame")
+OPERATIONS = ("label", "axis", "delete", "split", "join", "draw", "length", "frame", *FACE_OPERATIONS)
 
 
 def read_corrections(path: str | os.PathLike[str]) -> Corrections:
@@ -93,30 +96,28 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
         case LabelCrossing():
             return {
                 "op": "label",
-                "lines": [_anchor_to_json(line) for line in edit.lines],
+                "lines": [anchor_to_json(line) for line in edit.lines],
                 "pixel": list(edit.pixel),
                 "value": edit.label,
             }
         case SetAxis():
-            return {"op": "axis", "line": _anchor_to_json(edit.line), "axis": axis_name(edit.axis)}
+            return {"op": "axis", "line": anchor_to_json(edit.line), "axis": axis_name(edit.axis)}
         case Delete():
-            return {"op": "delete", "line": _anchor_to_json(edit.line)}
+            return {"op": "delete", "line": anchor_to_json(edit.line)}
         case Split():
-            return {"op": "split", "line": _anchor_to_json(edit.line), "at": list(edit.at)}
+            return {"op": "split", "line": anchor_to_json(edit.line), "at": list(edit.at)}
         case Join():
-            return {"op": "join", "lines": [_anchor_to_json(line) for line in edit.lines]}
+            return {"op": "join", "lines": [anchor_to_json(line) for line in edit.lines]}
         case Draw():
-            return {"op": "draw", "line": _anchor_to_json(edit.line)}
+            return {"op": "draw", "line": anchor_to_json(edit.line)}
         case KnownLength():
-            return {"op": "length", "line": _anchor_to_json(edit.line), "metres": edit.metres}
+            return {"op": "length", "line": anchor_to_json(edit.line), "metres": edit.metres}
         case SetFrame():
-            return {"op": "frame", "lines": [_anchor_to_json(line) for line in edit.lines]}
+            return {"op": "frame", "lines": [anchor_to_json(line) for line in edit.lines]}
+        case Region() | Window() | NoWindow() | WallByEdges():
+            return face_edit_to_json(edit)
         case _:
             assert_never(edit)
-
-
-def _anchor_to_json(anchor: Anchor) -> dict[str, object]:
-    return {"segment": [list(end) for end in anchor.ends], "axis": axis_name(anchor.axis)}
 
 
 def _corrections(top: Node) -> Corrections:
@@ -141,30 +142,28 @@ def _edit(node: Node) -> Edit:
         case "label":
             return LabelCrossing(_two(node["lines"]), point(node["pixel"]), label(node))
         case "axis":
-            return SetAxis(_anchor(node["line"]), axis(node["axis"]))
+            return SetAxis(anchor(node["line"]), axis(node["axis"]))
         case "delete":
-            return Delete(_anchor(node["line"]))
+            return Delete(anchor(node["line"]))
         case "split":
-            return Split(_anchor(node["line"]), point(node["at"]))
+            return Split(anchor(node["line"]), point(node["at"]))
         case "join":
             return Join(_two(node["lines"]))
         case "draw":
-            return Draw(_anchor(node["line"]))
+            return Draw(anchor(node["line"]))
         case "length":
-            return KnownLength(_anchor(node["line"]), metres(node))
-        case _:
+            return KnownLength(anchor(node["line"]), metres(node))
+        case "frame":
             return SetFrame(frame_lines(node["lines"], "segment"))
-
-
-def _anchor(node: Node, key: str = "segment") -> Anchor:
-    return Anchor(ends(node[key]), axis(node["axis"]))
+        case _:
+            return face_edit(node)
 
 
 def _two(node: Node) -> tuple[Anchor, Anchor]:
     items = node.items()
     if len(items) != 2:
         raise node.wrong("a list of 2")
-    return _anchor(items[0]), _anchor(items[1])
+    return anchor(items[0]), anchor(items[1])
 
 
 def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:
@@ -172,34 +171,7 @@ def frame_lines(node: Node, key: str) -> tuple[Anchor, ...]:
     items = node.items()
     if not 1 <= len(items) <= MOST_FRAME_LINES:
         raise node.wrong(f"a list of 1 to {MOST_FRAME_LINES}")
-    return tuple(_anchor(item, key) for item in items)
-
-
-def ends(node: Node) -> tuple[Point, Point]:
-    """Both ends of a segment, px."""
-    items = node.items()
-    if len(items) != 2:
-        raise node.wrong("a list of 2")
-    first, second = point(items[0]), point(items[1])
-    if abs(first[0] - second[0]) + abs(first[1] - second[1]) < LEAST_LENGTH:
-        raise node.wrong("two ends that differ")
-    return first, second
-
-
-def point(node: Node) -> Point:
-    """A place in the photo, px."""
-    items = node.items()
-    if len(items) != 2:
-        raise node.wrong("a list of 2")
-    return items[0].number(LARGEST_PIXEL), items[1].number(LARGEST_PIXEL)
-
-
-def axis(node: Node) -> int:
-    """The number of a direction by its name."""
-    found = axis_of(node.text())
-    if found is None:
-        raise node.wrong("one of x, y, z, or of x2, y2, x3 and so on of further frames")
-    return found
+    return tuple(anchor(item, key) for item in items)
 
 
 def label(node: Node) -> Label | None:

@@ -20,8 +20,7 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     """
     if not corrected.lengths:
         return scene
-    axes = enumerate(scene.lines.axis.tolist())
-    row = {(axis, ends.tobytes()): number for number, axis in axes for ends in scene.lines.segments_of(number)}
+    row = scene.lines.row_by_look
     scales, notes = [], []
     for number, metres in corrected.lengths.items():
         own = int(np.flatnonzero(corrected.ids == number)[0])

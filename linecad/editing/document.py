@@ -125,7 +125,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "guess": bool(guess[row]),
             "by_depth_map": bool(lines.by_depth_map[row]),
         }
-        for look, row in _rows(scene).items()
+        for look, row in scene.lines.row_by_look.items()
     }
 
 
@@ -173,7 +173,7 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         )
     }
     numbers: dict[int, list[int]] = {int(line): [] for line in scene.lines.id}
-    for look, row in _rows(scene).items():
+    for look, row in scene.lines.row_by_look.items():
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[_is_guess(scene)].tolist())
@@ -220,12 +220,6 @@ def _turned_rings(face: Face, flat: FlatFace) -> list[list[list[float]]]:
 def _same_direction(ring: np.ndarray, turned: np.ndarray) -> bool:
     scale = np.linalg.norm(turned[0]) / max(np.linalg.norm(ring[0]), np.finfo(float).tiny)
     return bool(np.abs(ring * scale - turned).max() <= np.abs(ring[::-1] * scale - turned).max())
-
-
-def _rows(scene: Scene) -> dict[tuple[int, bytes], int]:
-    """The row of each line of a scene by axis and segment, that of a line joined from pieces by each of these."""
-    axes = enumerate(scene.lines.axis.tolist())
-    return {(axis, ends.tobytes()): row for row, axis in axes for ends in scene.lines.segments_of(row)}
 
 
 def _finite(number: float) -> float | None:

@@ -17,7 +17,8 @@ from linecad.corrections.edits import (
     SetFrame,
     Split,
 )
-from linecad.corrections.file import OPERATIONS, axis, ends, frame_lines, label, metres, point
+from linecad.corrections.file import OPERATIONS, frame_lines, label, metres
+from linecad.corrections.values import axis, ends, point
 from linecad.editing.session import Session
 from linecad.io.strict_json import Node
 

@@ -40,6 +40,7 @@ class Filled:
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
     roofs: tuple[Roof, ...] = ()  # before whatever the labels say
     drop: float | None = None  # of the road below the pavement, in heights of the camera above this; None: no kerb
+    told: tuple[str, ...] = ()  # what a person said and could not be taken, for people
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -49,9 +50,9 @@ class Filled:
         if self.labels.gap == 0:
             proof = f"{cells} is proven best for its costs"
         if self.drop is None:
-            return (proof, *notes_on(self.roofs))
+            return (*self.told, proof, *notes_on(self.roofs))
         step = f"a kerb puts the road {self.drop:.1%} of the camera's height below the ground that walls stand on"
-        return proof, f"faces: {step}", *notes_on(self.roofs)
+        return *self.told, proof, f"faces: {step}", *notes_on(self.roofs)
 
 
 def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
