@@ -74,13 +74,18 @@ def face_edit(node: Node) -> FaceEdit:
 
 def polygon(node: Node) -> tuple[Point, ...]:
     """The corners of a polygon with an area that does not cross itself, px."""
-    items = node.items()
-    if not 3 <= len(items) <= MOST_CORNERS:
-        raise node.wrong(f"a list of 3 to {MOST_CORNERS} points")
-    corners = tuple(point(item) for item in items)
+    corners = points(node)
     if not shapely.Polygon(corners).is_valid:
         raise node.wrong("the corners of a polygon that does not cross itself")
     return corners
+
+
+def points(node: Node) -> tuple[Point, ...]:
+    """Places that a line goes through, px, enough for a polygon."""
+    items = node.items()
+    if not 3 <= len(items) <= MOST_CORNERS:
+        raise node.wrong(f"a list of 3 to {MOST_CORNERS} points")
+    return tuple(point(item) for item in items)
 
 
 def shown(node: Node) -> Shown:

@@ -12,6 +12,7 @@ from exporters.model import build_model
 from exporters.triangulation import triangulate
 from linecad.arrays import Bool
 from linecad.camera.text import summary
+from linecad.corrections.edits import Region
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.depth_layers import document_of_layers
@@ -44,6 +45,9 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "lines": _lines(now),
         "crossings": _crossings(now),
         "planes": [] if now.model is None else _planes(now, now.model),
+        "areas": [
+            {"is": edit.shows, "polygon": edit.polygon} for edit in now.corrections.edits if isinstance(edit, Region)
+        ],
         "notes": list(now.found.notes if scene is None else scene.notes),
         "depth_map": None if depth is None else document_of_layers(depth, now),
         "solve": solve_of(now),
@@ -185,7 +189,12 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             "offset": plane.offset,
             "lines": [number for line in plane.lines for number in numbers[line]],
             "faces": [
-                {**triangles[face.id], "guess": guesses.issuperset(plane.lines or numbers)}
+                {
+                    **triangles[face.id],
+                    "guess": guesses.issuperset(plane.lines or numbers),
+                    "kind": face.kind,
+                    "opening": face.opening,
+                }
                 for face in plane.faces
                 if face.id in triangles
             ],

@@ -19,6 +19,7 @@ from linecad.corrections.edits import (
 )
 from linecad.corrections.file import OPERATIONS, frame_lines, label, metres
 from linecad.corrections.values import axis, ends, point
+from linecad.editing.face_edits import read_face_edit
 from linecad.editing.session import Session
 from linecad.io.strict_json import Node
 
@@ -48,8 +49,10 @@ def read_edit(node: Node, session: Session) -> Edit:
             return Draw(Anchor(_plain(drawn), own))
         case "length":
             return KnownLength(_line(node, lines), metres(node))
-        case _:
+        case "frame":
             return SetFrame(frame_lines(node["lines"], "ends"))
+        case _:
+            return read_face_edit(node, session)
 
 
 def proposal(node: Node, lines: Correcting) -> tuple[Float, int, tuple[bool, bool]]:

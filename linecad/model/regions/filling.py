@@ -85,7 +85,7 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     whole[small, label[small]] = NEVER
     whole[inside, found.clutter] = NEVER - 1  # where nothing is reached, it stays what it is
     started = np.where(inside, whole.argmin(axis=1), label)
-    borders = _neighbours(cells)
+    borders = neighbours(cells)
     label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky, found.clutter])
     proof = prove(Program(whole, borders, 0, 0), label)
     gap = max(found.gap, proof.gap)
@@ -147,7 +147,7 @@ def _inside(cells: list[shapely.Polygon], regions: list[shapely.Polygon]) -> Boo
     return inside
 
 
-def _neighbours(cells: list[shapely.Polygon]) -> Borders:
+def neighbours(cells: list[shapely.Polygon]) -> Borders:
     """Cells that share a border, at a cost of its length in hundreds of px."""
     one, other = shapely.STRtree(cells).query(cells, predicate="intersects")
     pairs = np.column_stack([one, other])[one < other]

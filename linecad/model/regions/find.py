@@ -54,8 +54,9 @@ def find_regions(
     told, surfaces = tell(look.faces, planes, lines, surfaces, view, feet)
     if told.areas:
         told = replace(told, before=Before(found.surfaces, found.label[found.cell]))
+        heaven = told.sky(heaven, raster)
         segments = find_segments(lines, surfaces, raster, view)
-        found = find_labels(segments, lines, surfaces, raster, told.sky(heaven, raster), view, firm, told)
+        found = find_labels(segments, lines, surfaces, raster, heaven, view, firm, told)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)

@@ -116,7 +116,7 @@ def find_labels(
         every, count = np.concatenate([meets, segments]), len(meets)
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
         answer = _labels(told.cut(border), forced, drawn, surfaces, raster)
-        taken = _shown_sides(answer, sides)
+        taken = _shown_sides(answer, sides, told.samples("clutter", raster))
         if len(taken) == len(sides):
             break
         sides = taken
@@ -130,11 +130,14 @@ def find_labels(
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
 
-def _shown_sides(found: Labels, sides: list[Side]) -> list[Side]:
-    """The sides, last of the surfaces, that the photo shows in most of where they may be and their wall is not."""
+def _shown_sides(found: Labels, sides: list[Side], covered: Bool) -> list[Side]:
+    """The sides, last of the surfaces, that the photo shows in most of where they may be and their wall is not.
+
+    What is `covered` (S,) says nothing about what is behind it.
+    """
     label, shown = found.label[found.cell], []
     for row, side in enumerate(sides, len(found.surfaces) - len(sides)):
-        beside = label[side.hides & (label != side.wall)]
+        beside = label[side.hides & (label != side.wall) & ~covered]
         shown += [side] if (beside == row).sum() > LEAST_SHOWN * len(beside) else []
     return shown
 

@@ -39,8 +39,9 @@ def tell(
 ) -> tuple[Told, list[Surface]]:
     """The areas that `faces` tell of, and the surfaces with those that they ask for.
 
-    A wall by edges is one more surface unless there is one in its plane. Told ground has the height of the level lines
-    on it where no ground was found, else the one that `feet` tell, else that of the lowest end of a line.
+    A wall by edges is one more surface, in the plane of the one that is there if there is one. Told ground has the
+    height of the level lines on it where no ground was found, else the one that `feet` tell, else that of the lowest
+    end of a line.
     """
     told = Told()
     for edit in faces:
@@ -90,8 +91,8 @@ def wall_by_edges(
 ) -> Rectangle | str:
     """The wall between four lines of the photo, or why there is none.
 
-    It stands where the surest of those stands that are in the scene, on the surface that is there if there is one. The
-    others bound it where their rays meet that plane.
+    It stands where the surest of those stands that are in the scene, in the plane of the wall that is there if there is
+    one. The others bound it where their rays meet that plane.
     """
     along = next(line.axis for line in edit.lines if line.axis != UP)
     normal = int(partner(along))
@@ -104,7 +105,10 @@ def wall_by_edges(
     surface = _surface(normal, float(offsets[best]), there, int(lines.id[there[best]]), planes)
     alike = [each for each in surfaces if (each.kind, each.axis) == ("wall", normal)]
     alike = [each for each in alike if apart(each.offset, surface.offset) < RELIEF]
-    surface = min(alike, key=lambda each: apart(each.offset, surface.offset), default=surface)
+    if alike:
+        # In the same plane, but another surface: where it ends, the one that was found ends too.
+        near = min(alike, key=lambda each: apart(each.offset, surface.offset))
+        surface = replace(surface, offset=near.offset, plane=near.plane)
     sides: dict[int, list[float]] = {along: [], UP: []}
     for line, row in zip(edit.lines, rows, strict=True):
         across = along if line.axis == UP else UP
@@ -136,8 +140,6 @@ def rows_of(edit: WallByEdges, lines: Lines) -> list[int | None]:
 
 
 def _with_wall(surfaces: list[Surface], wall: Surface) -> list[Surface]:
-    """The surfaces with a wall, before ground and ceiling if it is a new one."""
-    if any(each is wall for each in surfaces):
-        return surfaces
+    """The surfaces with a wall, before ground and ceiling."""
     first = next((n for n, each in enumerate(surfaces) if each.kind in ("ground", "ceiling")), len(surfaces))
     return [*surfaces[:first], wall, *surfaces[first:]]

@@ -8,6 +8,7 @@ An *area* is a part of the photo with what it shows; no two areas share a place,
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import cv2
 import numpy as np
 import shapely
 
@@ -16,7 +17,7 @@ from linecad.corrections.edits import Shown
 from linecad.model.regions import partition
 from linecad.model.regions.evidence import CLUTTER, SKY, Heaven
 from linecad.model.regions.raster import Raster
-from linecad.model.regions.surfaces import Surface
+from linecad.model.regions.surfaces import RELIEF, Surface, apart
 from linecad.scene import Camera
 
 FALSE = 200.0  # cost of another label, in samples: more than all borders, edges and colours of a sample together
@@ -64,10 +65,13 @@ class Told:
         """The parts of the photo that show one of these, px."""
         return shapely.union_all([area.shape for area in self.areas if area.shows in words])
 
-    @property
-    def walls(self) -> list[Surface]:
-        """The walls that were told."""
-        return [area.shows for area in self.areas if isinstance(area.shows, Surface)]
+    def samples(self, word: Shown, raster: Raster) -> Bool:
+        """Mask (S,) of the samples that show it."""
+        found = np.zeros(raster.size, bool)
+        for area in self.areas:
+            if area.shows == word:
+                found |= _samples(area, raster)
+        return found
 
     @cached_property
     def cuts(self) -> list[shapely.Geometry]:
@@ -102,11 +106,14 @@ class Told:
         found = costs.copy(order="F")
         if self.before is not None:
             self._keep(self.before, found, surfaces, raster)
+            self._end(self.before, found, surfaces, raster)
         for area in self.areas:
             number = column_of(area, surfaces)
             if number is None or (area.shows == "clutter" and not with_clutter):
                 continue
             inside = _samples(area, raster)
+            if isinstance(area.shows, Surface):
+                found[:, number] = FALSE  # it ends at its edges
             found[inside] = FALSE
             found[inside, number] = 0.0
         return found
@@ -116,11 +123,27 @@ class Told:
         near = np.any([_samples(area, raster) for area in self.areas], axis=0)
         away = raster.distance(near) > AROUND
         known = {_look(surface): number for number, surface in enumerate(before.surfaces)}
-        columns = [known.get(_look(surface)) for surface in surfaces]
+        walls = {id(area.shows) for area in self.areas}
+        columns = [None if id(surface) in walls else known.get(_look(surface)) for surface in surfaces]
         columns += [len(before.surfaces), len(before.surfaces) + 1]
         for column, number in enumerate(columns):
             if number is not None:
                 costs[away & (before.label != number), column] += KEPT
+
+    def _end(self, before: Before, costs: Float, surfaces: list[Surface], raster: Raster) -> None:
+        """Make costs (S, K + 2) FALSE of walls in the planes of told ones, all over the pieces that those cut."""
+        for area in self.areas:
+            if not isinstance(area.shows, Surface):
+                continue
+            inside = _samples(area, raster)
+            for column, surface in enumerate(surfaces):
+                if surface is area.shows or (surface.kind, surface.axis) != ("wall", area.shows.axis):
+                    continue
+                was = [n for n, each in enumerate(before.surfaces) if _look(each) == _look(surface)]
+                if was and apart(surface.offset, area.shows.offset) < RELIEF:
+                    shown = np.isin(before.label, was).reshape(raster.shape).astype(np.uint8)
+                    piece = cv2.connectedComponents(shown, connectivity=4)[1].ravel()
+                    costs[(piece > 0) & np.isin(piece, piece[inside]), column] = FALSE
 
     def sky(self, heaven: Heaven, raster: Raster) -> Heaven:
         """The heaven with what was told of it: told sky shows the sky's colours, what is something else does not."""
@@ -148,12 +171,7 @@ def column_of(area: Area, surfaces: list[Surface]) -> int | None:
     if area.shows == "clutter":
         return CLUTTER % (len(surfaces) + 2)
     for number, surface in enumerate(surfaces):
-        if area.shows == "ground":
-            is_it = surface.kind == "ground"
-        else:
-            assert isinstance(area.shows, Surface)
-            is_it = _look(surface) == _look(area.shows)
-        if is_it:
+        if surface is area.shows or (area.shows == "ground" and surface.kind == "ground"):
             return number
     return None
 
