@@ -56,6 +56,7 @@ export class Actions {
   }
 
   remove() {
+    if (this.faces.remove()) return true;
     return this.#withLine((line) => this.editing.edit({ op: "delete", line: line.id }));
   }
 
@@ -100,6 +101,7 @@ export class Actions {
 
   /** Arrow keys: the view goes that way over the photo, the model turns, or moves when `shift` is held. */
   arrow(x, y, shift) {
+    if (this.faces.arrow(x, y)) return;
     if (this.view !== this.model) this.photo.change((viewport) => viewport.pan(-x * PAN_STEP, -y * PAN_STEP));
     else if (shift) this.model.change((camera) => camera.pan(-x * PAN_STEP, -y * PAN_STEP));
     else this.model.change((camera) => camera.orbit(x * PAN_STEP, y * PAN_STEP));
@@ -119,6 +121,7 @@ export class Actions {
   }
 
   escape() {
+    if (this.faces.escape()) return;
     if (!this.draft.isEmpty) this.draft.clear();
     else if (this.store.labelling) this.toggleLabelling();
     else if (this.store.selection) this.store.set({ selection: null });

@@ -2,6 +2,7 @@
 
 import { frameOf, letterOf } from "./axes.js";
 import { counted, element, keyButton } from "./dom.js";
+import { facePanel } from "./facedrawing.js";
 import { isReal } from "./store.js";
 import { fixesFrame } from "./tools.js";
 
@@ -27,6 +28,7 @@ export class Inspector {
     const shown = ["state", "selection", "hover", "tool", "labelling", "owner"];
     store.listen((changed) => shown.some((name) => changed.has(name)) && this.#renew());
     actions.draft.listen(() => this.#renew());
+    tools.faces.listen(() => this.#renew());
     this.#renew();
   }
 
@@ -44,6 +46,7 @@ export class Inspector {
     if (store.labelling) return this.panel.replaceChildren(...this.#labelling());
     if (store.tool === "frame") return this.panel.replaceChildren(...this.#frame());
     if (store.tool === "draw") return this.panel.replaceChildren(...this.#drawing());
+    if (this.tools.faces.owns) return this.panel.replaceChildren(...facePanel(store, this.tools.faces));
     const thing = store.selection ?? store.hover;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());

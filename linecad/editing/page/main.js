@@ -3,6 +3,7 @@
 import { Actions } from "./actions.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
+import { drawFaceTools } from "./facedrawing.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
@@ -33,6 +34,7 @@ async function start() {
   const model = new ModelView(store);
   const actions = new Actions({ store, server, editing, draft, photo, model, messages });
   const tools = new Tools(store, actions);
+  photo.overlays.push((context, viewport) => drawFaceTools(context, viewport, store, tools.faces));
   const pointer = new Pointer(store, photo, tools);
   const panels = new Panels(store, actions, pointer);
   new Labelling(store, actions);

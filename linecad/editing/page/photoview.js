@@ -39,6 +39,7 @@ export class PhotoView {
     this.tiles = new Tiles(server, photo, () => this.redraw("photo"));
     this.depthLayers = new DepthLayers(store, server, () => this.redraw("depth"));
     this.onView = () => {};
+    this.overlays = []; // functions of a context and the viewport that draw over all else
     store.listen((changed) => this.#noticed(changed));
     draft.listen(() => this.redraw("overlay"));
     new ResizeObserver(() => this.#resized()).observe(this.stage);
@@ -47,7 +48,7 @@ export class PhotoView {
   }
 
   #noticed(changed) {
-    const parts = ["lines", "planes", "crossings", "contradiction", "K", "R_cam_from_world"];
+    const parts = ["lines", "planes", "crossings", "contradiction", "areas", "K", "R_cam_from_world"];
     const { state } = this.store;
     if (["layers", "hidden", "state"].some((name) => changed.has(name))) this.depthLayers.renew();
     const isNew = parts.filter((name) => state[name] !== this.#drawn?.[name]);
@@ -181,6 +182,7 @@ export class PhotoView {
     if (this.store.hidden) return;
     drawAttention(context, this.store, this.viewport, this.#currentMarks());
     drawDraft(context, this.viewport, this.draft);
+    for (const overlay of this.overlays) overlay(context, this.viewport);
   }
 
   #currentMarks() {

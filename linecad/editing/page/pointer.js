@@ -90,6 +90,7 @@ export class Pointer {
       const pixel = this.photo.viewport.toPhoto(at);
       if (drag.waiting) this.tools.press(pixel);
       else if (drag.moved) this.tools.release(pixel);
+      else if (this.tools.faces.owns) this.tools.faces.lift();
     } else if (drag.clicks && !drag.moved) this.tools.click(at, this.photo.viewport);
     this.showCursor();
   }

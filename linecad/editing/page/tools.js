@@ -1,6 +1,7 @@
 // The tools: what a click on the photo means. Each tool is told of presses, moves and releases, in px of the photo.
 
 import { inNextFrame } from "./axes.js";
+import { FACE_TOOLS, FaceTools } from "./facetools.js";
 import { nearest, thingsAt } from "./picking.js";
 
 /** The tools in the order of their buttons. */
@@ -21,6 +22,7 @@ export const TOOLS = [
     key: "a",
     hint: "Draw lines along the axes: two or more for two of them; then Enter",
   },
+  ...FACE_TOOLS,
 ];
 
 const FRAME_AXES = 2; // axes that fix a frame
@@ -42,12 +44,13 @@ export class Tools {
     this.store = store;
     this.actions = actions;
     this.draft = actions.draft;
+    this.faces = new FaceTools(store, actions);
     store.listen((changed) => changed.has("tool") && this.#leave());
   }
 
   /** Whether a drag with the left button belongs to the tool and does not move the photo. */
   get draws() {
-    return this.store.tool === "draw" || this.store.tool === "frame";
+    return this.store.tool === "draw" || this.store.tool === "frame" || this.faces.owns;
   }
 
   #leave() {
@@ -57,6 +60,7 @@ export class Tools {
 
   /** The kinds of things that light up under the pointer. */
   get kinds() {
+    if (this.store.tool === "wall") return ["line"];
     if (this.draws) return [];
     return this.store.tool === "split" || this.store.tool === "join" ? ["line"] : ["crossing", "line"];
   }
@@ -92,6 +96,7 @@ export class Tools {
 
   /** The first end, or the second by a second click. */
   press(pixel) {
+    if (this.faces.owns) return this.faces.press(pixel);
     const { points, lines } = this.draft;
     if (points.length > 0) return this.#finish(pixel);
     if (lines.length === 0) this.actions.redoBeforeDraft = this.store.state.redo;
@@ -99,6 +104,7 @@ export class Tools {
   }
 
   follow(pixel) {
+    if (this.faces.owns) return this.faces.follow(pixel);
     const [start] = this.draft.points;
     if (!start) return;
     if (this.store.tool === "frame") this.draft.follow([start, pixel], { axis: this.frameAxis, ends: [start, pixel] });
@@ -110,6 +116,7 @@ export class Tools {
 
   /** The end of a drag. */
   release(pixel) {
+    if (this.faces.owns) return this.faces.release(pixel);
     if (this.draft.points.length > 0) this.#finish(pixel);
   }
 
@@ -168,6 +175,7 @@ export class Tools {
 
   /** Enter: the lines for the frame are all there. */
   async apply() {
+    if (this.faces.owns) return this.faces.apply();
     if (this.store.tool !== "frame" || this.draft.lines.length === 0) return;
     if (!fixesFrame(this.draft.lines)) {
       this.actions.messages.tell("Draw at least two lines for each of two axes.", "warning");
