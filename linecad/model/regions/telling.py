@@ -78,12 +78,17 @@ def ground_height(ground: shapely.Geometry, lines: Lines, feet: GroundOfFeet | N
     low = -lines.ends[:, :, UP].min(axis=1)
     on_it = np.flatnonzero((lines.axis != UP) & (share >= ON_GROUND) & (low > 0))
     if len(on_it):
-        order = on_it[np.argsort(low[on_it], kind="stable")]
-        weight = np.cumsum(weights_of(lines)[order])
-        return float(low[order][np.searchsorted(weight, weight[-1] / 2)])
+        return float(low[on_it[_middle(low[on_it], weights_of(lines)[on_it])]])
     if feet is not None:
         return feet.height
     return float(low.max()) if low.max(initial=0.0) > 0 else None
+
+
+def _middle(values: Float, weights: Float) -> int:
+    """The place of the weighted median of values (N,)."""
+    order = np.argsort(values, kind="stable")
+    weight = np.cumsum(weights[order])
+    return int(order[np.searchsorted(weight, weight[-1] / 2)])
 
 
 def wall_by_edges(
@@ -91,8 +96,8 @@ def wall_by_edges(
 ) -> Rectangle | str:
     """The wall between four lines of the photo, or why there is none.
 
-    It stands where the surest of those stands that are in the scene, in the plane of the wall that is there if there is
-    one. The others bound it where their rays meet that plane.
+    It stands where the middle one of those stands that are in the scene, by their length and probability, in the plane
+    of the wall that is there if there is one. The others bound it where their rays meet that plane.
     """
     along = next(line.axis for line in edit.lines if line.axis != UP)
     normal = int(partner(along))
@@ -101,7 +106,7 @@ def wall_by_edges(
     if not len(there):
         return "a wall by four edges is left out: none of its edges is in the model; join one to other lines"
     offsets = components(lines.ends[there, 0], view.turns)[:, normal]
-    best = int(np.argmax(weights_of(lines)[there]))
+    best = _middle(offsets, weights_of(lines)[there])
     surface = _surface(normal, float(offsets[best]), there, int(lines.id[there[best]]), planes)
     alike = [each for each in surfaces if (each.kind, each.axis) == ("wall", normal)]
     alike = [each for each in alike if apart(each.offset, surface.offset) < RELIEF]
