@@ -126,12 +126,9 @@ def build_scene(
     scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
     scale = scales[found.component]
     lines = _lines(graph, solution, decision, found, scale)
-    depth_map = None
     if placed is not None:
         lines = replace(lines, probability=placed.probability[kept], by_depth_map=placed.by_map[kept])
-        depth_map = placed.depth_map
-    if depth_map is not None and depth_map.scale is not None:
-        depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
+    depth_map = _report_on_map(placed, float(scales[0]))
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
@@ -263,6 +260,12 @@ def _look(view: View, placed: Placed | None, scale: float) -> Look:
     feet, camera = _ground_of_feet(placed, scale), view.camera
     depths = depths_of(placed, scale, camera.matrix)
     return Look(view.pixels, feet, normals_of(placed), view.sketch, depths, view.faces)
+
+
+def _report_on_map(placed: Placed | None, scale: float) -> DepthMapReport | None:
+    """What is told of a depth map, in a scene of which the placed lines are `scale` times as far."""
+    found = None if placed is None else placed.depth_map
+    return found if found is None or found.scale is None else replace(found, scale=found.scale / scale)
 
 
 def _ground_of_feet(placed: Placed | None, scale: float) -> GroundOfFeet | None:

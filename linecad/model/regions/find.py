@@ -19,7 +19,7 @@ from linecad.model.regions.mapped import MappedDepths, laid_on, with_mapped
 from linecad.model.regions.overgrown import is_in_the_open
 from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
-from linecad.model.regions.segments import View, find_meets, find_segments
+from linecad.model.regions.segments import View, find_meets
 from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet
 from linecad.model.regions.telling import tell
 from linecad.model.regions.told import Before
@@ -50,13 +50,12 @@ def find_regions(
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)
-    found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view, firm)
+    found = find_labels(lines, surfaces, raster, heaven, view, firm)
     told, surfaces = tell(look.faces, planes, lines, surfaces, view, feet)
     if told.areas:
         told = replace(told, before=Before(found.surfaces, found.label[found.cell]))
         heaven = told.sky(heaven, raster)
-        segments = find_segments(lines, surfaces, raster, view)
-        found = find_labels(segments, lines, surfaces, raster, heaven, view, firm, told)
+        found = find_labels(lines, surfaces, raster, heaven, view, firm, told)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)

@@ -23,7 +23,7 @@ from linecad.model.regions.cuts import Borders, energy, expand
 from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
-from linecad.model.regions.segments import Meets, View, find_meets, limit_of_depth
+from linecad.model.regions.segments import Meets, View, find_meets, find_segments, limit_of_depth
 from linecad.model.regions.surfaces import Surface
 from linecad.model.regions.told import NOTHING, Told
 from linecad.scene import Lines
@@ -82,7 +82,6 @@ class Labels:
 
 
 def find_labels(
-    segments: Float,
     lines: Lines,
     surfaces: list[Surface],
     raster: Raster,
@@ -91,12 +90,12 @@ def find_labels(
     firm: Surface | None = None,
     told: Told = NOTHING,
 ) -> Labels:
-    """What each cell shows, of cells that `segments` (N, 2, 2) px cut out of the photo, the strongest first.
+    """What each cell shows, of cells that lines and edges (`find_segments`) cut out of the photo, the strongest first.
 
     `firm` is the one of the surfaces that walls go down to: a ground whose height is sure. Where a person `told` what
     is shown, nothing else is. The costs of samples that come back know nothing of told clutter, which hides something.
     """
-    camera = view.camera
+    camera, segments = view.camera, find_segments(lines, surfaces, raster, view)
     costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
     forced = told.over(costs, surfaces, raster)
     drawn = _drawn(segments, raster)
