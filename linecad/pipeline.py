@@ -174,8 +174,9 @@ def reconstruct_prepared(
     whole, details = prepared.whole, prepared.details
     sketch = None if found.raw is None or not options.roofs else Sketch(found.raw, whole.segments.ends, whole.axis)
     view = View(
-        photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch
-    )
+        photo, found.camera, found.frame, found.certainty, len(whole.segments), notes, found.pixels, details, sketch,
+        () if corrected is None else corrected.faces,
+    )  # fmt: skip
     lifted = lift(graph, decision.real, solution.log_depth)
     found_components = find_components(view, graph, decision, lifted, options.largest_component)
     if options.largest_component:

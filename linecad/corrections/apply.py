@@ -6,6 +6,7 @@ added or taken back: found lines are numbered in their order, new ones follow in
 
 from copy import copy
 from dataclasses import dataclass, field, replace
+from functools import partial
 from itertools import product
 from typing import Literal, assert_never
 
@@ -22,6 +23,7 @@ from linecad.corrections.edits import (
     Draw,
     Edit,
     FaceAnchor,
+    FaceEdit,
     Fact,
     Foot,
     Join,
@@ -32,18 +34,23 @@ from linecad.corrections.edits import (
     Many,
     Meet,
     NameGroup,
+    NoWindow,
     OnePlane,
     Part,
     Place,
     PlaceAt,
     Point,
+    Region,
     SetAxis,
     SetEnds,
     SetFrame,
     Split,
+    WallByEdges,
+    Window,
     Withdraw,
     anchors_of,
 )
+from linecad.corrections.faces import ToldFace, told
 from linecad.corrections.lookup import LineTable
 from linecad.directions import axis_name
 from linecad.errors import CorrectionError
@@ -88,6 +95,7 @@ class CorrectedLines:
     facts: tuple[ToldFact, ...] = ()  # about the bodies of lines, by id
     distances: tuple[tuple[FoundPlace, FoundPlace, float], ...] = ()  # m, between two points
     names: dict[int, str] = field(default_factory=dict)  # of groups, by the id of a line of each; the newest last
+    faces: tuple[FaceEdit, ...] = ()  # what is known about faces, in order, by lines as they look now
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
@@ -160,6 +168,7 @@ class Correcting:
         self.names: dict[int, str] = {}
         self.parted: list[tuple[int, int]] = []
         self.facts: dict[Fact, tuple[int, ...]] = {}
+        self.faces: list[ToldFace] = []
         self._table: LineTable | None = None
 
     def apply(self, edit: Edit, before_frame: bool = False) -> None:
@@ -222,6 +231,9 @@ class Correcting:
                     self.names[number] = edit.name
             case SetFrame():
                 pass  # the lines were found with it
+            case Region() | Window() | NoWindow() | WallByEdges():
+                find = partial(self.find, any_axis=before_frame)
+                self.faces.append(told(edit, find, self._look, before_frame))
             case _:
                 assert_never(edit)
 
@@ -229,6 +241,9 @@ class Correcting:
         """The lines as they are now."""
         lines = list(self.lines.values())
         ends = np.array([line.ends for line in lines]).reshape(-1, 2, 2)
+        faces = [face.now(self._look) for face in self.faces]
+        if None in faces:
+            notes = (*notes, "a wall by four edges is left out: one of its edges was taken away")
         return CorrectedLines(
             segments=Segments(ends, np.array([line.axis for line in lines], np.int64)),
             ids=np.array(list(self.lines), np.int64),
@@ -244,6 +259,7 @@ class Correcting:
                 for one, other in product(self._place_now(first), self._place_now(second))
             ),
             names={own: name for number, name in self.names.items() for own in self._now(number)[:1]},
+            faces=tuple(face for face in faces if face is not None),
         )
 
     def anchor(self, number: int) -> Anchor:
@@ -253,6 +269,11 @@ class Correcting:
         line = self.lines[number]
         (a, b), (c, d) = line.ends.tolist()
         return Anchor(((a, b), (c, d)), line.axis)
+
+    def _look(self, number: int) -> Anchor | None:
+        """What a line looks like now, or the first piece of what it has become; None when nothing is left of it."""
+        now = self._now(number)
+        return self.anchor(now[0]) if now else None
 
     def find(self, anchor: Anchor, any_axis: bool = False) -> int:
         """The id of the line that an anchor names (`LineTable.find`); CorrectionError when there is none."""

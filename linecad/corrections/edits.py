@@ -10,7 +10,13 @@ from typing import Literal, get_args
 
 Label = Literal["real", "fake", "unsure"]
 LABELS: tuple[Label, ...] = get_args(Label)
+Shown = Literal["ground", "sky", "clutter"]
+SHOWN: tuple[Shown, ...] = get_args(Shown)
+OpeningWord = Literal["window", "door"]
+OPENING_WORDS: tuple[OpeningWord, ...] = get_args(OpeningWord)
 
+MOST_CORNERS = 1000  # of a polygon
+MOST_OF_GRID = 100  # rows or columns of equal windows
 MOST_EDITS = 100_000  # in one file; a photo has some thousand crossings
 SHORTEST = 1e-6  # m, of a known length
 LONGEST = 1e6  # m
@@ -204,6 +210,55 @@ def anchors_of(fact: Fact) -> tuple[Anchor, ...]:
             return fact.lines
 
 
+@dataclass(frozen=True)
+class Region:
+    """What a part of the photo shows: the ground, the sky, or clutter, which is what has no plane."""
+
+    polygon: tuple[Point, ...]  # px, 3 corners or more; it does not cross itself
+    shows: Shown
+
+
+@dataclass(frozen=True)
+class WallAnchor:
+    """A vertical plane by its normal, the number of a direction, and a line in it; without one the place decides."""
+
+    normal: int
+    line: Anchor | None
+
+
+@dataclass(frozen=True)
+class Window:
+    """Windows or doors of one size: rectangles of a wall in rows and columns, in place of those found there.
+
+    `last` is the corner of the last one of all rows and columns that `corners[1]` is of the first; it says nothing
+    about one alone.
+    """
+
+    wall: WallAnchor
+    corners: tuple[Point, Point]  # px, opposite ones of the first
+    kind: OpeningWord = "window"
+    columns: int = 1
+    rows: int = 1
+    last: Point | None = None  # px
+
+
+@dataclass(frozen=True)
+class NoWindow:
+    """There is no window or door at a place of the photo."""
+
+    at: Point
+
+
+@dataclass(frozen=True)
+class WallByEdges:
+    """Four lines, two upright and two level, are the edges of one wall, which ends at them."""
+
+    lines: tuple[Anchor, Anchor, Anchor, Anchor]
+
+
+FaceEdit = Region | Window | NoWindow | WallByEdges
+
+
 Edit = (
     LabelCrossing
     | SetAxis
@@ -217,6 +272,7 @@ Edit = (
     | NameGroup
     | SetFrame
     | Many
+    | FaceEdit
     | Fact
     | Withdraw
 )

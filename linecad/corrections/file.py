@@ -28,16 +28,21 @@ from linecad.corrections.edits import (
     Many,
     Meet,
     NameGroup,
+    NoWindow,
     OnePlane,
     Part,
     Place,
     PlaceAt,
+    Region,
     SetAxis,
     SetEnds,
     SetFrame,
     Split,
+    WallByEdges,
+    Window,
     Withdraw,
 )
+from linecad.corrections.face_file import FACE_OPERATIONS, face_edit, face_edit_to_json
 from linecad.corrections.fact_file import FACTS, fact_to_json, read_fact
 from linecad.corrections.nodes import anchor, anchor_to_json, axis, ends, point, two, two_anchors
 from linecad.directions import axis_name
@@ -53,7 +58,8 @@ LARGEST_PHOTO = 10**6  # px along one side
 MOST_FRAME_LINES = 100
 PARTS = ("label", "axis", "delete")  # what `many` may hold
 OPERATIONS = (
-    *PARTS, "ends", "split", "join", "draw", "length", "distance", "name", "frame", "many", *FACTS, "withdraw",
+    *PARTS, "ends", "split", "join", "draw", "length", "distance", "name", "frame", "many", *FACE_OPERATIONS, *FACTS,
+    "withdraw",
 )  # fmt: skip
 
 
@@ -136,6 +142,8 @@ def edit_to_json(edit: Edit) -> dict[str, object]:
             return {"op": "frame", "lines": [anchor_to_json(line) for line in edit.lines]}
         case Many():
             return {"op": "many", "edits": [edit_to_json(part) for part in edit.edits]}
+        case Region() | Window() | NoWindow() | WallByEdges():
+            return face_edit_to_json(edit)
         case Withdraw():
             return {"op": "withdraw", "fact": fact_to_json(edit.fact)}
         case Meet() | OnePlane() | Foot() | Cut() | PlaceAt():
@@ -210,6 +218,8 @@ def _edit(node: Node) -> Edit:
             return Withdraw(read_fact(node["fact"]))
         case "label" | "axis" | "delete":
             return _part(node)
+        case op if op in FACE_OPERATIONS:
+            return face_edit(node)
         case _:
             return read_fact(node)
 

@@ -7,6 +7,7 @@ import numpy as np
 
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.camera.text import summary
+from linecad.corrections.edits import Region
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.bodies import ShownBodies
@@ -19,8 +20,8 @@ from linecad.editing.in_model import is_guess
 from linecad.editing.notes import notes_of
 from linecad.editing.state import Model, Now
 from linecad.editing.tiles import TILE
-from linecad.model.known_lengths import measurable, rows_by_segment
-from linecad.scene import Plane, Scene
+from linecad.model.known_lengths import measurable
+from linecad.scene import Face, Plane, Scene
 
 NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
@@ -50,6 +51,9 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "bodies": list_bodies(now),
         "facts": facts_of_page(now),
         "moved": moved_by_last(now),
+        "areas": [
+            {"is": edit.shows, "polygon": edit.polygon} for edit in now.corrections.edits if isinstance(edit, Region)
+        ],
         "groups": [_group(group) for group in groups],
         "notes": list(notes_of(now, groups)),
         "details": list(now.found.notes if scene is None else scene.notes),
@@ -149,7 +153,7 @@ def _in_space(scene: Scene) -> dict[tuple[int, bytes], dict[str, object]]:
             "by_depth_map": bool(lines.by_depth_map[row]),
             "sets_scale": bool(sets_scale[row]),
         }
-        for look, row in rows_by_segment(scene).items()
+        for look, row in scene.lines.row_by_look.items()
     }
 
 
@@ -203,12 +207,13 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
         )
     }
     numbers: dict[int, list[int]] = {int(line): [] for line in scene.lines.id}
-    for look, row in rows_by_segment(scene).items():
+    for look, row in scene.lines.row_by_look.items():
         if look in by_look:
             numbers[int(scene.lines.id[row])].append(by_look[look])
     guesses = set(scene.lines.id[is_guess(scene)].tolist())
     triangles, facades, told = triangles_of(scene), facades_in(scene), _probabilities(scene)
     components, found = scene.components_of_planes, []
+    face_of = {face.id: face for _, face in scene.faces}
     for plane in scene.planes:
         lines = [number for line in plane.lines for number in numbers[line]]
         body = _body_of(plane, lines, model.bodies)
@@ -225,9 +230,15 @@ def _planes(now: Now, model: Model) -> list[dict[str, object]]:
             "probability": told[plane.id],
             "lines": lines,
             "body": body,
-            "faces": [{**face, "guess": guess, "body": body} for face in faces],
+            "faces": [{**face, "guess": guess, "body": body, **_kind(face_of, face["id"])} for face in faces],
         })  # fmt: skip
     return found
+
+
+def _kind(faces: dict[int, Face], number: object) -> dict[str, object]:
+    """What a face is of."""
+    face = faces[int(str(number))]
+    return {"kind": face.kind, "opening": face.opening}
 
 
 def _body_of(plane: Plane, lines: list[int], bodies: ShownBodies | None) -> int:

@@ -33,11 +33,13 @@ from linecad.corrections.edits import (
     Split,
     Withdraw,
 )
+from linecad.corrections.face_file import FACE_OPERATIONS
 from linecad.corrections.fact_file import FACTS
 from linecad.corrections.file import OPERATIONS, PARTS, frame_lines, label, many, metres, name
 from linecad.corrections.nodes import axis, ends, point, two
 from linecad.corrections.snapping import LONGEST_REACH, Proposal, find_snap, propose, stretch
 from linecad.directions import axis_name
+from linecad.editing.face_edits import read_face_edit
 from linecad.editing.faces import face_anchor
 from linecad.editing.session import Session
 from linecad.errors import CorrectionError
@@ -78,6 +80,8 @@ def read_edit(node: Node, session: Session) -> Edit:
             return Withdraw(_told(node["edit"], session))
         case "label" | "axis" | "delete":
             return _part(node, session)
+        case op if op in FACE_OPERATIONS:
+            return read_face_edit(node, session)
         case _:
             return _fact(node, lines)
 

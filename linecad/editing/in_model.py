@@ -5,13 +5,12 @@ import numpy as np
 from exporters.bands import GUESS, bands_of
 from linecad.arrays import Bool, Float, Int
 from linecad.line_graph import LineGraph
-from linecad.model.known_lengths import rows_by_segment
 from linecad.scene import Scene
 
 
 def rows_in_scene(graph: LineGraph, scene: Scene) -> Int:
     """(N,) the row of the scene that each line of a graph is in, -1 where it is in none."""
-    rows = rows_by_segment(scene)
+    rows = scene.lines.row_by_look
     looks = zip(graph.axis.tolist(), graph.segments.ends, strict=True)
     return np.array([rows.get((axis, ends.tobytes()), -1) for axis, ends in looks], np.int64)
 

@@ -14,7 +14,6 @@ from linecad.errors import CorrectionError
 from linecad.io.strict_json import Node
 from linecad.model.choice import DETAILS, Detail
 from linecad.model.groups import GROUPS, Groups
-from linecad.model.known_lengths import rows_by_segment
 from linecad.model.wanted import Wanted
 from linecad.scene import Scene
 
@@ -40,7 +39,7 @@ def document_of_shown(now: Now, wanted: Wanted) -> dict[str, object]:
         raise CorrectionError("there is no model yet; solve first")
     scene = now.model.scene
     rest = wanted.of(scene)
-    kept, rows = set(rest.lines.id.tolist()), rows_by_segment(scene)
+    kept, rows = set(rest.lines.id.tolist()), scene.lines.row_by_look
     looks = zip(now.lines.ids, now.lines.graph.axis.tolist(), now.lines.graph.segments.ends, strict=True)
     places = ((number, rows.get((axis, ends.tobytes()))) for number, axis, ends in looks)
     return {

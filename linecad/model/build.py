@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, Text
+from linecad.corrections.edits import FaceEdit
 from linecad.decide.decision import Decision
-from linecad.directions import Turns
 from linecad.errors import ReconstructionError
 from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
@@ -35,9 +35,11 @@ from linecad.model.frames import (
 from linecad.model.groups import with_main_first
 from linecad.model.ids import with_ids_by_place
 from linecad.model.lifting import Lifted
+from linecad.model.openings.corners import rectangles_of
 from linecad.model.openings.cutting import with_openings
 from linecad.model.openings.find import find_openings
 from linecad.model.openings.homes import at_home
+from linecad.model.openings.told import ToldOpenings
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.shown import cells_of
@@ -66,6 +68,7 @@ class View:
     pixels: NDArray[np.uint8] | None = None  # (H, W, 3) RGB, as straight as the lines; None: nothing to look at
     details: Segments | None = None  # edges along the axes that faces can place; None: faces add no lines
     sketch: Sketch | None = None  # of the segments along all directions; None: no roofs are looked for
+    faces: tuple[FaceEdit, ...] = ()  # what a person said about faces
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,12 +129,9 @@ def build_scene(
     scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
     scale = scales[found.component]
     lines = _lines(graph, solution, decision, found, scale)
-    depth_map = None
     if placed is not None:
         lines = replace(lines, probability=placed.probability[kept], by_depth_map=placed.by_map[kept])
-        depth_map = placed.depth_map
-    if depth_map is not None and depth_map.scale is not None:
-        depth_map = replace(depth_map, scale=depth_map.scale / float(scales[0]))
+    depth_map = _report_on_map(placed, float(scales[0]))
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
@@ -141,15 +141,16 @@ def build_scene(
     planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
     holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
     whole = planes
-    planes, openings = _opened(planes, holes.openings, view, graph.turns)
+    drawn = ToldOpenings(view.faces, planes, lines, view.camera, view.frame.rotation, graph.turns)
+    planes, openings, told = _opened(planes, holes.openings, drawn)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections, regions.roofs)
-    drawn = closed_across(_drawn(on_faces.lines, whole, holes.openings, sight), sight)
-    framed, planes = without_repeats(drawn, on_faces.planes, sight)
+    ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight), sight)
+    framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     roofed = with_roofs(planes, regions.roofs, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
-    ends = cleaned.note(on_faces.kept, on_faces.lines.lines, drawn.lines)
-    notes = [*_notes(view, graph, solution, found, depth_map), ends, *regions.notes, *holes.notes]
+    ends = cleaned.note(on_faces.kept, on_faces.lines.lines, ended.lines)
+    notes = [*_notes(view, graph, solution, found, depth_map), ends, *regions.notes, *holes.notes, *told]
     scene = Scene(
         photo=view.photo,
         camera=view.camera,
@@ -184,16 +185,18 @@ def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Openi
         own_sight = sight_in(sight, frame, framed.turns)
         own = planes_in(planes, frame, framed.turns)
         ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, meets[framed.of(frame)])
-        return with_roles(ends_there, own, own_sight.forward, _rectangles(openings, own))
+        return with_roles(ends_there, own, own_sight.forward, rectangles_of(openings, own))
 
     return framed.each(draw)
 
 
 def _opened(
-    planes: tuple[Plane, ...], openings: tuple[Opening, ...], view: View, turns: Turns
-) -> tuple[tuple[Plane, ...], tuple[Opening, ...]]:
-    """The planes with their openings cut out, and the openings in the walls that the photo shows around them."""
-    return with_openings(planes, at_home(openings, planes, view.camera, view.frame.rotation, turns), turns)
+    planes: tuple[Plane, ...], openings: tuple[Opening, ...], drawn: ToldOpenings
+) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
+    """The planes with their openings cut out, those in the walls that the photo shows around them, and notes."""
+    found = at_home(openings, planes, drawn.camera, drawn.rotation, drawn.turns)
+    openings, notes = drawn.among(found)
+    return *with_openings(planes, openings, drawn.turns), notes
 
 
 def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:
@@ -264,15 +267,14 @@ def _renumbered(pairs: Int, component: Int, new_id: Int) -> Int:
 def _look(view: View, placed: Placed | None, scales: Float) -> Look:
     """What the faces are found by, in a scene of which the placed lines are `scales[0]` times as far."""
     scale, camera = float(scales[0]), view.camera
-    feet = _ground_of_feet(placed, scale)
-    return Look(view.pixels, feet, normals_of(placed), view.sketch, depths_of(placed, scale, camera.matrix))
+    feet, depths = _ground_of_feet(placed, scale), depths_of(placed, scale, camera.matrix)
+    return Look(view.pixels, feet, normals_of(placed), view.sketch, depths, view.faces)
 
 
-def _rectangles(openings: tuple[Opening, ...], planes: tuple[Plane, ...]) -> Float | None:
-    """Axis and offset of the wall, then u0, u1, v0, v1 of each opening, (W, 6); None where there is none."""
-    wall = {plane.id: (plane.axis, plane.offset) for plane in planes}
-    rows = [(*wall[each.plane], each.u0, each.u1, each.v0, each.v1) for each in openings if each.plane in wall]
-    return np.array(rows) if rows else None
+def _report_on_map(placed: Placed | None, scale: float) -> DepthMapReport | None:
+    """What is told of a depth map, in a scene of which the placed lines are `scale` times as far."""
+    found = None if placed is None else placed.depth_map
+    return found if found is None or found.scale is None else replace(found, scale=found.scale / scale)
 
 
 def _ground_of_feet(placed: Placed | None, scale: float) -> GroundOfFeet | None:

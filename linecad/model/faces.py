@@ -202,7 +202,10 @@ def without_spikes(ring: Float) -> Float:
 
 def _with_faces(planes: tuple[Plane, ...], surfaces: list[Surface], faces: dict[int, list[Face]]) -> tuple[Plane, ...]:
     """The planes with their faces, then those of surfaces that no line shows."""
-    owned = {surface.plane: faces.get(id(surface), []) for surface in surfaces if surface.plane is not None}
+    owned: dict[int, list[Face]] = {}
+    for surface in surfaces:
+        if surface.plane is not None:
+            owned.setdefault(surface.plane, []).extend(faces.get(id(surface), []))
     found = [Plane(plane.id, plane.axis, plane.offset, plane.lines, tuple(owned.get(plane.id, ()))) for plane in planes]
     number = max([plane.id for plane in planes], default=-1) + 1
     for surface in surfaces:

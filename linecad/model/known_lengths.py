@@ -27,7 +27,7 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     """
     if not corrected.lengths and not corrected.distances:
         return scene
-    row, tells = rows_by_segment(scene), measurable(scene)
+    row, tells = scene.lines.row_by_look, measurable(scene)
     scales, notes = [], []
     for number, metres in corrected.lengths.items():
         key = _look(corrected, number)
@@ -84,7 +84,7 @@ def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
     u, v = place.pixel
     ray = world_rays(np.array(place.pixel), scene.camera.matrix, scene.rotation)
     if place.line is not None:
-        row = rows_by_segment(scene).get(_look(corrected, place.line))
+        row = scene.lines.row_by_look.get(_look(corrected, place.line))
         if row is None or not measurable(scene)[row]:
             raise ScaleError(f"the line at {u:.0f},{v:.0f} px {UNSURE}")
         point: Float = nearest_on_line(ray[None], scene.lines.ends[row])[0]
@@ -101,12 +101,6 @@ def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
         raise ScaleError(f"the ray of {u:.0f},{v:.0f} px does not meet plane {plane.id}")
     met: Float = ray * (plane.offset / along)
     return met
-
-
-def rows_by_segment(scene: Scene) -> dict[tuple[int, bytes], int]:
-    """The row of each line of a scene by axis and segment, that of a line joined from pieces by each of these."""
-    axes = enumerate(scene.lines.axis.tolist())
-    return {(axis, ends.tobytes()): number for number, axis in axes for ends in scene.lines.segments_of(number)}
 
 
 def _look(corrected: CorrectedLines, number: int) -> tuple[int, bytes]:

@@ -1,6 +1,7 @@
 """The lines of a scene, and the crossings of the segments that show them."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -68,6 +69,12 @@ class Lines:
     def segments_of(self, row: int) -> Float:
         """The segments (K, 2, 2) px of the photo that show a line, one or its pieces."""
         return self.pieces[row] if len(self.pieces[row]) else self.segment[row : row + 1]
+
+    @cached_property
+    def row_by_look(self) -> dict[tuple[int, bytes], int]:
+        """The row of each line by axis and segment, that of a line joined from pieces by each of these."""
+        axes = enumerate(self.axis.tolist())
+        return {(axis, ends.tobytes()): row for row, axis in axes for ends in self.segments_of(row)}
 
 
 @dataclass(frozen=True, eq=False)

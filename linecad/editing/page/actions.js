@@ -59,6 +59,7 @@ export class Actions {
   }
 
   remove() {
+    if (this.faces.remove()) return true;
     if (this.store.many) return this.many.remove();
     return this.#withLine((line) => this.editing.edit({ op: "delete", line: line.id }));
   }
@@ -109,6 +110,7 @@ export class Actions {
    * when `shift` is held; the model turns, or moves when `shift` is held.
    */
   arrow(x, y, shift) {
+    if (this.faces.arrow(x, y)) return;
     if (this.view !== this.model && this.crosshair.isShown) this.crosshair.move(x, y, shift);
     else if (this.view !== this.model && shift) this.lineWalk.towards(x, y);
     else if (this.view !== this.model) this.photo.change((viewport) => viewport.pan(-x * PAN_STEP, -y * PAN_STEP));
@@ -130,6 +132,7 @@ export class Actions {
   }
 
   escape() {
+    if (this.faces.escape()) return;
     if (!this.draft.isEmpty) this.draft.clear();
     else if (!this.measuring.isEmpty) this.measuring.clear();
     else if (this.store.labelling) this.toggleLabelling();

@@ -53,7 +53,7 @@ function replaced(list, id, change) {
 
 /** A new state, with the very lists of what is shown where they say the same: who draws them sees it at once. */
 function keepingWhatIsSame(state, shown) {
-  const lists = ["lines", "crossings", "planes", "bodies", "K", "R_cam_from_world"];
+  const lists = ["lines", "crossings", "planes", "bodies", "areas", "K", "R_cam_from_world"];
   const kept = lists.filter((name) => shown && JSON.stringify(state[name]) === JSON.stringify(shown[name]));
   return { ...state, ...Object.fromEntries(kept.map((name) => [name, shown[name]])) };
 }

@@ -2,6 +2,7 @@
 
 import { frameOf, letterOf } from "./axes.js";
 import { counted, element, keyButton } from "./dom.js";
+import { facePanel } from "./facedrawing.js";
 import { lengthsText } from "./measuring.js";
 import { isReal } from "./store.js";
 import { snapText } from "./proposals.js";
@@ -30,6 +31,7 @@ export class Inspector {
     const shown = ["state", "selection", "many", "hover", "tool", "labelling", "owner", "measure"];
     store.listen((changed) => shown.some((name) => changed.has(name)) && this.#renew());
     actions.draft.listen(() => this.#renew());
+    tools.faces.listen(() => this.#renew());
     this.#renew();
   }
 
@@ -50,6 +52,7 @@ export class Inspector {
     if (store.many) return this.panel.replaceChildren(...this.actions.many.panel());
     const isDrawn = store.selectedLine && this.actions.draft.isEmpty; // the line that was drawn last
     if (store.tool === "draw" && !isDrawn) return this.panel.replaceChildren(...this.#drawing());
+    if (this.tools.faces.owns) return this.panel.replaceChildren(...facePanel(store, this.tools.faces));
     const thing = store.meant;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());

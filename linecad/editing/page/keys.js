@@ -51,7 +51,7 @@ export function keyTable({ store, actions, tools, pointer, panels, views, choosi
       TOOLS.map(({ name, label: tool, key, hint }) => ({
         keys: [key],
         text: `${tool}: ${hint[0].toLowerCase()}${hint.slice(1)}`,
-        run: () => store.set({ tool: name }),
+        run: () => tools.faces.take(name),
       })),
     ],
     [
@@ -180,6 +180,9 @@ const NAMES = {
   "ctrl+y": "Ctrl+Y",
   "shift+0": "Shift+0",
   "shift+l": "Shift+L",
+  "shift+a": "Shift+A",
+  "shift+e": "Shift+E",
+  "shift+w": "Shift+W",
 };
 const SPELLED = new Set(["=", ")"]); // the same key with and without Shift on some keyboards: one of the two is told
 

@@ -30,13 +30,13 @@ export class Panels {
 
   #makeTools() {
     const hint = document.querySelector("#hint");
-    const buttons = TOOLS.map(({ name, label, key, hint: text }) =>
+    const buttons = TOOLS.map(({ name, label, key, shown = key.toUpperCase(), hint: text }) =>
       element(
         "button",
-        { "data-tool": name, title: `${text} (${key.toUpperCase()})`, onclick: () => this.store.set({ tool: name }) },
+        { "data-tool": name, title: `${text} (${shown})`, onclick: () => this.actions.faces.take(name) },
         icon(name),
         element("span", {}, label),
-        element("kbd", {}, key.toUpperCase()),
+        element("kbd", {}, shown),
       ),
     );
     document.querySelector("#tools").append(...buttons);

@@ -43,7 +43,7 @@ export class PhotoView {
     this.tiles = new Tiles(server, photo, () => this.redraw("photo"));
     this.depthLayers = new DepthLayers(store, server, () => this.redraw("depth"));
     this.onView = () => {};
-    this.drawOver = () => {}; // what tools of their own draw, in CSS px of the stage
+    this.overlays = []; // functions of a context and the viewport that draw over all else
     store.listen((changed) => this.#noticed(changed));
     draft.listen(() => this.redraw("overlay"));
     new ResizeObserver(() => this.#resized()).observe(this.stage);
@@ -52,7 +52,7 @@ export class PhotoView {
   }
 
   #noticed(changed) {
-    const parts = ["lines", "planes", "crossings", "contradiction", "K", "R_cam_from_world"];
+    const parts = ["lines", "planes", "crossings", "contradiction", "areas", "K", "R_cam_from_world"];
     const { state } = this.store;
     if (["layers", "hidden", "state"].some((name) => changed.has(name))) this.depthLayers.renew();
     const isNew = parts.filter((name) => state[name] !== this.#drawn?.[name]);
@@ -190,7 +190,7 @@ export class PhotoView {
     drawDraft(context, this.viewport, this.draft);
     if (this.marquee) drawMarquee(context, this.viewport, this.marquee);
     if (this.crosshair) drawCrosshair(context, this.viewport, this.crosshair);
-    this.drawOver(context);
+    for (const overlay of this.overlays) overlay(context, this.viewport);
   }
 
   #currentMarks() {

@@ -101,6 +101,7 @@ export class Pointer {
     if (drag.what === "draw") {
       if (drag.waiting) this.tools.press(pixel);
       else if (drag.moved) this.tools.release(pixel);
+      else if (this.tools.faces.owns) this.tools.faces.lift();
     } else if (drag.what === "handle" && drag.moved) this.tools.handles.drop(this.tools.reach);
     else if (drag.what === "enclose" && drag.moved) this.#enclose(event.shiftKey);
     else if (drag.clicks && !drag.moved) this.#click(at, event.shiftKey);

@@ -1,6 +1,7 @@
 // The tools: what a click on the photo means. Each tool is told of presses, moves and releases, in px of the photo.
 
 import { inNextFrame } from "./axes.js";
+import { FACE_TOOLS, FaceTools } from "./facetools.js";
 import { Handles } from "./handles.js";
 import { nearest, thingsAt } from "./picking.js";
 import { Proposals } from "./proposals.js";
@@ -32,6 +33,7 @@ export const TOOLS = [
     key: "a",
     hint: "Draw lines along the axes: two or more for two of them; then Enter",
   },
+  ...FACE_TOOLS,
 ];
 
 const FRAME_AXES = 2; // axes that fix a frame
@@ -55,12 +57,13 @@ export class Tools {
     this.draft = actions.draft;
     this.proposals = new Proposals(actions.server);
     this.handles = new Handles(store, actions.draft, actions.editing, this.proposals);
+    this.faces = new FaceTools(store, actions);
     store.listen((changed) => changed.has("tool") && this.#leave());
   }
 
   /** Whether a drag with the left button belongs to the tool and does not move the photo. */
   get draws() {
-    return this.store.tool === "draw" || this.store.tool === "frame";
+    return this.store.tool === "draw" || this.store.tool === "frame" || this.faces.owns;
   }
 
   /** Whether a drag with the left button encloses what it selects. */
@@ -75,6 +78,7 @@ export class Tools {
 
   /** The kinds of things that light up under the pointer. */
   get kinds() {
+    if (this.store.tool === "wall") return ["line"];
     if (this.draws || this.store.tool === "measure") return [];
     return ["body", "split", "join"].includes(this.store.tool) ? ["line"] : ["crossing", "line"];
   }
@@ -123,6 +127,7 @@ export class Tools {
 
   /** The first end, or the second by a second click. */
   press(pixel) {
+    if (this.faces.owns) return this.faces.press(pixel);
     const { points, lines, start } = this.draft;
     if (points.length > 0) return void this.#finish(pixel);
     if (lines.length === 0) this.actions.redoBeforeDraft = this.store.state.redo;
@@ -138,6 +143,7 @@ export class Tools {
   }
 
   follow(pixel) {
+    if (this.faces.owns) return this.faces.follow(pixel);
     const [start] = this.draft.points;
     const { reach } = this;
     if (this.#finishing) return;
@@ -155,6 +161,7 @@ export class Tools {
 
   /** The end of a drag. */
   release(pixel) {
+    if (this.faces.owns) return this.faces.release(pixel);
     if (this.draft.points.length > 0) this.#finish(pixel);
   }
 
@@ -235,6 +242,7 @@ export class Tools {
 
   /** Enter: the lines for the frame are all there. */
   async apply() {
+    if (this.faces.owns) return this.faces.apply();
     if (this.store.tool !== "frame" || this.draft.lines.length === 0) return;
     if (!fixesFrame(this.draft.lines)) {
       this.actions.messages.tell("Draw at least two lines for each of two axes.", "warning");

@@ -41,3 +41,10 @@ def flat_on_wall(points: Float, axis: int, turns: Turns) -> Float:
     """The horizontal coordinate u and the height v (V, 2) of points (V, 3) of a vertical plane of direction `axis`."""
     flat: Float = components(points, turns)[:, [int(partner(axis)), UP]]
     return flat
+
+
+def rectangles_of(openings: tuple[Opening, ...], planes: tuple[Plane, ...]) -> Float | None:
+    """Axis and offset of the wall, then u0, u1, v0, v1 of each opening, (W, 6); None where there is none."""
+    wall = {plane.id: (plane.axis, plane.offset) for plane in planes}
+    rows = [(*wall[each.plane], each.u0, each.u1, each.v0, each.v1) for each in openings if each.plane in wall]
+    return np.array(rows) if rows else None

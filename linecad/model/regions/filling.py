@@ -40,6 +40,7 @@ class Filled:
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
     roofs: tuple[Roof, ...] = ()  # before whatever the labels say
     drop: float | None = None  # of the road below the pavement, in heights of the camera above this; None: no kerb
+    told: tuple[str, ...] = ()  # what a person said and could not be taken, for people
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -49,9 +50,9 @@ class Filled:
         if self.labels.gap == 0:
             proof = f"{cells} is proven best for its costs"
         if self.drop is None:
-            return (proof, *notes_on(self.roofs))
+            return (*self.told, proof, *notes_on(self.roofs))
         step = f"a kerb puts the road {self.drop:.1%} of the camera's height below the ground that walls stand on"
-        return proof, f"faces: {step}", *notes_on(self.roofs)
+        return *self.told, proof, f"faces: {step}", *notes_on(self.roofs)
 
 
 def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
@@ -84,7 +85,7 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     whole[small, label[small]] = NEVER
     whole[inside, found.clutter] = NEVER - 1  # where nothing is reached, it stays what it is
     started = np.where(inside, whole.argmin(axis=1), label)
-    borders = _neighbours(cells)
+    borders = neighbours(cells)
     label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky, found.clutter])
     proof = prove(Program(whole, borders, 0, 0), label)
     gap = max(found.gap, proof.gap)
@@ -146,7 +147,7 @@ def _inside(cells: list[shapely.Polygon], regions: list[shapely.Polygon]) -> Boo
     return inside
 
 
-def _neighbours(cells: list[shapely.Polygon]) -> Borders:
+def neighbours(cells: list[shapely.Polygon]) -> Borders:
     """Cells that share a border, at a cost of its length in hundreds of px."""
     one, other = shapely.STRtree(cells).query(cells, predicate="intersects")
     pairs = np.column_stack([one, other])[one < other]

@@ -5,8 +5,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.arrays import Float
+from linecad.corrections.edits import FaceEdit
 from linecad.depth.normals import Normals
 from linecad.directions import Turns
+from linecad.model.regions.as_told import uncovered, with_told
 from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.evidence import look_up
 from linecad.model.regions.feet import on_ground
@@ -17,8 +19,10 @@ from linecad.model.regions.mapped import MappedDepths, laid_on, with_mapped
 from linecad.model.regions.overgrown import is_in_the_open
 from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
-from linecad.model.regions.segments import View, find_meets, find_segments
+from linecad.model.regions.segments import View, find_meets
 from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet
+from linecad.model.regions.telling import tell
+from linecad.model.regions.told import Before
 from linecad.scene import Camera, Lines, Plane
 
 
@@ -31,6 +35,7 @@ class Look:
     normals: Normals | None  # of a depth map on the photo's pixels
     sketch: Sketch | None = None
     mapped: MappedDepths | None = None  # what a depth map says
+    faces: tuple[FaceEdit, ...] = ()  # what a person says
 
 
 def find_regions(
@@ -45,14 +50,19 @@ def find_regions(
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)
-    found = find_labels(find_segments(lines, surfaces, raster, view), lines, surfaces, raster, heaven, view, firm)
+    found = find_labels(lines, surfaces, raster, heaven, view, firm)
+    told, surfaces = tell(look.faces, planes, lines, surfaces, view, feet)
+    if told.areas:
+        told = replace(told, before=Before(found.surfaces, found.label[found.cell]))
+        heaven = told.sky(heaven, raster)
+        found = find_labels(lines, surfaces, raster, heaven, view, firm, told)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
     filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)
-    filled = on_ground(filled, raster, view)
+    filled = with_told(on_ground(filled, raster, view), told)
     if any(surface is trodden for surface in surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
     filled = with_hidden(filled, raster)
-    if look.sketch is None:
-        return filled
-    return replace(filled, roofs=find_roofs(look.sketch, filled.labels, heaven, raster, view))
+    if look.sketch is not None:
+        filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, heaven, raster, view))
+    return uncovered(filled, told)

@@ -23,8 +23,9 @@ from linecad.model.regions.cuts import Borders, energy, expand
 from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
-from linecad.model.regions.segments import Meets, View, find_meets, limit_of_depth
+from linecad.model.regions.segments import Meets, View, find_meets, find_segments, limit_of_depth
 from linecad.model.regions.surfaces import Surface
+from linecad.model.regions.told import NOTHING, Told
 from linecad.scene import Lines
 
 UNIT = 100  # of whole costs, in one sample
@@ -81,23 +82,25 @@ class Labels:
 
 
 def find_labels(
-    segments: Float,
     lines: Lines,
     surfaces: list[Surface],
     raster: Raster,
     heaven: Heaven,
     view: View,
     firm: Surface | None = None,
+    told: Told = NOTHING,
 ) -> Labels:
-    """What each cell shows, of cells that `segments` (N, 2, 2) px cut out of the photo, the strongest first.
+    """What each cell shows, of cells that lines and edges (`find_segments`) cut out of the photo, the strongest first.
 
-    `firm` is the one of the surfaces that walls go down to: a ground whose height is sure.
+    `firm` is the one of the surfaces that walls go down to: a ground whose height is sure. Where a person `told` what
+    is shown, nothing else is. The costs of samples that come back know nothing of told clutter, which hides something.
     """
-    camera = view.camera
+    camera, segments = view.camera, find_segments(lines, surfaces, raster, view)
     costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
+    forced = told.over(costs, surfaces, raster)
     drawn = _drawn(segments, raster)
     border, _ = partition.extended(segments, camera.width, camera.height, raster.step)
-    found = _labels(partition.cut(border), costs, drawn, surfaces, raster)
+    found = _labels(told.cut(border), forced, drawn, surfaces, raster)
     shown = np.unique(found.label[found.label < len(surfaces)])
     costs, surfaces = costs[:, [*shown.tolist(), SKY, CLUTTER]], [surfaces[number] for number in shown.tolist()]
     label = np.searchsorted(shown, found.label) + (found.label == found.clutter)
@@ -107,11 +110,12 @@ def find_labels(
     while True:
         all_costs = with_sides(costs, sides, known)
         surfaces = [*known.surfaces, *(side.surface for side in sides)]
+        forced = told.over(all_costs, surfaces, raster)
         meets = _meets_of_neighbours(found, shown, sides, find_meets(lines, surfaces, view))
         every, count = np.concatenate([meets, segments]), len(meets)
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answer = _labels(partition.cut(border), all_costs, drawn, surfaces, raster)
-        taken = _shown_sides(answer, sides)
+        answer = _labels(told.cut(border), forced, drawn, surfaces, raster)
+        taken = _shown_sides(answer, sides, told.samples("clutter", raster))
         if len(taken) == len(sides):
             break
         sides = taken
@@ -120,15 +124,19 @@ def find_labels(
         used = np.unique(rows[_bordering(answers[-1], border, run * camera.width) & (rows >= 0)])
         every, count = every[used], int((used < count).sum())
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answers.append(_labels(partition.cut(border), all_costs, drawn, surfaces, raster))
-    return _proven(min(answers, key=lambda answer: answer.price), raster)
+        answers.append(_labels(told.cut(border), forced, drawn, surfaces, raster))
+    best = _proven(min(answers, key=lambda answer: answer.price), raster)
+    return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
 
-def _shown_sides(found: Labels, sides: list[Side]) -> list[Side]:
-    """The sides, last of the surfaces, that the photo shows in most of where they may be and their wall is not."""
+def _shown_sides(found: Labels, sides: list[Side], covered: Bool) -> list[Side]:
+    """The sides, last of the surfaces, that the photo shows in most of where they may be and their wall is not.
+
+    What is `covered` (S,) says nothing about what is behind it.
+    """
     label, shown = found.label[found.cell], []
     for row, side in enumerate(sides, len(found.surfaces) - len(sides)):
-        beside = label[side.hides & (label != side.wall)]
+        beside = label[side.hides & (label != side.wall) & ~covered]
         shown += [side] if (beside == row).sum() > LEAST_SHOWN * len(beside) else []
     return shown
 

@@ -64,7 +64,7 @@ def find_surfaces(
     for index in order:
         plane, own = planes[index], members[index]
         for number, wall in enumerate(found):
-            if wall.axis == plane.axis and _apart(wall.offset, plane.offset) < RELIEF:
+            if wall.axis == plane.axis and apart(wall.offset, plane.offset) < RELIEF:
                 both = np.union1d(wall.lines, own)
                 found[number] = Surface(wall.kind, wall.axis, wall.offset, both, wall.plane)
                 break
@@ -126,17 +126,22 @@ def _with_level(walls: list[Surface], kind: Kind, height: float, reach: float) -
 
     It has the height of the first level within `reach`, a difference of logs, else the one that was given.
     """
-    own = [wall for wall in walls if wall.axis == 2 and _apart(wall.offset, height) < GROUND_STEP]
+    own = [wall for wall in walls if wall.axis == 2 and apart(wall.offset, height) < GROUND_STEP]
     others = [wall for wall in walls if all(wall is not one for one in own)]
     if not own:
         return [*others, Surface(kind, 2, height, np.zeros(0, np.int64), None)]
     lines = np.unique(np.concatenate([wall.lines for wall in own]))
-    there = [level for level in own if _apart(level.offset, height) < reach]
+    there = [level for level in own if apart(level.offset, height) < reach]
     if not there:
         return [*others, Surface(kind, 2, height, lines, None)]
     return [*others, Surface(kind, 2, there[0].offset, lines, there[0].plane)]
 
 
-def _apart(one: float, other: float) -> float:
+def with_ground(surfaces: list[Surface], height: float) -> list[Surface]:
+    """The surfaces with a ground of that height of the camera above it, or the level that is nearly there as such."""
+    return _with_level(surfaces, "ground", -height, GROUND_STEP)
+
+
+def apart(one: float, other: float) -> float:
     """How far two offsets differ in their logarithms; infinite on two sides of the camera."""
     return float(abs(np.log(one / other))) if one * other > 0 else float("inf")

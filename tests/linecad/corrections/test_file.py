@@ -2,12 +2,15 @@
 
 import json
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linecad.corrections.edits import (
     LABELS,
+    OPENING_WORDS,
+    SHOWN,
     Anchor,
     Corrections,
     Cut,
@@ -22,13 +25,18 @@ from linecad.corrections.edits import (
     Many,
     Meet,
     NameGroup,
+    NoWindow,
     OnePlane,
     Place,
     PlaceAt,
+    Region,
     SetAxis,
     SetEnds,
     SetFrame,
     Split,
+    WallAnchor,
+    WallByEdges,
+    Window,
     Withdraw,
 )
 from linecad.corrections.file import (
@@ -47,6 +55,23 @@ points = st.tuples(numbers, numbers)
 segments = st.tuples(points, points).filter(lambda p: abs(p[0][0] - p[1][0]) + abs(p[0][1] - p[1][1]) > 0.01)
 anchors = st.builds(Anchor, segments, st.integers(0, 2))
 pairs = st.tuples(anchors, anchors)
+# Corners around a place, in the order of their angles: such a polygon does not cross itself.
+polygons = st.builds(
+    lambda place, reach: tuple(
+        (place[0] + r * np.cos(2 * np.pi * n / len(reach)), place[1] + r * np.sin(2 * np.pi * n / len(reach)))
+        for n, r in enumerate(reach)
+    ),
+    points,
+    st.lists(st.floats(1, 1e4), min_size=3, max_size=8),
+)
+walls = st.builds(WallAnchor, st.sampled_from([0, 1, 3, 4]), st.none() | anchors)
+face_edits = st.one_of(
+    st.builds(Region, polygons, st.sampled_from(SHOWN)),
+    st.builds(Window, walls, segments, st.sampled_from(OPENING_WORDS), st.integers(1, 9), st.integers(1, 9), points),
+    st.builds(Window, walls, segments),
+    st.builds(NoWindow, points),
+    st.builds(WallByEdges, st.tuples(anchors, anchors, anchors, anchors)),
+)
 names = st.text(st.characters(categories=["L", "N", "P"]), min_size=1, max_size=60)
 facts = st.one_of(
     st.builds(Meet, pairs),
@@ -64,6 +89,7 @@ parts = st.one_of(
 edits = st.one_of(
     parts,
     facts,
+    face_edits,
     st.builds(Withdraw, facts),
     st.builds(Many, st.lists(parts, min_size=1, max_size=4).map(tuple)),
     st.builds(SetEnds, anchors, segments),

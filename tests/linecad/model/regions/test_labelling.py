@@ -10,7 +10,7 @@ from linecad.model.regions.cuts import Borders, energy
 from linecad.model.regions.evidence import look_up
 from linecad.model.regions.labelling import CORNER, UNIT, Labels, find_labels, united
 from linecad.model.regions.raster import take_raster
-from linecad.model.regions.segments import View, find_segments
+from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface, find_surfaces
 
 LIMIT = 440  # px from the top; the ground ends there, some way behind the house
@@ -21,8 +21,7 @@ def labels_of(house, more=()):
     view = View(house.camera, house.rotation, house.photo)
     raster = take_raster(house.lines, house.camera, house.rotation, house.photo)
     surfaces = [*find_surfaces(house.planes, house.lines, house.camera, None, has_ceiling=False), *more]
-    segments = find_segments(house.lines, surfaces, raster, view)
-    return find_labels(segments, house.lines, surfaces, raster, look_up(raster), view)
+    return find_labels(house.lines, surfaces, raster, look_up(raster), view)
 
 
 @pytest.fixture(scope="module")

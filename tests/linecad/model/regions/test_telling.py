@@ -1,0 +1,98 @@
+"""The walls and the ground that a person's words ask for, in the scene of the painted house."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import shapely
+
+from linecad.corrections.edits import Anchor, Region, WallByEdges
+from linecad.directions import UP
+from linecad.model.regions.segments import View
+from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, weights_of
+from linecad.model.regions.telling import ground_height, tell, wall_by_edges
+
+EVERYWHERE = shapely.box(-0.5, -0.5, 959.5, 719.5)
+
+
+def surfaces_of(house, feet=None):
+    return find_surfaces(house.planes, house.lines, house.camera, feet, has_ceiling=False)
+
+
+def anchor(house, row):
+    (a, b), (c, d) = house.lines.segment[row].tolist()
+    return Anchor(((a, b), (c, d)), int(house.lines.axis[row]))
+
+
+def front_edges(house):
+    """Rows of two upright and two level lines of the front, at y = 8, those that are furthest apart."""
+    front = np.flatnonzero((house.lines.ends[:, :, 1] == 8).all(axis=1))
+    upright, level = (front[house.lines.axis[front] == axis] for axis in (UP, 0))
+    by_u, by_v = np.argsort(house.lines.ends[upright, 0, 0]), np.argsort(house.lines.ends[level, 0, UP])
+    return [int(row) for row in (*upright[by_u[[0, -1]]], *level[by_v[[0, -1]]])]
+
+
+def by_edges(house, lines=None):
+    view = View(house.camera, house.rotation, house.photo)
+    edit = WallByEdges(tuple(anchor(house, row) for row in front_edges(house)))
+    return wall_by_edges(edit, house.planes, lines or house.lines, surfaces_of(house), view)
+
+
+def test_a_wall_has_the_coordinates_of_its_edges_to_the_last_digit(house):
+    left, right, low, high = front_edges(house)
+    found = by_edges(house)
+    ends = house.lines.ends
+    assert (found.surface.kind, found.surface.axis, found.surface.offset, found.apart) == ("wall", 1, 8.0, 0.0)
+    assert set(found.corners[:, 0].tolist()) == {ends[left, 0, 0], ends[right, 0, 0]}
+    assert set(found.corners[:, 2].tolist()) == {ends[low, 0, 2], ends[high, 0, 2]}
+
+
+def test_an_edge_at_another_depth_bounds_the_wall_where_the_photo_shows_it(house):
+    left, *_ = front_edges(house)
+    ends = house.lines.ends.copy()
+    ends[left] *= 1.3
+    found = by_edges(house, replace(house.lines, ends=ends))
+    assert found.surface.offset == 8.0
+    assert np.abs(np.sort(found.corners, axis=0) - np.sort(by_edges(house).corners, axis=0)).max() < 1e-9
+    assert found.apart == pytest.approx(np.log(1.3))
+
+
+def test_one_edge_in_the_model_is_enough_and_none_is_told(house):
+    rows = front_edges(house)
+    alone = np.setdiff1d(np.arange(len(house.lines)), rows[:3])
+    found = by_edges(house, subset(house.lines, alone))
+    assert np.abs(np.sort(found.corners, axis=0) - np.sort(by_edges(house).corners, axis=0)).max() < 1e-9
+    without = np.setdiff1d(np.arange(len(house.lines)), rows)
+    assert "none of its edges is in the model" in by_edges(house, subset(house.lines, without))
+
+
+def subset(lines, rows):
+    arrays = ["id", "axis", "segment", "ends", "is_boundary", "component", "confidence", "role", "by_face"]
+    changed = {name: getattr(lines, name)[rows] for name in [*arrays, "by_depth_map"]}
+    probability = lines.probability[rows] if len(lines.probability) else lines.probability
+    return replace(lines, **changed, probability=probability, pieces=())
+
+
+def test_told_ground_has_the_height_of_level_lines_on_it_else_of_feet_else_of_the_lowest_end(house):
+    feet = GroundOfFeet(2.3, 5.0)
+    level = (house.lines.axis != UP) & (house.lines.ends[:, 0, UP] < 0)
+    heights, weight = -house.lines.ends[level, 0, UP], weights_of(house.lines)[level]
+    found = ground_height(EVERYWHERE, house.lines, feet)
+    assert found in heights
+    assert max(weight[heights < found].sum(), weight[heights > found].sum()) <= weight.sum() / 2
+    nowhere = shapely.box(0, 0, 1, 1)
+    assert ground_height(nowhere, house.lines, feet) == 2.3
+    assert ground_height(nowhere, house.lines, None) == -house.lines.ends[:, :, UP].min()
+
+
+def test_told_ground_becomes_a_surface_where_none_was_found(house):
+    view = View(house.camera, house.rotation, house.photo)
+    walls = [surface for surface in surfaces_of(house) if surface.kind != "ground"]
+    edit = Region(((10.0, 650.0), (200.0, 650.0), (200.0, 710.0)), "ground")
+    told, surfaces = tell([edit], house.planes, house.lines, walls, view, GroundOfFeet(2.0, 5.0))
+    assert [(each.kind, each.offset) for each in surfaces if each.kind == "ground"] == [("ground", -2.0)]
+    assert told.notes == ()
+    above = replace(house.lines, ends=np.abs(house.lines.ends))
+    told, surfaces = tell([edit], (), above, [], view, None)
+    assert surfaces == []
+    assert "nothing tells how low it is" in told.notes[0]
