@@ -8,7 +8,8 @@ import numpy as np
 from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import Annotations, facts_of
-from linecad.corrections.apply import CorrectedLines, ToldFact, correct
+from linecad.corrections.apply import correct
+from linecad.corrections.corrected import CorrectedLines, ToldFact
 from linecad.corrections.edits import Corrections
 from linecad.decide.annotations import annotate, solve_annotated, told_in_the_photo, with_annotations
 from linecad.decide.decision import Decision, decide

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Int
-from linecad.corrections.apply import CorrectedLines, ToldFact
+from linecad.corrections.corrected import CorrectedLines, ToldFact
 from linecad.corrections.edits import Label
 from linecad.line_graph import LineGraph, Segments
 

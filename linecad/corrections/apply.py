@@ -5,15 +5,16 @@ added or taken back: found lines are numbered in their order, new ones follow in
 """
 
 from copy import copy
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import product
-from typing import Literal, assert_never
+from typing import assert_never
 
 import numpy as np
 import shapely
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Float
+from linecad.corrections.corrected import CorrectedLines, FoundPlace, Origin, ToldFact
 from linecad.corrections.drawing import Drawing
 from linecad.corrections.edits import (
     Anchor,
@@ -23,7 +24,6 @@ from linecad.corrections.edits import (
     Draw,
     Edit,
     FaceAnchor,
-    FaceEdit,
     Fact,
     Foot,
     Join,
@@ -59,64 +59,6 @@ from linecad.scene import Camera
 
 MOST_NOTES = 5  # about single corrections; the rest is counted
 FIRST_IDS = 100_000  # ids for the lines of one frame; those found with the next one are other lines
-
-Origin = Literal["found", "drawn", "split", "joined"]
-
-
-@dataclass(frozen=True)
-class FoundPlace:
-    """A point that a person measured from or to, its line found again."""
-
-    pixel: Point
-    line: int | None = None  # id; None for a point in a plane
-    face: Point | None = None  # px where the photo shows the plane; None for a point on a line
-    normal: int | None = None  # axis of the plane; None where a frame given later made it another one
-
-
-@dataclass(frozen=True)
-class ToldFact:
-    """A fact, and the lines that it names now: by their ids, or as the nodes of a line graph."""
-
-    fact: Fact
-    lines: tuple[int, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class CorrectedLines:
-    """The lines of a photo after all edits."""
-
-    segments: Segments  # N
-    ids: Int  # (N,) stable numbers
-    origin: tuple[Origin, ...]  # N
-    labels: dict[tuple[int, int], tuple[Point, Label]]  # by the ids of two lines, the smaller first
-    lengths: dict[int, float]  # m, by id
-    parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
-    notes: tuple[str, ...]  # what could not be found again
-    facts: tuple[ToldFact, ...] = ()  # about the bodies of lines, by id
-    distances: tuple[tuple[FoundPlace, FoundPlace, float], ...] = ()  # m, between two points
-    names: dict[int, str] = field(default_factory=dict)  # of groups, by the id of a line of each; the newest last
-    faces: tuple[FaceEdit, ...] = ()  # what is known about faces, in order, by lines as they look now
-
-    def is_like(self, other: "CorrectedLines") -> bool:
-        """Whether the lines are the same, whatever their annotations."""
-        return bool(
-            np.array_equal(self.ids, other.ids)
-            and np.array_equal(self.segments.axis, other.segments.axis)
-            and np.array_equal(self.segments.ends, other.segments.ends)
-        )
-
-    @property
-    def cuts(self) -> frozenset[Fact]:
-        """The facts on which it depends which lines are one body."""
-        return frozenset(told.fact for told in self.facts if isinstance(told.fact, Cut))
-
-    def differs_in_places(self, other: "CorrectedLines") -> bool:
-        """Whether nothing differs but facts that say where bodies stand."""
-        return self.differs_in_facts(other) and self.cuts == other.cuts
-
-    def differs_in_facts(self, other: "CorrectedLines") -> bool:
-        """Whether nothing differs but facts about bodies."""
-        return self.is_like(other) and (self.labels, self.parted) == (other.labels, other.parted)
 
 
 def correct(segments: Segments, camera: Camera, frame: ManhattanFrame, corrections: Corrections) -> CorrectedLines:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from linecad.corrections.annotations import Annotations, annotations_of, rows_of
-from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.corrected import CorrectedLines
 from linecad.corrections.words import said
 from linecad.errors import ContradictionError
 from linecad.line_graph import LineGraph, Solution

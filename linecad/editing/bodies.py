@@ -8,7 +8,7 @@ import numpy as np
 
 from linecad.arrays import Float, Int
 from linecad.corrections.annotations import rows_of
-from linecad.corrections.apply import CorrectedLines, ToldFact
+from linecad.corrections.corrected import CorrectedLines, ToldFact
 from linecad.corrections.edits import Cut
 from linecad.decide.annotations import told_in_the_photo
 from linecad.errors import CorrectionError

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linecad.corrections.apply import ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Cut, Fact, Foot
 from linecad.corrections.fact_file import fact_to_json
 from linecad.corrections.words import what_is_said

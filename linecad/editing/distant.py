@@ -27,6 +27,14 @@ def distant(changed: Iterable[int], place: Mapping[int, Float], edits: Iterable[
     return frozenset(crossing for crossing, far in zip(changed, (apart > FAR.px(width)).tolist(), strict=True) if far)
 
 
+def between(shown: tuple[Edit, ...], now: tuple[Edit, ...]) -> tuple[Edit, ...]:
+    """The edits that a model of `shown` does not hold, and those that it does and that were taken back."""
+    same = 0
+    while same < min(len(shown), len(now)) and shown[same] == now[same]:
+        same += 1
+    return (*shown[same:], *now[same:])
+
+
 def _marks(value: object) -> Iterator[list[list[float]]]:
     """The segments and places that an edit names, a place as a segment of no length; px."""
     if isinstance(value, Anchor):

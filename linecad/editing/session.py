@@ -11,7 +11,8 @@ from dataclasses import replace
 from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import annotations_of, rows_of
-from linecad.corrections.apply import CorrectedLines, Correcting, ToldFact, correcting_of
+from linecad.corrections.apply import Correcting, correcting_of
+from linecad.corrections.corrected import CorrectedLines, ToldFact
 from linecad.corrections.edits import (
     Corrections,
     Edit,
@@ -24,7 +25,7 @@ from linecad.corrections.edits import (
     anchors_of,
 )
 from linecad.editing.bodies import ShownBodies
-from linecad.editing.distant import distant
+from linecad.editing.distant import between, distant
 from linecad.editing.solving import Answer, Step, Task
 from linecad.editing.state import (
     Contradiction,
@@ -334,18 +335,10 @@ class Session:
         bodies = None
         if made.places is not None:
             bodies = ShownBodies.of(made.places, made.graph, self._lines.corrected)
-        far = distant(changed, self._place(changed), self._edited_since(), self.photo.width)
-        return Model(made.scene, self._version, now, changed, seconds, far, bodies)
-
-    def _edited_since(self) -> list[Edit]:
-        """The edits that the model which is shown does not hold, and those that it does and were taken back."""
         shown = next((content for content, model in self._models.items() if model is self._solved), None)
-        if shown is None:
-            return []
-        now = self._content()
-        same = next((k for k, (one, other) in enumerate(zip(shown, now, strict=False)) if one != other), None)
-        start = min(len(shown), len(now)) if same is None else same
-        return [*shown[start:], *now[start:]]
+        edited = () if shown is None else between(shown, self._content())
+        far = distant(changed, self._place(changed), edited, self.photo.width)
+        return Model(made.scene, self._version, now, changed, seconds, far, bodies)
 
     def _place(self, crossings: Iterable[int]) -> dict[int, Float]:
         """Where crossings are in the photo, px."""

@@ -18,7 +18,7 @@ from types import FrameType
 from typing import TYPE_CHECKING
 
 from linecad.camera.photo import Photo
-from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.corrected import CorrectedLines
 from linecad.corrections.edits import Fact
 from linecad.depth.depth_map import DepthMap
 from linecad.errors import ContradictionError, LinecadError

@@ -5,7 +5,7 @@ from functools import cached_property
 
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import Annotations
-from linecad.corrections.apply import CorrectedLines
+from linecad.corrections.corrected import CorrectedLines
 from linecad.corrections.edits import Corrections, Fact
 from linecad.editing.bodies import ShownBodies
 from linecad.errors import LinecadError

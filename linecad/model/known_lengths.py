@@ -6,7 +6,7 @@ import numpy as np
 
 from exporters.bands import GUESS, bands_of
 from linecad.arrays import Bool, Float
-from linecad.corrections.apply import CorrectedLines, FoundPlace
+from linecad.corrections.corrected import CorrectedLines, FoundPlace
 from linecad.directions import components
 from linecad.errors import ScaleError
 from linecad.geometry import depths_beside, world_rays

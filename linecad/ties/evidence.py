@@ -7,7 +7,7 @@ import networkx as nx
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.corrections.apply import ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Cut
 from linecad.decide.stability import LEAST_TOLERANCE, resample
 from linecad.line_graph import LineGraph

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.corrections.apply import ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Anchor, Cut, Foot, Meet, OnePlane, PlaceAt, Point
 from linecad.corrections.words import said
 from linecad.directions import UP, across, axis_name, common_frame, components, lies_across, partner, third

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.corrections.apply import ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport

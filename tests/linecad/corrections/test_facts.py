@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.corrections.annotations import facts_of
-from linecad.corrections.apply import ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Cut, Delete, Foot, Join, Meet, OnePlane, PlaceAt, SetFrame, Split, Withdraw
 from linecad.corrections.words import said
 from linecad.graph.build import build_line_graph

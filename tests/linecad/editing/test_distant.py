@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.corrections.edits import Anchor, Cut, Delete, LabelCrossing, SetFrame, Split
-from linecad.editing.distant import FAR, distant
+from linecad.editing.distant import FAR, between, distant
 
 WIDTH = 3840
 LINE = Anchor(((1000.0, 1000.0), (2000.0, 1000.0)), 0)
@@ -40,3 +40,11 @@ def test_edits_about_the_whole_photo_ask_for_every_change(edit):
 def test_without_an_edit_or_a_change_nothing_is_far():
     assert far([], (3500.0, 100.0)) == frozenset()
     assert far([Delete(LINE)]) == frozenset()
+
+
+def test_edits_between_two_states_are_those_that_one_of_them_lacks():
+    first, second, third = Delete(LINE), Delete(OTHER), Split(LINE, (1500.0, 1000.0))
+    assert between((first, second), (first, second, third)) == (third,)
+    assert between((first, second), (first,)) == (second,)
+    assert between((first, second), (first, third)) == (second, third)
+    assert between((first,), (first,)) == ()

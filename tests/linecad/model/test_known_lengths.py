@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.corrections.apply import FoundPlace
+from linecad.corrections.corrected import FoundPlace
 from linecad.geometry import project
 from linecad.line_graph import Segments
 from linecad.model.known_lengths import measurable, measured, seen_plane

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from linecad.corrections.apply import ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Anchor, Cut, Foot, Meet, OnePlane, PlaceAt
 from linecad.errors import ContradictionError, CorrectionError
 from linecad.geometry import project

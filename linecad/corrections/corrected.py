@@ -1,0 +1,68 @@
+"""The lines of a photo after all edits, and what a person knows beside them."""
+
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from linecad.arrays import Int
+from linecad.corrections.edits import Cut, FaceEdit, Fact, Label, Point
+from linecad.line_graph import Segments
+
+Origin = Literal["found", "drawn", "split", "joined"]
+
+
+@dataclass(frozen=True)
+class FoundPlace:
+    """A point that a person measured from or to, its line found again."""
+
+    pixel: Point
+    line: int | None = None  # id; None for a point in a plane
+    face: Point | None = None  # px where the photo shows the plane; None for a point on a line
+    normal: int | None = None  # axis of the plane; None where a frame given later made it another one
+
+
+@dataclass(frozen=True)
+class ToldFact:
+    """A fact, and the lines that it names now: by their ids, or as the nodes of a line graph."""
+
+    fact: Fact
+    lines: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class CorrectedLines:
+    """The lines of a photo after all edits."""
+
+    segments: Segments  # N
+    ids: Int  # (N,) stable numbers
+    origin: tuple[Origin, ...]  # N
+    labels: dict[tuple[int, int], tuple[Point, Label]]  # by the ids of two lines, the smaller first
+    lengths: dict[int, float]  # m, by id
+    parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
+    notes: tuple[str, ...]  # what could not be found again
+    facts: tuple[ToldFact, ...] = ()  # about the bodies of lines, by id
+    distances: tuple[tuple[FoundPlace, FoundPlace, float], ...] = ()  # m, between two points
+    names: dict[int, str] = field(default_factory=dict)  # of groups, by the id of a line of each; the newest last
+    faces: tuple[FaceEdit, ...] = ()  # what is known about faces, in order, by lines as they look now
+
+    def is_like(self, other: "CorrectedLines") -> bool:
+        """Whether the lines are the same, whatever their annotations."""
+        return bool(
+            np.array_equal(self.ids, other.ids)
+            and np.array_equal(self.segments.axis, other.segments.axis)
+            and np.array_equal(self.segments.ends, other.segments.ends)
+        )
+
+    @property
+    def cuts(self) -> frozenset[Fact]:
+        """The facts on which it depends which lines are one body."""
+        return frozenset(told.fact for told in self.facts if isinstance(told.fact, Cut))
+
+    def differs_in_places(self, other: "CorrectedLines") -> bool:
+        """Whether nothing differs but facts that say where bodies stand."""
+        return self.differs_in_facts(other) and self.cuts == other.cuts
+
+    def differs_in_facts(self, other: "CorrectedLines") -> bool:
+        """Whether nothing differs but facts about bodies."""
+        return self.is_like(other) and (self.labels, self.parted) == (other.labels, other.parted)
