@@ -4,6 +4,7 @@ import { Actions } from "./actions.js";
 import { startBodies } from "./bodystart.js";
 import { Choosing } from "./choosing.js";
 import { Crosshair } from "./crosshair.js";
+import { Distant } from "./distant.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
 import { drawFaceTools } from "./facedrawing.js";
@@ -64,6 +65,7 @@ async function start() {
   fillLegends();
   new Inspector(store, actions, tools);
   new Solving(store, actions);
+  new Distant(store, actions);
   const table = [...keyTable({ store, actions, tools, pointer, panels, views, choosing }), bodies.keys];
   listenToKeys(table);
   document.querySelector("#help-columns").append(...keyHelp(table));
