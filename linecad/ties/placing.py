@@ -7,14 +7,17 @@ import numpy as np
 
 from linecad.arrays import Bool, Float
 from linecad.decide.stability import resample
+from linecad.geometry import lengths
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
 from linecad.ties.bodies import find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, hear, report_of, ties_to_map
-from linecad.ties.probability import probabilities
-from linecad.ties.seams import find_seams, hold
+from linecad.ties.links import find_links
+from linecad.ties.pieces import find_pieces, with_stays
+from linecad.ties.probability import chances, main_lines, probabilities
+from linecad.ties.seams import find_seams
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates
 from solver.annotations import check_annotations, read_annotations
@@ -64,6 +67,7 @@ class BodyPlaces:
     ties: Ties
     placement: Placement
     reference: int  # the body that the others are placed relative to
+    log_scale: Float  # (B + 1,) of bodies there and, last, of the ground
     log_depth: Float  # (N,) of all lines there
     heard: DepthWitness | str  # the depth map, or why it was left out
     mapped: MapPlaces | None  # what it made of the places, where it was heard
@@ -108,8 +112,7 @@ def place_lines(
         log_depth=log_depth,
     )
     mapped = found.mapped
-    held = hold(len(body), find_seams(setting))
-    probability = probabilities(setting, placement, found.reference, log_depth, held, mapped)
+    probability = _how_sure(setting, found, log_depth, connected)
     by_map = np.zeros(len(body), bool) if mapped is None else (body >= 0) & mapped.by_map[np.maximum(body, 0)]
     told = None if sight.depth is None else report_of(sight.depth, found.heard, mapped)
     return Placed(solution, setting, found.ties, placement, found.reference, probability, by_map, told)
@@ -140,7 +143,18 @@ def place_bodies(
         log_scale = mapped.log_scale
     body = setting.bodies.body
     log_depth = setting.log_depth + np.where(body >= 0, log_scale[np.maximum(body, 0)], 0.0)
-    return BodyPlaces(ties, placement, reference, log_depth, heard, mapped)
+    at = np.append(log_scale[: setting.bodies.count], placement.log_scale[setting.bodies.count])
+    return BodyPlaces(ties, placement, reference, at, log_depth, heard, mapped)
+
+
+def _how_sure(setting: Setting, places: BodyPlaces, log_depth: Float, connected: Bool) -> Float:
+    """(N,) that the depth of a line is right, where these crossings are `connected` (E,)."""
+    seams = find_seams(setting)
+    pieces = find_pieces(setting, seams)
+    seams = with_stays(seams, pieces, places.log_scale)
+    links = find_links(pieces, places.log_scale, places.placement.margin, places.reference, places.mapped)
+    length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)
+    return probabilities(setting, log_depth, pieces, chances(pieces, seams, links, length))
 
 
 def _setting(graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool) -> Setting:

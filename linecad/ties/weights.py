@@ -22,10 +22,14 @@ def log_odds_of(candidate: Candidate) -> float:
     return AT_ONCE[candidate.kind] + sum(known[name] * value for name, value in candidate.features.items())
 
 
+def above_chance(candidate: Candidate) -> float:
+    """By how much the log-odds of a candidate are above those of a ratio that nothing asks for."""
+    return log_odds_of(candidate) - float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
+
+
 def weigh_candidates(candidates: list[Candidate], size: Int) -> Ties:
     """The ties of bodies of `size` (B,) lines: what each candidate adds over chance, where that is enough."""
-    chance = float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
-    gain = np.array([log_odds_of(candidate) for candidate in candidates]) - chance
+    gain = np.array([above_chance(candidate) for candidate in candidates])
     kept = np.flatnonzero(gain >= LEAST_WEIGHT).tolist()
     layers = [(kind, normal) for kind in REPEATING for normal in (-1, 0, 1, UP)]
     chosen = [candidates[number] for number in kept]
