@@ -7,7 +7,7 @@ import numpy as np
 from linecad.arrays import Bool
 from linecad.ties.candidates import Candidate
 from linecad.ties.placing import CONNECTING, BodyPlaces
-from linecad.ties.weights import gain_of
+from linecad.ties.weights import above_chance
 from solver.bodies.local_search import sets_that_move
 
 SAME_PLACE = 0.01  # log scale within which two places are one
@@ -36,7 +36,7 @@ def other_places(places: BodyPlaces, body: int) -> list[OtherPlace]:
     if body == reference or not kept:
         return []
     first, second = np.array([each.bodies for each in kept], np.int64).T
-    asked, gain = np.array([each.log_ratio for each in kept]), np.array([gain_of(each) for each in kept])
+    asked, gain = np.array([each.log_ratio for each in kept]), np.array([above_chance(each) for each in kept])
     now = ties.value(log_scale)
     found: list[OtherPlace] = []
     for moved in _sets(places, body):
@@ -48,7 +48,7 @@ def other_places(places: BodyPlaces, body: int) -> list[OtherPlace]:
             worth = ties.value(np.where(moved, log_scale + move, log_scale)) - now
             ordered = sorted(reasons.tolist(), key=lambda number: -gain[number])
             found.append(OtherPlace(move, moved, worth, tuple(kept[number] for number in ordered)))
-    found.sort(key=lambda place: (-place.worth, -sum(map(gain_of, place.reasons)), abs(place.move)))
+    found.sort(key=lambda place: (-place.worth, -sum(map(above_chance, place.reasons)), abs(place.move)))
     best: list[OtherPlace] = []
     for place in found:
         if all(abs(place.move - other.move) > SAME_PLACE for other in best):

@@ -16,7 +16,8 @@ from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.depth_ties import DepthWitness, hear
 from linecad.ties.facts import CERTAIN
-from linecad.ties.seams import find_seams, hold
+from linecad.ties.pieces import Pieces, find_pieces
+from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
 from solver.annotations import check_annotations, read_annotations
 from solver.depths import end_ratios
@@ -33,7 +34,8 @@ class Evidence:
 
     setting: Setting
     candidates: tuple[Candidate, ...]
-    held: Float  # (N,) probability that a line is held in its body (`linecad.ties.seams`)
+    seams: tuple[Seam, ...]  # where bodies are weak
+    pieces: Pieces  # the bodies parted at all of these
     heard: DepthWitness | str  # the depth map, or why it was left out
     real: Bool  # (E,) crossings that a person called so
     fake: Bool  # (E,)
@@ -69,8 +71,10 @@ def find_evidence(
     setting = _setting(graph, sight, options, real, fake, facts)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
     candidates = find_candidates(setting)
-    held = hold(len(setting.bodies.body), find_seams(setting))
-    return Evidence(setting, tuple(candidates), held, hear(setting, candidates, sight.depth), real, fake)
+    seams = find_seams(setting)
+    pieces = find_pieces(setting, seams)
+    heard = hear(setting, candidates, sight.depth)
+    return Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake)
 
 
 def _setting(

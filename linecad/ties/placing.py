@@ -9,6 +9,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.corrections.corrected import ToldFact
+from linecad.geometry import lengths
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
@@ -16,7 +17,9 @@ from linecad.ties.candidates import Candidate
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.facts import CERTAIN, FactTies, ties_of_facts
-from linecad.ties.probability import probabilities
+from linecad.ties.links import find_links, told_links
+from linecad.ties.pieces import with_stays
+from linecad.ties.probability import chances, main_lines, probabilities
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates, worth_a_tie
 from solver.bodies.search import place
@@ -27,7 +30,6 @@ from solver.options import OnProgress, SolveOptions
 from solver.potentials import fit_near_depths
 from solver.robust import agreeing_with
 
-SAID = 0.97  # probability of a place that a person gave: nobody measured how often people are wrong
 CONNECTING = ("bundle", "plane")  # kinds of ties that say that two bodies are one thing
 
 
@@ -58,20 +60,31 @@ class BodyPlaces:
         return np.asarray(setting.log_depth + moved)
 
     @cached_property
+    def connected(self) -> Bool:
+        """(E,) the crossings of the evidence's graph that agree there."""
+        evidence = self.evidence
+        graph, body = evidence.setting.graph, evidence.setting.bodies.body
+        agree = agreeing_with(graph, self.log_depth) & ~evidence.fake & ~_across(body[graph.edges], self.told.cuts)
+        return np.asarray(agree | evidence.real)
+
+    @cached_property
     def probability(self) -> Float:
         """(N,) that a line's depth relative to component 0 is right within 5 %."""
-        return self.probability_at(self.log_depth)
+        return self.probability_at(self.log_depth, self.connected)
 
-    def probability_at(self, log_depth: Float) -> Float:
-        """The same for lines at depths (N,) near these."""
-        evidence, body = self.evidence, self.evidence.setting.bodies.body
-        found = probabilities(
-            evidence.setting, self.placement, evidence.reference, log_depth, evidence.held, self.mapped
-        )  # fmt: skip
-        # What a person ties to the reference stands there, if the line is held in its body.
-        said = self.ties.parts(self.placement.counted & (self.ties.weight >= CERTAIN), len(self.placement.log_scale))
-        is_said = (said == said[evidence.reference]) & (np.arange(len(said)) != evidence.reference)
-        return np.where((body >= 0) & is_said[body], np.maximum(found, SAID * evidence.held), found)
+    def probability_at(self, log_depth: Float, connected: Bool) -> Float:
+        """The same for lines at depths (N,) near these, where these crossings are `connected` (E,)."""
+        evidence, setting, pieces = self.evidence, self.evidence.setting, self.evidence.pieces
+        ground = self.placement.log_scale[setting.bodies.count]
+        log_scale = np.append(self.log_scale[: setting.bodies.count], ground)
+        seams = with_stays(list(evidence.seams), pieces, log_scale)
+        links = find_links(pieces, log_scale, self.placement.margin, evidence.reference, self.mapped)
+        # What a person ties to the reference stands there.
+        certain = self.placement.counted & (self.ties.weight >= CERTAIN)
+        told = self.ties.parts(certain, len(self.placement.log_scale))
+        links = told_links(links, pieces, evidence.reference, told == told[evidence.reference])
+        length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)
+        return probabilities(setting, log_depth, pieces, chances(pieces, seams, links, length))
 
     @property
     def by_map(self) -> Bool:
@@ -174,7 +187,7 @@ def place_on(
     )
     depth = evidence.setting.sight.depth
     told = None if depth is None else report_of(depth, evidence.heard, found.mapped)
-    return Placed(solution, found, found.probability_at(log_depth), found.by_map, told)
+    return Placed(solution, found, found.probability_at(log_depth, connected), found.by_map, told)
 
 
 def place_bodies(

@@ -1,107 +1,112 @@
-"""How sure the place of each line is: the probability that its depth relative to component 0 is right within 5 %."""
+"""How sure the place of each line is: the probability that its depth relative to component 0 is right within 5 %.
+
+Bodies may stand wrong to each other (`linecad.ties.links`), and the sides of a seam too (`linecad.ties.seams`). The
+scale of component 0 is that of most of its lines, so that a reference body which is wrong itself does not make all
+others wrong. How often each piece stands where most of component 0 does is counted over draws of all these. A line is
+right where its piece is and where it is right in its piece.
+"""
 
 import numpy as np
 
-from linecad.arrays import Float
+from linecad.arrays import Bool, Float
 from linecad.decide.stability import LEAST_TOLERANCE
+from linecad.geometry import lengths
+from linecad.graph.connectivity import components
 from linecad.ties.bodies import togetherness
-from linecad.ties.depth_ties import MapPlaces
+from linecad.ties.links import Link
+from linecad.ties.pieces import Pieces
+from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting
-from solver.bodies.ties import Placement
 
-LARGEST_MARGIN = 12.0
-FARTHEST_OFF = 6.0  # widths
+DRAWS = 1000
+SEED = 0
+RIGHT = 0.05  # log scale
+OFF = (0.06, 1.0)  # log scale, by which what does not hold is off, to either side
+LEAST_WEIGHT = 0.1  # log-odds of one crossing that agrees and one that does not, for lines with hardly any
 # Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -4.8570
+AT_ONCE = -1.2462
 LOG_ODDS: dict[str, float] = {
-    "of the reference": 2.4394,
-    "margin": -0.3206,
-    "root of margin": 2.1794,
-    "lines of the body": -0.0979,
-    "share of the reference": 3.9925,
-    "together": 0.8203,
-    "agreement of all": -3.3440,
-    "agreement of the line": 2.3376,
-    "bodies": 0.5692,
-}
-# The same where a depth map was heard.
-WITH_MAP_AT_ONCE = -5.9709
-WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "of the reference": 1.8917,
-    "margin": -0.0916,
-    "root of margin": 0.9285,
-    "lines of the body": 0.0221,
-    "share of the reference": 2.9980,
-    "together": 0.8031,
-    "agreement of all": -0.1727,
-    "agreement of the line": 2.6143,
-    "bodies": 0.5292,
-    "map's word": 0.0754,
-    "off the map": -0.2288,
+    "together": 2.7580,
+    "agreement": 1.8457,
+    "contradictions": -0.7230,
 }
 
 
-def features(
-    setting: Setting, placement: Placement, reference: int, log_depth: Float, mapped: MapPlaces | None = None
-) -> dict[str, Float]:
-    """What speaks for the place of each line at the depths (N,) that were found, each (N,); 0 for lines of no body.
+def line_features(setting: Setting, log_depth: Float) -> dict[str, Float]:
+    """What speaks for the place of each line in its piece, at the depths (N,) that were found, each (N,)."""
+    graph, count = setting.graph, len(log_depth)
+    told = graph.informative
+    agrees = told & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
 
-    `mapped` is what a depth map made of the places, where one was heard.
-    """
-    graph = setting.graph
-    agrees = graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE)
-    told, first, second = graph.informative, *graph.edges.T
-    many = np.bincount(np.r_[first[told], second[told]], minlength=len(log_depth))
-    agreeing = np.bincount(np.r_[first[told & agrees], second[told & agrees]], minlength=len(log_depth))
-    body = setting.bodies.body
-    own = body >= 0
-    at = np.maximum(body, 0)
+    def sums(chosen: Bool, weight: Float | None = None) -> Float:
+        ends = graph.edges[chosen].T.ravel()
+        return np.bincount(ends, None if weight is None else np.tile(weight[chosen], 2), count).astype(np.float64)
+
     shift = setting.fits.depth - setting.log_depth
-    together = np.zeros(len(body))
+    together = np.zeros(count)
     for number, lines in enumerate(setting.lines):
-        core = body == number
-        together[lines] = togetherness(setting.fits, shift, core)[lines]
-    margin = np.minimum(placement.margin, LARGEST_MARGIN)
-    size = np.bincount(body[own], minlength=len(margin))  # a photo without bodies has one place all the same
-    found = {
-        "of the reference": (body == reference).astype(np.float64),
-        "margin": margin[at],
-        "root of margin": np.sqrt(margin)[at],
-        "lines of the body": np.log(np.maximum(size, 1))[at],
-        "share of the reference": np.full(len(body), size[reference] / max(1, own.sum())),
+        together[lines] = togetherness(setting.fits, shift, setting.bodies.body == number)[lines]
+    return {
         "together": together,
-        "agreement of all": np.full(len(body), agreeing.sum() / max(1, many.sum())),
-        "agreement of the line": (agreeing + 1) / (many + 2),
-        "bodies": np.full(len(body), np.log(setting.bodies.count + 1)),
+        "agreement": (sums(agrees, graph.weight) + LEAST_WEIGHT) / (sums(told, graph.weight) + 2 * LEAST_WEIGHT),
+        "contradictions": np.log1p(sums(told & ~agrees)),
     }
-    if mapped is not None:
-        word, off_map = _by_the_map(mapped, len(margin))
-        found |= {"map's word": word[at], "off the map": off_map[at]}
-    return {name: np.where(own, value, 0.0) for name, value in found.items()}
 
 
-def _by_the_map(mapped: MapPlaces, count: int) -> tuple[Float, Float]:
-    """What the map's word is worth about each of `count` bodies, and how many widths they are off it; 0 without one."""
-    off = np.minimum(np.abs(mapped.misfit) / mapped.width, FARTHEST_OFF)
-    off = np.concatenate([off, np.full(count - len(off), np.nan)])
-    told = np.isfinite(off)
-    return np.where(told, mapped.worth, 0.0), np.where(told, off, 0.0)
+def main_lines(setting: Setting, connected: Bool) -> Bool:
+    """(N,) the lines of bodies in the component of `connected` crossings (E,) that most of the photo shows."""
+    length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * (setting.bodies.body >= 0)
+    parts = components(setting.graph, connected & setting.graph.informative)
+    main = np.zeros(len(length), bool)
+    if parts:
+        main[max(parts, key=lambda part: float(length[part].sum()))] = True
+    return main & (setting.bodies.body >= 0)
 
 
-def probabilities(
-    setting: Setting,
-    placement: Placement,
-    reference: int,
-    log_depth: Float,
-    held: Float,
-    mapped: MapPlaces | None = None,
-) -> Float:
-    """(N,) from 0 to 1; 0 for lines of no body. `mapped` as for `features`.
+def chances(pieces: Pieces, seams: list[Seam], links: list[Link], length: Float) -> Float:
+    """(Q,) how likely each piece stands where most of component 0 does.
 
-    A line is right where its body stands where it should, and where it is `held` (N,) in its body: the probability that
-    it is (`linecad.ties.seams`).
+    `length` (N,) is that of its lines, 0 for all others. Links are those of `find_links`, outwards from the reference.
     """
-    known = features(setting, placement, reference, log_depth, mapped)
-    at_once, slopes = (AT_ONCE, LOG_ODDS) if mapped is None else (WITH_MAP_AT_ONCE, WITH_MAP_LOG_ODDS)
-    log_odds = at_once + sum((slopes[name] * value for name, value in known.items()), np.zeros(len(setting.log_depth)))
-    return np.where(setting.bodies.body >= 0, held / (1 + np.exp(-log_odds)), 0.0)
+    if pieces.count == 0:
+        return np.zeros(0)
+    random = np.random.default_rng(SEED)
+    within: Float = np.zeros((DRAWS, pieces.count))  # of each piece in its body
+    for seam in seams:
+        within[:, pieces.of(seam.smaller)] += _off(random, seam.probability)[:, None]
+    place: Float = np.zeros((DRAWS, int(pieces.body.max()) + 1))
+    for link in links:
+        tied_to = place[:, link.to] + within[:, link.other]
+        place[:, link.body] = tied_to + _off(random, link.probability) - within[:, link.piece]
+    at: Float = place[:, pieces.body] + within
+    own = pieces.piece >= 0
+    weight = np.bincount(pieces.piece[own], length[own], pieces.count).astype(np.float64)
+    off: Float = np.abs(at - _medians(at, weight)[:, None])
+    near: Float = (off < RIGHT).mean(axis=0)
+    return near
+
+
+def _off(random: np.random.Generator, probability: float) -> Float:
+    """(DRAWS,) by how much two sides are off each other: 0 with a probability."""
+    fails = random.random(DRAWS) >= probability
+    return np.where(fails, random.choice([-1.0, 1.0], DRAWS) * random.uniform(*OFF, DRAWS), 0.0)
+
+
+def _medians(values: Float, weight: Float) -> Float:
+    """(D,) weighted medians of the rows of values (D, Q)."""
+    order = np.argsort(values, axis=1, kind="stable")
+    sums = np.cumsum(weight[order], axis=1)
+    middle = (sums >= sums[:, -1:] / 2).argmax(axis=1)
+    rows = np.arange(len(values))
+    medians: Float = values[rows, order[rows, middle]]
+    return medians
+
+
+def probabilities(setting: Setting, log_depth: Float, pieces: Pieces, chance: Float) -> Float:
+    """(N,) from 0 to 1 at the depths (N,) that were found, by the `chance` (Q,) of each piece; 0 in no body."""
+    known = line_features(setting, log_depth)
+    log_odds = AT_ONCE + sum((LOG_ODDS[name] * value for name, value in known.items()), np.zeros(len(log_depth)))
+    own = pieces.piece >= 0
+    found = np.zeros(len(log_depth))
+    found[own] = chance[pieces.piece[own]] / (1 + np.exp(-log_odds[own]))
+    return found

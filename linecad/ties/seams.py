@@ -45,24 +45,25 @@ OF_BUNDLE = (
     "plane beside",
 )
 # Logistic regression on cuts of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -2.7946
+AT_ONCE = -2.5690
 LOG_ODDS: dict[str, float] = {
-    "near": -0.5658,
-    "levels": 0.3724,
-    "level excess": 0.1275,
-    "level lead": 0.1044,
-    "same eaves": 0.2141,
-    "size excess": 0.0995,
-    "corners": -0.1145,
-    "pieces": 0.4407,
-    "from both": -0.0772,
-    "supported": 1.5087,
-    "connected": 0.3280,
-    "plane of it": 1.0322,
-    "plane beside": 0.5734,
-    "shade": 2.9451,
-    "overlap across": 0.4220,
-    "overlap down": -0.2100,
+    "near": -1.0286,
+    "levels": 0.3847,
+    "level excess": 0.1302,
+    "level lead": 0.2237,
+    "same eaves": 0.1123,
+    "size excess": 0.0931,
+    "corners": -0.1785,
+    "pieces": 0.4829,
+    "from both": -0.3133,
+    "supported": 1.1710,
+    "connected": 0.0510,
+    "plane of it": 1.5315,
+    "plane beside": 1.5675,
+    "shade": 1.6437,
+    "overlap across": 0.8798,
+    "overlap down": -0.4695,
+    "stays": 1.4912,
 }
 
 
@@ -72,12 +73,12 @@ class Seam:
 
     larger: Int  # the lines of the side with more of them
     smaller: Int
-    features: Features
+    features: Features  # "stays" comes last, by `linecad.ties.pieces.with_stays`
 
     @property
     def probability(self) -> float:
         """That both sides stand to each other as they do in the body."""
-        log_odds = AT_ONCE + sum(LOG_ODDS[name] * value for name, value in self.features.items())
+        log_odds = AT_ONCE + sum(slope * self.features[name] for name, slope in LOG_ODDS.items())
         return float(1 / (1 + np.exp(-log_odds)))
 
 
@@ -93,14 +94,6 @@ def find_seams(setting: Setting) -> list[Seam]:
     beside = seen_beside(setting)
     seams = [_seam(setting, beside, one, other) for one, other in cuts]
     return [seam for seam in seams if seam is not None]
-
-
-def hold(count: int, seams: list[Seam]) -> Float:
-    """(N,) for `count` lines: the probability that no seam parts a line from the larger side of its body."""
-    found = np.ones(count)
-    for seam in seams:
-        found[seam.smaller] *= seam.probability
-    return found
 
 
 def _cuts(lines: Int, edges: Int, weight: Float) -> list[tuple[Int, Int]]:

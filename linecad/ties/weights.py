@@ -24,14 +24,14 @@ def log_odds_of(candidate: Candidate) -> float:
     return AT_ONCE[candidate.kind] + sum(known[name] * value for name, value in candidate.features.items())
 
 
-def gain_of(candidate: Candidate) -> float:
-    """Log-odds that a candidate adds over chance."""
+def above_chance(candidate: Candidate) -> float:
+    """By how much the log-odds of a candidate are above those of a ratio that nothing asks for."""
     return log_odds_of(candidate) - float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
 
 
 def worth_a_tie(candidates: Sequence[Candidate]) -> list[Candidate]:
     """Those that add enough over chance."""
-    return [candidate for candidate in candidates if gain_of(candidate) >= LEAST_WEIGHT]
+    return [candidate for candidate in candidates if above_chance(candidate) >= LEAST_WEIGHT]
 
 
 def weigh_candidates(candidates: Sequence[Candidate], size: Int) -> Ties:
@@ -42,7 +42,7 @@ def weigh_candidates(candidates: Sequence[Candidate], size: Int) -> Ties:
     with_ground = np.append(size, size.sum())  # the ground is no crumb
     smaller = np.array([with_ground[list(candidate.bodies)].min() for candidate in chosen], np.float64)
     repeated = np.array([REPEATED if candidate.kind in REPEATING else 1.0 for candidate in chosen])
-    gain = np.array([gain_of(candidate) for candidate in chosen])
+    gain = np.array([above_chance(candidate) for candidate in chosen])
     weight: Float = gain * np.minimum(1.0, smaller / FULL_SIZE) * repeated
     return Ties(
         bodies=np.array([candidate.bodies for candidate in chosen]).reshape(-1, 2),

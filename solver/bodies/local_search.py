@@ -17,18 +17,19 @@ ELSEWHERE = 0.05  # log scale: a body that moves less is where it was
 def improve(ties: Ties, start: Float, seed: int) -> Float:
     """Log scales (B,) that no move of one set of bodies improves, from `start` and a few seeded restarts."""
     random = np.random.default_rng(seed)
-    best, worth = _climb(ties, start)
+    best, worth = climb(ties, start)
     for _ in range(RESTARTS):
         jumped = best.copy()
         chosen = random.integers(0, len(best), random.integers(1, MOST_JUMPS + 1))
         jumped[chosen] += random.normal(0, JUMP, len(chosen))
-        found, value = _climb(ties, jumped)
+        found, value = climb(ties, jumped)
         if value > worth + LEAST_GAIN:
             best, worth = found, value
     return best
 
 
-def _climb(ties: Ties, start: Float) -> tuple[Float, float]:
+def climb(ties: Ties, start: Float) -> tuple[Float, float]:
+    """Log scales (B,) that no move of one set of bodies improves, from `start`, and what they are worth."""
     scale, value = start.copy(), ties.value(start)
     improved = True
     while improved:

@@ -1,11 +1,12 @@
 """How sure the place of each line is, fitted and measured: python tests/benchmarks/probability.py DATASET ...
 
 DATASET is a folder that `linecad evaluate` knows and whose truth has depth; bodies are placed by the table of the
-project. First the seams: how likely a weak cut through a body holds, which it does where the true scales of both sides
-differ by less than 4.5 %. Then lines: that the depth of one is right within 5 %, by the scale of the reference body, is
-the probability that its body stands where it should, times that no seam on the way fails. A fold is judged by the
-others: the photos of a real dataset, or a tenth of the made scenes. Real and made photos weigh alike on the whole. What
-is named after `--unseen` is judged only. `--write` puts the fits to all others into linecad/ties.
+project. Three fits: how likely a seam holds, which it does where the true scales of both sides differ by less than
+4.5 %; how likely the link of a body holds, where those of both pieces are as placed within 5 %; how likely a line is
+right in its piece, from the lines that are right within 5 % by the scale of component 0 and the chance of their piece
+by the two other fits. A fold is judged by the others: the photos of a real dataset, or a tenth of the made scenes. Real
+and made photos weigh alike on the whole. What is named after `--unseen` is judged only. `--write` puts the fits to all
+others into linecad/ties.
 """
 
 import argparse
@@ -19,33 +20,67 @@ import numpy as np
 from ties import WIDTHS, Placed, placed
 from ties_truth import Judged, judge
 
+import linecad.ties.links
 import linecad.ties.probability
 import linecad.ties.seams
 import linecad.ties.table
 from linecad.arrays import Bool, Float
 from linecad.evaluation.datasets import find_dataset
-from linecad.ties.seams import Seam, hold
+from linecad.geometry import lengths
+from linecad.ties.links import Link, find_links
+from linecad.ties.pieces import with_stays
+from linecad.ties.probability import chances, line_features, main_lines
+from linecad.ties.seams import Seam
+from solver.robust import agreeing_with
 
-RIGHT_SEAM = 0.045  # log ratio of scales, so that both sides are right within 5 %
-RIDGE_OF_SEAMS, RIDGE = 50.0, 30.0
+RIGHT = 0.05
+RIGHT_PART = {"seams": 0.045, "links": RIGHT}  # log ratio of the scales of both sides
+RIDGE_OF_SEAMS, RIDGE_OF_LINKS, RIDGE = 10.0, 5.0, 30.0
 SURE = 0.9
 FOLDS = 10  # of made scenes
 TABLE = {"AT_ONCE": linecad.ties.table.AT_ONCE, "LOG_ODDS": linecad.ties.table.LOG_ODDS}
 
 
 @dataclass(frozen=True, eq=False)
+class Looked:
+    """A photo with its bodies in their places, and what tells how sure these are."""
+
+    photo: Judged
+    dataset: str  # with what was heard
+    fold: str
+    seams: list[Seam]
+    links: list[Link]
+    length: Float  # (N,) of the lines of component 0, 0 for others
+    features: Float  # (P, F) of lines, at the points that are judged
+    piece: np.ndarray  # (P,) in which that line is
+    right: Float  # (P,) 0 or 1
+    log_scale: Float  # (B + 1,) of the bodies and the ground
+
+    @property
+    def errors_of_links(self) -> list[float]:
+        """By how much the two pieces of each link stand wrong to each other, log scale."""
+        off = self.log_scale[self.photo.pieces.body] - self.photo.true_pieces
+        return [float(abs(off[link.piece] - off[link.other])) for link in self.links]
+
+
+@dataclass(frozen=True, eq=False)
 class Rows:
-    """What is fitted: M seams of known truth, or points on lines."""
+    """What is fitted: M seams or links of known truth, or points on lines."""
 
     features: Float  # (M, F)
     right: Float  # (M,) 0 or 1
     weight: Float  # (M,) real and made scenes weigh alike
     fold: np.ndarray  # (M,) names
+    dataset: np.ndarray  # (M,) names
     is_unseen: Bool  # (M,)
 
     def others(self, fold: str) -> Bool:
         """The rows (M,) that judge a fold."""
         return ~self.is_unseen & (self.fold != fold)
+
+    def fit(self, chosen: Bool, ridge: float, held: Float | None = None) -> logistic.Logistic:
+        held = None if held is None else held[chosen]
+        return logistic.fit(self.features[chosen], self.right[chosen], ridge, self.weight[chosen], held=held)
 
 
 def fold_of(photo: Judged) -> str:
@@ -61,96 +96,154 @@ def balanced(weight: Float, is_made: Bool) -> Float:
     return balance
 
 
-def rows_of_seams(photos: list[Judged], unseen: set[str]) -> Rows:
-    known = [(seam, error, photo) for photo in photos for seam, error in photo.seams if np.isfinite(error)]
+def look(photo: Judged, one: Placed, suffix: str) -> Looked | None:
+    """None where no line of component 0 shows a point of known depth."""
+    setting, places, pieces = photo.setting, one.places, photo.pieces
+    margin = places.placement.margin
+    seams = with_stays([seam for seam, _ in photo.seams], pieces, places.log_scale)
+    links = find_links(pieces, places.log_scale, margin, places.reference, places.mapped)
+    main = main_lines(setting, agreeing_with(setting.graph, places.log_depth))
+    line = photo.on[photo.seen]
+    error = places.log_depth[line] + photo.log_factor[photo.seen] - photo.log_true[photo.seen]
+    if not main[line].any():
+        return None
+    right = np.abs(np.expm1(error - np.median(error[main[line]]))) < RIGHT
+    features = np.column_stack(list(line_features(setting, places.log_depth).values()))
+    return Looked(
+        photo, photo.dataset + suffix, fold_of(photo), seams, links,
+        lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main,
+        features[line], pieces.piece[line], right.astype(np.float64), places.log_scale,
+    )  # fmt: skip
+
+
+def rows_of(known: list[tuple[Looked, Float, Float, Float]], unseen: set[str]) -> Rows:
+    """Rows of photos with features (M, F), right (M,) and weight (M,) of each."""
+    known = [each for each in known if len(each[2])]
+    count = [len(right) for _, _, right, _ in known]
+    made = np.repeat([each.photo.is_made for each, *_ in known], count)
     return Rows(
-        np.array([list(seam.features.values()) for seam, _, _ in known]),
-        np.array([float(error < RIGHT_SEAM) for _, error, _ in known]),
-        balanced(np.ones(len(known)), np.array([photo.is_made for _, _, photo in known])),
-        np.array([fold_of(photo) for _, _, photo in known]),
-        np.array([photo.dataset in unseen for _, _, photo in known]),
+        np.concatenate([features for _, features, _, _ in known]),
+        np.concatenate([right for _, _, right, _ in known]),
+        balanced(np.concatenate([weight for *_, weight in known]), made),
+        np.repeat([each.fold for each, *_ in known], count),
+        np.repeat([each.dataset for each, *_ in known], count),
+        np.repeat([each.photo.dataset in unseen for each, *_ in known], count),
     )
 
 
-def fit_seams(rows: Rows, chosen: Bool) -> logistic.Logistic:
-    return logistic.fit(rows.features[chosen], rows.right[chosen], RIDGE_OF_SEAMS, rows.weight[chosen])
+def rows_of_parts(looked: list[Looked], parts: str, errors: list[list[float]], unseen: set[str]) -> Rows:
+    """The "seams" or "links" of photos whose errors are known."""
+    known = []
+    for each, own in zip(looked, errors, strict=True):
+        features_of = [part.features for part in (each.seams if parts == "seams" else each.links)]
+        told = [number for number, error in enumerate(own) if np.isfinite(error)]
+        features = np.array([list(features_of[number].values()) for number in told])
+        known.append(
+            (each, features, np.array([float(own[number] < RIGHT_PART[parts]) for number in told]), np.ones(len(told)))
+        )
+    return rows_of(known, unseen)
 
 
-def held_of(photo: Judged, fitted: logistic.Logistic) -> Float:
-    """(N,) that no seam parts a line from the main part of its body, by a fit."""
-
-    class Fitted(Seam):
-        @property
-        def probability(self) -> float:
-            return float(fitted.probability(np.array([list(self.features.values())]))[0])
-
-    return hold(
-        len(photo.setting.log_depth), [Fitted(seam.larger, seam.smaller, seam.features) for seam, _ in photo.seams]
-    )
-
-
-def print_seams(rows: Rows, dataset: np.ndarray) -> None:
+def print_parts(name: str, rows: Rows, ridge: float) -> dict[str, logistic.Logistic]:
+    """Print how well seams or links are told apart; the fit that judges each fold."""
+    fits = {fold: rows.fit(rows.others(fold), ridge) for fold in np.unique(rows.fold)}
     predicted = np.zeros(len(rows.right))
-    for fold in np.unique(rows.fold):
-        own = rows.fold == fold
-        predicted[own] = fit_seams(rows, rows.others(fold)).probability(rows.features[own])
-    print("\n| seams | known | right | area under the curve | log loss | by tenths |\n" + "| --- " * 6 + "|")
-    for name in dict.fromkeys(dataset):
-        own = dataset == name
+    for fold, fitted in fits.items():
+        predicted[rows.fold == fold] = fitted.probability(rows.features[rows.fold == fold])
+    print(f"\n| {name} | known | right | area under the curve | log loss | by tenths |\n" + "| --- " * 6 + "|")
+    for dataset in dict.fromkeys(rows.dataset):
+        own = rows.dataset == dataset
         right, p = rows.right[own], predicted[own]
         print(
-            f"| {name} | {own.sum()} | {right.mean():.2f} | {logistic.area_under_curve(right, p):.3f} | "
+            f"| {dataset} | {own.sum()} | {right.mean():.2f} | {logistic.area_under_curve(right, p):.3f} | "
             f"{logistic.log_loss(right, p):.3f} | {', '.join(filter(None, map(_cell, logistic.tenths(right, p))))} |",
             flush=True,
         )
+    return fits
 
 
 def _cell(tenth: tuple[float, float, int] | None) -> str:
     return "" if tenth is None else f"{tenth[0]:.2f} / {tenth[1]:.2f} ({tenth[2]})"
 
 
-def rows_of_lines(known: list[tuple[Judged, Placed]], unseen: set[str]) -> Rows:
-    count = [len(one.right) for _, one in known]
-    made = np.repeat([photo.is_made for photo, _ in known], count)
-    return Rows(
-        np.concatenate([one.features for _, one in known]),
-        np.concatenate([one.right for _, one in known]),
-        balanced(np.concatenate([np.full(many, 1 / many) for many in count]), made),
-        np.repeat([fold_of(photo) for photo, _ in known], count),
-        np.repeat([photo.dataset in unseen for photo, _ in known], count),
-    )
+def chance_of(each: Looked, of_seams: logistic.Logistic, of_links: logistic.Logistic) -> Float:
+    """(P,) that the piece of each point stands right, by fits."""
+
+    class FittedSeam(Seam):
+        @property
+        def probability(self) -> float:
+            return float(of_seams.probability(np.array([list(self.features.values())]))[0])
+
+    class FittedLink(Link):
+        @property
+        def probability(self) -> float:
+            return float(of_links.probability(np.array([list(self.features.values())]))[0])
+
+    seams: list[Seam] = [FittedSeam(seam.larger, seam.smaller, seam.features) for seam in each.seams]
+    links: list[Link] = [FittedLink(**vars(link)) for link in each.links]
+    return chances(each.photo.pieces, seams, links, each.length)[each.piece]
 
 
-def print_lines(rows: Rows, held: Float, dataset: np.ndarray) -> logistic.Logistic:
-    """Print how far the probabilities hold; the fit to all that is not unseen."""
+def print_lines(rows: Rows, held: Float) -> None:
+    """Print how far the probabilities hold."""
     predicted = np.zeros(len(rows.right))
     for fold in np.unique(rows.fold):
-        own, others = rows.fold == fold, rows.others(fold)
-        fitted = _fit_lines(rows, held, others)
+        own = rows.fold == fold
+        fitted = rows.fit(rows.others(fold), RIDGE, held)
         predicted[own] = fitted.probability(rows.features[own]) * held[own]
     print("\n| lines | " + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10)) + " | at 0.9: precision | recall |")
     print("| --- " * 13 + "|")
-    for name in dict.fromkeys(dataset):
-        own = dataset == name
+    for name in dict.fromkeys(rows.dataset):
+        own = rows.dataset == name
         right, weight, p = rows.right[own], rows.weight[own], predicted[own]
         cells = [_cell(tenth) for tenth in logistic.tenths(right, p, weight)]
         sure = p >= SURE
         share = (weight * right)[sure].sum() / (weight * right).sum()
         precision = np.average(right[sure], weights=weight[sure]) if sure.any() else np.nan
         print(f"| {name} | " + " | ".join([*cells, f"{precision:.3f}", f"{share:.2f}"]) + " |", flush=True)
-    return _fit_lines(rows, held, ~rows.is_unseen)
 
 
-def _fit_lines(rows: Rows, held: Float, chosen: Bool) -> logistic.Logistic:
-    return logistic.fit(rows.features[chosen], rows.right[chosen], RIDGE, rows.weight[chosen], held=held[chosen])
-
-
-def _write(path: Path, prefix: str, names: list[str], fitted: logistic.Logistic) -> None:
+def write(module: object, prefix: str, fitted: logistic.Logistic) -> None:
+    """Put a fit into its module in place of the table there."""
+    path = Path(module.__file__)
+    names = list(getattr(module, f"{prefix}LOG_ODDS"))
     slopes = "".join(f'    "{name}": {value:.4f},\n' for name, value in zip(names, fitted.slope.tolist(), strict=True))
     table = f"{prefix}AT_ONCE = {fitted.at_once:.4f}\n{prefix}LOG_ODDS: dict[str, float] = {{\n{slopes}}}\n"
     text = path.read_text(encoding="utf-8")
     text = re.sub(rf"^{prefix}AT_ONCE = .*?^}}\n", lambda _: table, text, count=1, flags=re.DOTALL | re.MULTILINE)
     path.write_text(text, encoding="utf-8")
+
+
+def measure(
+    by_photo: list[tuple[Judged, Placed]], by_map: list[tuple[Judged, Placed]], unseen: set[str], to_write: bool
+) -> None:
+    """Print all tables, and write the fits where that is asked for."""
+    plain = [each for photo, one in by_photo if (each := look(photo, one, "")) is not None]
+    seams = rows_of_parts(plain, "seams", [[error for _, error in each.photo.seams] for each in plain], unseen)
+    of_seams = print_parts("seams", seams, RIDGE_OF_SEAMS)
+    seams_to_all = seams.fit(~seams.is_unseen, RIDGE_OF_SEAMS)
+    if to_write:
+        write(linecad.ties.seams, "", seams_to_all)
+    mapped = [each for photo, one in by_map if (each := look(photo, one, ", map")) is not None]
+    for prefix, looked in (("", plain), ("WITH_MAP_", mapped)):
+        if not looked:
+            print("\nno depth map is heard", flush=True)
+            continue
+        links = rows_of_parts(looked, "links", [each.errors_of_links for each in looked], unseen)
+        of_links = print_parts("links", links, RIDGE_OF_LINKS)
+        to_all = links.fit(~links.is_unseen, RIDGE_OF_LINKS)
+        weights = [np.full(len(each.right), 1 / len(each.right)) for each in looked]
+        lines = rows_of(
+            [(each, each.features, each.right, weight) for each, weight in zip(looked, weights, strict=True)], unseen
+        )
+        held = np.concatenate([
+            chance_of(each, of_seams.get(each.fold, seams_to_all), of_links.get(each.fold, to_all)) for each in looked
+        ])  # fmt: skip
+        print_lines(lines, held)
+        if to_write:
+            write(linecad.ties.links, prefix, to_all)
+        if to_write and not prefix:
+            write(linecad.ties.probability, "", lines.fit(~lines.is_unseen, RIDGE, held))
 
 
 def main() -> None:
@@ -160,7 +253,6 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2, help="processes")
     parser.add_argument("--write", action="store_true", help="the fits into linecad/ties")
     chosen = parser.parse_args()
-    unseen = {folder.name for folder in chosen.unseen}
     with ProcessPoolExecutor(chosen.workers) as pool:
         jobs = [
             pool.submit(judge, folder.name, case)
@@ -175,26 +267,7 @@ def main() -> None:
         ]  # fmt: skip
         by_photo = list(zip(photos, [job.result() for job in plain], strict=True))
         by_map = list(zip(photos * len(WIDTHS), [job.result() for job in mapped], strict=True))
-    seams = rows_of_seams(photos, unseen)
-    print_seams(seams, np.array([photo.dataset for photo in photos for _, error in photo.seams if np.isfinite(error)]))
-    by_fold = {fold: fit_seams(seams, seams.others(fold)) for fold in {fold_of(photo) for photo in photos}}
-    held = {
-        id(photo): held_of(photo, by_fold[fold_of(photo)]) for photo in photos
-    }  # fmt: skip
-    path = Path(linecad.ties.probability.__file__)
-    if chosen.write:
-        names = list(photos[0].seams[0][0].features)
-        _write(Path(linecad.ties.seams.__file__), "", names, fit_seams(seams, ~seams.is_unseen))
-    for suffix, prefix, known in (("", "", by_photo), (", map", "WITH_MAP_", [one for one in by_map if one[1].heard])):
-        known = [one for one in known if len(one[1].right)]
-        fitted = print_lines(
-            rows_of_lines(known, unseen),
-            np.concatenate([held[id(photo)][one.line] for photo, one in known]),
-            np.concatenate([np.full(len(one.right), photo.dataset + suffix) for photo, one in known]),
-        )
-        if chosen.write:
-            names = list(getattr(linecad.ties.probability, f"{prefix}LOG_ODDS"))
-            _write(path, prefix, names, fitted)
+    measure(by_photo, [one for one in by_map if one[1].heard], {folder.name for folder in chosen.unseen}, chosen.write)
 
 
 if __name__ == "__main__":

@@ -16,7 +16,7 @@ from unittest import mock
 import logistic
 import numpy as np
 from parts import PARTS
-from ties_truth import PARTED, Judged, densest, judge
+from ties_truth import PARTED, Judged, judge
 
 import linecad.ties.placing
 import linecad.ties.table
@@ -26,12 +26,9 @@ from linecad.depth.depth_map import DepthMap
 from linecad.evaluation.datasets import find_dataset
 from linecad.ties.candidates import KINDS, Candidate, Kind
 from linecad.ties.placing import BodyPlaces
-from linecad.ties.probability import features
 from solver.options import SolveOptions
 
 RIGHT = 0.03  # log ratio of a candidate
-RIGHT_DEPTH = 0.05
-LEAST_REFERENCE = 10  # points on the reference body, for the others to be relative to
 RIDGE = 3.0
 FEW_NODES = 300  # of the search on parts of photos, of which there are many
 WIDTHS = (0.012, 0.035, 0.08)  # of simulated depth maps
@@ -150,33 +147,18 @@ class Placed:
     score: tuple[float, float]  # recall and precision at 5 %
     proven: bool
     heard: bool  # a depth map was given and used
-    features: Float  # (P, F) of the lines at the points that are judged; none where the reference body shows too few
-    right: Float  # (P,) 0 or 1
-    line: Int  # (P,) that shows each of these points
+    places: BodyPlaces
 
 
 def placed(
     photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict], depth: tuple[float, int] | None = None
 ) -> Placed:
     """The photo placed by a table, without the candidates of some kinds, and with a map of that width and seed."""
-    setting = photo.setting
     candidates = [candidate for candidate in photo.candidates if candidate.kind not in kinds]
     with mock.patch.multiple(linecad.ties.weights, **table):
         places = place_bodies(photo, candidates, depth and photo.true_depth.simulated(*depth))
-    placement, reference, log_depth = places.placement, places.reference, places.log_depth
-    body = setting.bodies.body
-    known = features(setting, placement, reference, log_depth, places.mapped)
-    seen = photo.seen
-    line = photo.on[seen]
-    error = log_depth[line] + photo.log_factor[seen] - photo.log_true[seen]
-    if (body[line] == reference).sum() < LEAST_REFERENCE:
-        line, error = line[:0], error[:0]
-    else:
-        error = error - densest(error[body[line] == reference])
-    right = np.abs(np.expm1(error)) < RIGHT_DEPTH
-    of_lines = np.array([value[line] for value in known.values()]).T
-    is_proven, is_heard = placement.status == "optimal", places.mapped is not None
-    return Placed(photo.score(log_depth), is_proven, is_heard, of_lines, right.astype(np.float64), line)
+    is_proven, is_heard = places.placement.status == "optimal", places.mapped is not None
+    return Placed(photo.score(places.log_depth), is_proven, is_heard, places)
 
 
 def print_ablation(

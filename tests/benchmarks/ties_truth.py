@@ -20,6 +20,7 @@ from linecad.options import LONG_REACH, Options
 from linecad.scene import Camera
 from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.pieces import Pieces, find_pieces
 from linecad.ties.placing import FITS
 from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
@@ -45,6 +46,8 @@ class Judged:
     true_scale: Float  # (B + 1,) log, that of the ground last; NaN where the points do not tell
     true_depth: TrueDepth  # of the photo's pixels
     seams: list[tuple[Seam, float]]  # with by how much the true log scales of their sides differ; NaN where not known
+    pieces: Pieces
+    true_pieces: Float  # (Q,) log scale of each, as true_scale
 
     @property
     def is_part(self) -> bool:
@@ -124,6 +127,8 @@ def judge(dataset: str, case: Case, part: str | None = None) -> Judged | None:
     if seen is None:
         return None
     setting, scene = seen.setting, scene_of(dataset, case)
+    seams = find_seams(setting)
+    pieces = find_pieces(setting, seams)
     candidates = find_candidates(setting)
     if seen.reference.truth is not None:
         examples = examples_of(scene, setting, seen.true_scale, seen.reference.truth)
@@ -140,16 +145,23 @@ def judge(dataset: str, case: Case, part: str | None = None) -> Judged | None:
         seen.log_true,
         np.append(seen.true_scale, densest(np.array(feet)) if feet else np.nan),
         true_depth(seen.reference, seen.camera),
-        [(seam, _error_of(seam, seen)) for seam in find_seams(setting)],
+        [(seam, _error_of(seam, seen)) for seam in seams],
+        pieces,
+        _scales_of(seen, pieces.piece, pieces.count),
     )
 
 
 def _error_of(seam: Seam, seen: Seen) -> float:
     side = np.full(len(seen.setting.log_depth), -1)
     side[seam.larger], side[seam.smaller] = 0, 1
-    of_sides = replace(seen.setting, bodies=RigidBodies(side, 2))
-    first, second = true_scales(of_sides, seen.on, seen.log_true - seen.log_factor)
+    first, second = _scales_of(seen, side, 2)
     return float(abs(first - second))
+
+
+def _scales_of(seen: Seen, part: Int, count: int) -> Float:
+    """The true log scales (count,) of other parts (N,) of the lines than bodies."""
+    parted = replace(seen.setting, bodies=RigidBodies(part, count))
+    return true_scales(parted, seen.on, seen.log_true - seen.log_factor)
 
 
 def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, Float]:

@@ -6,7 +6,7 @@ import pytest
 from linecad.ties.alternatives import MOST, SAME_PLACE, other_places
 from linecad.ties.evidence import find_evidence
 from linecad.ties.placing import place_bodies
-from linecad.ties.weights import gain_of
+from linecad.ties.weights import above_chance
 from solver.options import SolveOptions
 
 
@@ -38,7 +38,7 @@ def test_each_is_asked_for_by_what_it_names(places, body):
         for reason in place.reasons:
             first, second = reason.bodies
             assert there[first] - there[second] == pytest.approx(reason.log_ratio, abs=2 * SAME_PLACE)
-            assert gain_of(reason) > 0
+            assert above_chance(reason) > 0
 
 
 def test_each_is_worth_what_the_ties_say(places, body):

@@ -1,23 +1,19 @@
-"""How sure the place of each line is: from 0 to 1, 0 for lines of no body, more where more speaks for it."""
+"""How sure the place of each line is: from 0 to 1, 0 for lines of no body, less where seams and links may fail."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from linecad.ties import links, seams
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.depth_ties import MapPlaces
-from linecad.ties.probability import (
-    AT_ONCE,
-    LARGEST_MARGIN,
-    LOG_ODDS,
-    WITH_MAP_LOG_ODDS,
-    features,
-    probabilities,
-)
-from solver.bodies.ties import Placement
+from linecad.ties.links import Link
+from linecad.ties.pieces import Pieces
+from linecad.ties.probability import AT_ONCE, LOG_ODDS, chances, line_features, main_lines, probabilities
+from linecad.ties.seams import Seam
 
 NO_BODY = 3  # the first lines of the second wall
+WITHIN = 0.04  # of a share of the draws
 
 
 @pytest.fixture
@@ -29,107 +25,63 @@ def placed(build_town, build_row, build_setting):
     return build_setting(seen, body=body)
 
 
-def placement(*margin):
-    return Placement(
-        log_scale=np.zeros(len(margin)), counted=np.zeros(0, bool), objective=0.0, bound=0.0, gap=0.0,
-        status="optimal", nodes=1, solver="none", margin=np.array(margin),
-    )  # fmt: skip
+def pieces_of(setting):
+    body = setting.bodies.body
+    return Pieces(body, np.arange(body.max() + 1), [])
 
 
-def known(setting, margins=(6.0, 2.0), reference=0, depth=None):
-    return features(setting, placement(*margins), reference, setting.log_depth if depth is None else depth)
-
-
-def sure(setting, margins=(6.0, 2.0), reference=0, depth=None, held=1.0):
+def sure(setting, depth=None, chance=(1.0, 1.0)):
     depth = setting.log_depth if depth is None else depth
-    return probabilities(setting, placement(*margins), reference, depth, np.full(len(depth), held))
+    return probabilities(setting, depth, pieces_of(setting), np.array(chance))
 
 
 def test_every_feature_has_log_odds(placed):
-    assert list(known(placed)) == list(LOG_ODDS)
+    assert list(line_features(placed, placed.log_depth)) == list(LOG_ODDS)
 
 
-def test_probability_is_the_logistic_of_the_features(placed):
-    log_odds = AT_ONCE + sum(LOG_ODDS[name] * value for name, value in known(placed).items())
+def test_a_line_is_as_sure_as_its_piece_and_as_it_is_there(placed):
+    known = line_features(placed, placed.log_depth)
+    log_odds = AT_ONCE + sum(LOG_ODDS[name] * value for name, value in known.items())
     body = placed.bodies.body
-    np.testing.assert_allclose(sure(placed)[body >= 0], (1 / (1 + np.exp(-log_odds)))[body >= 0])
-    assert (sure(placed) >= 0).all()
-    assert (sure(placed) <= 1).all()
+    expected = np.where(body == 0, 0.3, 0.9) / (1 + np.exp(-log_odds))
+    np.testing.assert_allclose(sure(placed, chance=(0.3, 0.9))[body >= 0], expected[body >= 0])
 
 
 def test_lines_of_no_body_are_sure_of_nothing(placed):
     alone = placed.bodies.body < 0
     assert alone.sum() == NO_BODY
     assert (sure(placed)[alone] == 0).all()
-    assert (sure(placed)[~alone] > 0).all()
-    assert all((value[alone] == 0).all() for value in known(placed).values())
+    assert (sure(placed)[~alone] > 0.5).all()
 
 
-def test_a_line_is_as_sure_as_its_body_and_as_it_is_held_there(placed):
-    np.testing.assert_allclose(sure(placed, held=0.3), 0.3 * sure(placed))
+def test_a_photo_without_bodies_has_no_sure_line(placed):
+    none = replace(placed, bodies=RigidBodies(np.full(len(placed.bodies.body), -1), 0))
+    pieces = Pieces(none.bodies.body, np.zeros(0, int), [])
+    chance = chances(pieces, [], [], np.zeros(len(none.log_depth)))
+    assert probabilities(none, none.log_depth, pieces, chance).tolist() == [0.0] * len(placed.log_depth)
 
 
-@pytest.mark.parametrize("reference", [0, 1])
-def test_the_reference_is_at_least_as_sure_as_others_of_its_margin(build_town, build_row, build_setting, reference):
-    setting = build_setting(build_town(*build_row(0)))
-    body = setting.bodies.body
-    found = sure(setting, (5.0, 5.0), reference)
-    assert found[body == reference].min() >= found[body != reference].max()
-
-
-def test_a_body_is_surer_the_larger_its_margin(placed):
-    second = placed.bodies.body == 1
-    little, more, most = (sure(placed, (8.0, margin))[second] for margin in (0.0, 2.0, 8.0))
-    assert (little < more).all()
-    assert (more < most).all()
-
-
-def test_a_margin_counts_up_to_an_end(placed):
-    at_end = known(placed, (LARGEST_MARGIN, LARGEST_MARGIN))
-    beyond = known(placed, (1000.0, LARGEST_MARGIN))
-    assert all((at_end[name] == beyond[name]).all() for name in LOG_ODDS)
-
-
-def test_features_of_lines(placed):
-    first, second = (placed.bodies.body == body for body in range(2))
-    found = known(placed, (9.0, 4.0), reference=1)
-    for name, of_first, of_second in (
-        ("of the reference", 0.0, 1.0),
-        ("margin", 9.0, 4.0),
-        ("root of margin", 3.0, 2.0),
-        ("lines of the body", np.log(24), np.log(24 - NO_BODY)),
-        ("share of the reference", 21 / 45, 21 / 45),
-        ("together", 1.0, 1.0),
-        ("agreement of all", 1.0, 1.0),
-        ("bodies", np.log(3), np.log(3)),
-    ):
-        assert found[name][first] == pytest.approx(of_first), name
-        assert found[name][second] == pytest.approx(of_second), name
-
-
-def test_agreement_counts_the_crossings_that_tell(placed):
+def test_lines_that_crossings_contradict_are_less_sure(placed):
     graph = placed.graph
     i, j = graph.edges.T
     depth = placed.log_depth.copy()
     line = 15  # a course that reaches the second wall
     depth[line] += 0.02  # beyond what a crossing may be off
     own = int(((i == line) | (j == line)).sum())
-    found = known(placed, depth=depth)
-    assert found["agreement of all"][0] == pytest.approx(1 - own / len(graph.edges))
-    assert found["agreement of the line"][line] == pytest.approx(1 / (own + 2))
-    other = int(i[j == line][0]) if (j == line).any() else int(j[i == line][0])
-    degree = int(((i == other) | (j == other)).sum())
-    assert found["agreement of the line"][other] == pytest.approx(degree / (degree + 2))
+    known, before = line_features(placed, depth), line_features(placed, placed.log_depth)
+    assert known["contradictions"][line] == pytest.approx(np.log1p(own))
+    assert before["contradictions"][line] == 0.0
+    assert known["agreement"][line] < 0.5 < before["agreement"][line]
+    assert sure(placed, depth)[line] < sure(placed)[line] - 0.1
     silent = replace(placed, graph=replace(graph, informative=np.zeros(len(graph.edges), bool)))
-    assert known(silent, depth=depth)["agreement of the line"][line] == 0.5
-    assert known(silent, depth=depth)["agreement of all"][line] == 0.0
+    assert line_features(silent, depth)["agreement"][line] == 0.5
 
 
 def test_lines_that_leave_their_body_in_the_fits_are_less_sure(placed):
     before = sure(placed)
     placed.fits.depth[:2, 5] += 1.0
     after = sure(placed)
-    assert known(placed)["together"][5] == 0.5
+    assert line_features(placed, placed.log_depth)["together"][5] == 0.5
     assert after[5] < before[5]
     assert np.delete(after, 5).tolist() == np.delete(before, 5).tolist()
 
@@ -137,57 +89,58 @@ def test_lines_that_leave_their_body_in_the_fits_are_less_sure(placed):
 def test_lines_move_relative_to_the_fit_to_all(placed):
     depth = np.linspace(0.0, 3.0, len(placed.bodies.body))
     fits = replace(placed.fits, depth=np.tile(depth, (len(placed.fits.depth), 1)))
-    together = known(replace(placed, log_depth=depth, fits=fits))["together"]
+    together = line_features(replace(placed, log_depth=depth, fits=fits), depth)["together"]
     assert (together[placed.bodies.body >= 0] == 1).all()
 
 
-def by_map(*misfit, width=0.02, worth=3.0):
-    """What a map made of two bodies that are so far off it."""
-    return MapPlaces(np.zeros(2), 0.0, np.zeros(2, bool), np.array(misfit), width, worth)
+def test_the_main_lines_are_those_that_most_of_the_photo_shows(placed):
+    graph = placed.graph
+    inside = placed.bodies.body[graph.edges]
+    first = (inside == 0).all(axis=1)
+    main = main_lines(placed, first)
+    assert main.any()
+    assert (placed.bodies.body[main] == 0).all()
+    assert not main_lines(placed, np.zeros(len(graph.edges), bool))[placed.bodies.body < 0].any()
 
 
-def test_every_feature_has_log_odds_with_a_map_too(placed):
-    found = features(placed, placement(6.0, 2.0), 0, placed.log_depth, by_map(0.0, 0.0))
-    assert list(found) == list(WITH_MAP_LOG_ODDS)
-    assert set(found) - set(known(placed)) == {"map's word", "off the map"}
+# Pieces of three bodies: the reference in two halves, two more that hang on its second half.
+PIECES = Pieces(np.repeat(np.arange(4), 10), np.array([0, 0, 1, 2]), [])
 
 
-def test_a_map_speaks_of_the_bodies_that_it_tells_of(placed):
-    """The margins are those of the ground and of the map too."""
-    first, second = (placed.bodies.body == body for body in range(2))
-    places = placement(6.0, 2.0, 1.0, 4.0)
-    found = features(placed, places, 0, placed.log_depth, by_map(-0.03, np.nan))
-    assert set(found["map's word"][first].tolist()) == {3.0}
-    assert found["off the map"][first] == pytest.approx(1.5), "widths, whether too far or too near"
-    for name in ("map's word", "off the map"):
-        assert not found[name][~first].any()
-    before = features(placed, places, 0, placed.log_depth)
-    assert all((found[name] == before[name]).all() for name in LOG_ODDS if "map" not in name)
-    assert second.any()
+@pytest.fixture
+def stated(monkeypatch):
+    """Seams and links that say themselves how likely they hold."""
+    for module in (seams, links):
+        monkeypatch.setattr(module, "AT_ONCE", 0.0)
+        monkeypatch.setattr(module, "LOG_ODDS", {"stated": 1.0})
+
+    def odds(probability):
+        return {"stated": float(np.log(max(probability, 1e-12)) - np.log(max(1 - probability, 1e-12)))}
+
+    def chance(seam, first, second, length=(10.0, 9.0, 0.0, 0.0)):
+        halves = Seam(np.arange(10), np.arange(10, 20), odds(seam))
+        hung = [Link(1, 0, 2, 1, odds(first)), Link(2, 1, 3, 2, odds(second))]
+        return chances(PIECES, [halves], hung, np.repeat(length, 10))
+
+    return chance
 
 
-def test_how_far_off_the_map_counts_up_to_an_end(placed):
-    places = placement(6.0, 2.0, 1.0)
-    far, farther = (
-        features(placed, places, 0, placed.log_depth, by_map(0.0, off))["off the map"] for off in (0.5, 50.0)
-    )
-    assert (far == farther).all()
-    assert 1 < far.max() < 25
+def test_what_holds_is_right(stated):
+    assert stated(1.0, 1.0, 1.0).tolist() == [1.0] * 4
 
 
-def test_the_map_counts_as_the_table_says(placed, monkeypatch):
-    places, second = placement(6.0, 2.0, 1.0), placed.bodies.body == 1
-    monkeypatch.setitem(WITH_MAP_LOG_ODDS, "map's word", 0.5)
-    monkeypatch.setitem(WITH_MAP_LOG_ODDS, "off the map", -0.4)
-    silent, near, far = (
-        probabilities(placed, places, 0, placed.log_depth, np.ones(len(placed.log_depth)), mapped)
-        for mapped in (by_map(np.nan, np.nan), by_map(0.0, 0.0), by_map(0.0, 0.08))
-    )
-    assert (silent < near)[placed.bodies.body >= 0].all()
-    assert (far < near)[second].all()
-    assert (far == near)[~second].all()
+def test_chances_multiply_along_the_links(stated):
+    assert stated(1.0, 0.8, 0.5) == pytest.approx([1.0, 1.0, 0.8, 0.4], abs=WITHIN)
 
 
-def test_a_photo_without_bodies_has_no_sure_line(placed):
-    none = replace(placed, bodies=RigidBodies(np.full(len(placed.bodies.body), -1), 0))
-    assert sure(none, (0.0,)).tolist() == [0.0] * len(placed.bodies.body)
+def test_bodies_stand_wrong_with_the_half_that_they_hang_on(stated):
+    assert stated(0.6, 1.0, 1.0) == pytest.approx([1.0, 0.6, 0.6, 0.6], abs=WITHIN)
+
+
+def test_the_scale_is_that_of_most_of_component_0(stated):
+    """Where the other half and what hangs on it are most of the photo, the reference's first half is in doubt."""
+    assert stated(0.6, 1.0, 1.0, (10.0, 9.0, 5.0, 5.0)) == pytest.approx([0.6, 1.0, 1.0, 1.0], abs=WITHIN)
+
+
+def test_chances_are_the_same_each_time(stated):
+    assert stated(0.7, 0.8, 0.5).tobytes() == stated(0.7, 0.8, 0.5).tobytes()

@@ -1,0 +1,89 @@
+"""Pieces: bodies parted at their seams, and whether the local search leaves the sides of a seam where they stand."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linecad.ties import pieces as module
+from linecad.ties.bodies import RigidBodies
+from linecad.ties.pieces import Pieces, find_pieces, part_bodies, with_stays
+from linecad.ties.seams import Seam, find_seams
+from solver.bodies.ties import Ties
+
+NESTED = [Seam(np.arange(5), np.arange(5, 8), {}), Seam(np.arange(5, 7), np.array([7]), {})]
+
+
+@pytest.fixture(scope="module")
+def one_body(build_town, build_row, build_setting):
+    row = build_town(*build_row(3))
+    return build_setting(row, body=np.zeros(len(row.part), int))
+
+
+def test_seams_part_bodies_and_leave_other_bodies_whole():
+    piece, body = part_bodies(RigidBodies(np.array([0, 0, 0, 0, 0, 0, 0, 0, -1, 1, 1]), 2), NESTED)
+    assert body.tolist() == [0, 0, 0, 1]
+    groups = [set(np.flatnonzero(piece == number).tolist()) for number in range(4)]
+    assert groups == [set(range(5)), {5, 6}, {7}, {9, 10}]
+    assert piece[8] == -1
+
+
+def test_without_seams_pieces_are_the_bodies():
+    bodies = RigidBodies(np.array([1, 0, -1, 1]), 2)
+    piece, body = part_bodies(bodies, [])
+    assert piece.tolist() == bodies.body.tolist()
+    assert body.tolist() == [0, 1]
+
+
+def test_no_bodies_have_no_pieces():
+    piece, body = part_bodies(RigidBodies(np.full(3, -1), 0), [])
+    assert piece.tolist() == [-1, -1, -1]
+    assert body.tolist() == []
+
+
+def test_what_ties_the_sides_of_a_seam_is_found_at_the_ratio_that_they_have(one_body):
+    seams = find_seams(one_body)
+    found = find_pieces(one_body, seams)
+    assert found.size.sum() == len(one_body.log_depth)
+    assert found.of(seams[0].larger).tolist() != found.of(seams[0].smaller).tolist()
+    bundles = [each for each in found.candidates if each.kind == "bundle"]
+    assert bundles
+    assert min(abs(each.log_ratio) for each in bundles) < 1e-6
+
+
+def stays(ties, monkeypatch):
+    """Of the outer and the inner seam of NESTED, with these ties between pieces of one body and the ground."""
+    piece, body = part_bodies(RigidBodies(np.zeros(8, int), 1), NESTED)
+    monkeypatch.setattr(module, "weigh_candidates", lambda *_: ties)
+    found = with_stays(NESTED, Pieces(piece, body, []), np.array([0.3, -0.2]))
+    assert [list(seam.features) for seam in found] == [["stays"], ["stays"]]
+    return [seam.features["stays"] for seam in found]
+
+
+def ties(*rows):
+    """Of (first, second, log ratio, weight) each."""
+    count = len(rows)
+    first, second, ratio, weight = np.array(rows, float).reshape(-1, 4).T
+    bodies = np.column_stack([first, second]).astype(int)
+    return Ties(bodies, ratio, np.full(count, 0.02), weight, np.full(count, -1))
+
+
+def test_sides_stay_where_all_ties_hold(monkeypatch):
+    assert stays(ties((0, 1, 0.0, 5.0), (1, 2, 0.0, 5.0)), monkeypatch) == [1.0, 1.0]
+    assert stays(ties(), monkeypatch) == [1.0, 1.0]
+
+
+def test_a_side_that_the_ground_calls_elsewhere_does_not_stay(monkeypatch):
+    """The ground lies 0.5 below the first piece, and 0.7 below the last by its own feet."""
+    last = ((0, 1, 0.0, 5.0), (1, 2, 0.0, 3.0), (0, 3, 0.5, 4.0), (1, 3, 0.5, 4.0))
+    assert stays(ties(*last, (2, 3, 0.7, 2.0)), monkeypatch) == [1.0, 1.0]
+    outer, inner = stays(ties(*last, (2, 3, 0.7, 4.0)), monkeypatch)
+    assert inner == 0.0
+    assert outer == pytest.approx(2 / 3), "of the three lines of the smaller side two stay"
+
+
+def test_the_seams_of_a_setting_stay_as_they_are_in_a_sound_body(one_body):
+    seams = find_seams(one_body)
+    found = with_stays(seams, find_pieces(one_body, seams), np.zeros(2))
+    assert [seam.features["stays"] for seam in found] == [1.0] * len(seams)
+    assert [replace(seam, features={}).larger.tolist() for seam in found] == [seam.larger.tolist() for seam in seams]
