@@ -93,6 +93,7 @@ export class Choosing {
 
   everything() {
     this.store.set({ choice: EVERYTHING });
+    document.querySelector("#export-list [data-format]").focus(); // the button that was clicked is gone
   }
 
   #set(fields) {
@@ -136,13 +137,10 @@ export class Choosing {
       try {
         const answer = choice === EVERYTHING ? null : await this.actions.server.post("shown", choice);
         this.store.set({ shown: answer && { lines: new Set(answer.lines), faces: new Set(answer.faces) } });
+        this.actions.messages.keep("choice", answer?.nothing ?? null, "warning", [["Show all", () => this.everything()]]);
       } catch (error) {
-        this.#asking = false;
         if (!(error instanceof RequestError)) throw error;
-        this.store.set({ shown: { lines: new Set(), faces: new Set() } });
-        this.actions.messages.tell(error.message.replaceAll("--", ""), "warning");
-        if (this.#wanted) return void this.#ask();
-        return;
+        this.actions.messages.tell(error.message, "error");
       }
     }
     this.#asking = false;
