@@ -46,7 +46,7 @@ export class Choosing {
       element("div", {}, this.groups, this.detail),
     );
     document.querySelector("#model-stage").append(panel);
-    this.note = element("li", { role: "none", class: "exported", hidden: true });
+    this.note = element("li", { role: "none", class: "exported" });
     document.querySelector("#export-list").prepend(this.note);
     store.listen((changed) => this.#noticed(changed));
     this.#show();
@@ -58,7 +58,7 @@ export class Choosing {
   }
 
   #noticed(changed) {
-    if (changed.has("choice") || changed.has("colouring") || changed.has("state")) this.#show();
+    if (changed.has("choice") || changed.has("colouring") || changed.has("state") || changed.has("selection")) this.#show();
     const { lines, planes } = this.store.state;
     const isNew = lines !== this.#asked?.lines || planes !== this.#asked.planes;
     if (changed.has("choice") || (changed.has("state") && isNew && this.store.choice !== EVERYTHING)) this.#ask();
@@ -73,11 +73,17 @@ export class Choosing {
     this.colours.setAttribute("aria-pressed", String(colouring === "confidence"));
     this.colours.disabled = !tells;
     this.legend.hidden = colouring !== "confidence";
-    this.note.hidden = choice === EVERYTHING;
     const all = element("button", { role: "menuitem", onclick: () => this.everything() }, "Show all");
-    this.note.replaceChildren("Files hold what is shown, not all of the model.", all);
+    const part = choice === EVERYTHING ? [] : [element("p", {}, "Files hold what is shown, not all of the model.", all)];
+    this.note.replaceChildren(...part, element("p", {}, this.#facadeText()));
     this.groups.value = choice.main ? "own" : choice.groups;
     this.detail.value = choice.detail;
+  }
+
+  #facadeText() {
+    const plane = this.store.selectedPlane;
+    if (plane?.is_facade) return `Elevations are of the selected facade, plane ${plane.id}.`;
+    return "Elevations are of the largest facade; select another one for its own.";
   }
 
   toggleColours() {

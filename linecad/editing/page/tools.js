@@ -12,7 +12,7 @@ export const TOOLS = [
     key: "c",
     hint: "Click a crossing to turn it from real to fake or back; click a line to select it",
   },
-  { name: "select", label: "Select", key: "v", hint: "Click a line or a crossing to see what it is" },
+  { name: "select", label: "Select", key: "v", hint: "Click a line, a crossing or a face to see what it is" },
   { name: "draw", label: "Draw", key: "d", hint: "Click both ends of a line, or drag; x, y or z fixes its axis" },
   { name: "split", label: "Split", key: "k", hint: "Click where a line is to be cut in two" },
   { name: "join", label: "Join", key: "j", hint: "Click two lines that are one" },

@@ -351,9 +351,16 @@ def test_the_elevation_is_that_of_the_selected_facade(screen, tmp_path):
     drawn = set()
     for plane in facades:
         screen.run("(id) => linecad.store.set({ selection: { kind: 'face', id } })", plane["faces"][0]["id"])
+        told = screen.page.locator(".exported").text_content()
+        assert f"Elevations are of the selected facade, plane {plane['id']}." in told
         of_page = download(screen, "elevation.svg", tmp_path / "page.svg")
         command = ["elevation", str(tmp_path / "whole.json"), "--plane", str(plane["id"]), "--quiet"]
         assert main([*command, "--photo", str(screen.served.photo), "-o", str(tmp_path / "out.svg")]) == 0
         assert of_page == (tmp_path / "out.svg").read_bytes()
         drawn.add(of_page)
     assert len(drawn) == 2
+    screen.run("linecad.store.set({ selection: null })")
+    assert "Elevations are of the largest facade" in screen.page.locator(".exported").text_content()
+    command = ["elevation", str(tmp_path / "whole.json"), "--photo", str(screen.served.photo), "--quiet"]
+    assert main([*command, "-o", str(tmp_path / "out.svg")]) == 0
+    assert download(screen, "elevation.svg", tmp_path / "page.svg") == (tmp_path / "out.svg").read_bytes()
