@@ -241,6 +241,7 @@ def test_the_parts_of_the_photo_lie_over_it_with_a_legend(screen):
     )
     assert shown == pytest.approx([int(wall[k : k + 2], 16) for k in (1, 3, 5)], abs=3)
     screen.button("Parts").click()
+    screen.settle()
     assert screen.painted("#depth-canvas") == 0
 
 
