@@ -49,7 +49,11 @@ export class Inspector {
     const thing = store.selection ?? store.hover;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());
-    const tell = { line: () => this.#line(found), crossing: () => this.#crossing(found), face: () => this.#face(found) };
+    const tell = {
+      line: () => this.#line(found),
+      crossing: () => this.#crossing(found),
+      face: () => this.#face(found),
+    };
     this.panel.replaceChildren(...tell[thing.kind]());
   }
 

@@ -86,6 +86,19 @@ def test_a_drag_moves_the_plan_and_free_turns_again(screen):
     assert screen.run("linecad.model.orbit.flat") is None
 
 
+@pytest.mark.parametrize("key", ["Shift+P", "Shift+F", "Shift+O", "t"])
+def test_in_every_view_the_sight_through_a_place_meets_what_is_seen_there(screen, key):
+    ends = [line["ends"][0] for line in screen.state["lines"] if line["ends"]][:30]
+    screen.run("() => { const { model } = linecad; model.change((orbit) => orbit.orbit(30, 20)); }")
+    screen.press(key)
+    places = seen(screen, ends)
+    script = "(places) => places.map((at) => linecad.model.orbit.sight(at))"
+    for point, (origin, direction) in zip(ends, screen.run(script, places.tolist()), strict=True):
+        away, along = np.subtract(point, origin), np.array(direction) / np.linalg.norm(direction)
+        assert away @ along > 0
+        assert np.linalg.norm(np.cross(away, along)) < 1e-4 * np.linalg.norm(away)
+
+
 def test_a_click_on_a_face_lights_its_plane_on_both_sides_and_its_front_is_straight(screen):
     plane, face = facade_of(screen.state)
     screen.press("v")
