@@ -1,4 +1,4 @@
-// Measuring: two points of lines and faces, in the photo or the model, how far apart they are, and that as known length.
+// Measuring: two points of lines and faces, in the photo or the model, how far apart they are, also as known length.
 
 import { CASING, INK } from "./colours.js";
 import { element, keyButton } from "./dom.js";
