@@ -219,6 +219,27 @@ def test_points_of_faces_are_measured_in_the_model(screen):
 
 
 @pytest.mark.thorough  # every day the server is asked (test_wanted.py, test_faces.py)
+def test_in_the_front_of_a_face_its_own_corners_are_measured(screen):
+    plane, face = facade_of(screen.state)
+    screen.run("(id) => linecad.store.set({ selection: { kind: 'face', id } })", face["id"])
+    screen.press("Shift+F")
+    screen.press("i")
+    measured = screen.run(
+        """async (outline) => {
+          const { pointAt, sightOfModel } = await import("/page/sights.js");
+          const { store, model } = linecad;
+          const near = ([x, y]) => [x + 3, y - 3];
+          return outline.map((corner) => pointAt(store, sightOfModel(model), near(model.toScreen(corner))));
+        }""",
+        face["outline"],
+    )
+    own = {each["id"] for each in plane["faces"]}
+    for point in measured:
+        on = point["on"]
+        assert on.get("line") in plane["lines"] or on.get("face") in own
+        assert np.dot(point["point"], plane["normal"]) == pytest.approx(plane["offset"], rel=1e-6)
+
+
 def test_a_distance_that_sets_no_scale_is_refused_with_a_reason(screen):
     weak = [line for line in screen.state["lines"] if line["ends"] and line["component"] > 0]
     points = [{"point": weak[0]["ends"][k], "on": {"line": weak[0]["id"]}, "what": "end of a line"} for k in range(2)]
