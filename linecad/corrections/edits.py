@@ -115,7 +115,7 @@ class Place:
 
 @dataclass(frozen=True)
 class KnownDistance:
-    """How far apart two points are in metres; None takes back what was said of the same two."""
+    """How far apart two points are in metres; None takes back the distance of the same two."""
 
     places: tuple[Place, Place]
     metres: float | None

@@ -7,7 +7,7 @@ import numpy as np
 
 from exporters.drawings.facades import facades_of
 from exporters.faces import FlatFace
-from exporters.model import build_model
+from exporters.model import Model, build_model
 from exporters.triangulation import triangulate
 from linecad.corrections.edits import FaceAnchor, Point
 from linecad.errors import CorrectionError, OutputError
@@ -53,15 +53,20 @@ def _places(scene: Scene, plane: Plane) -> list[Point]:
 
 
 @lru_cache(maxsize=2)
+def _model_of(scene: Scene) -> Model:
+    return build_model(scene)
+
+
+@lru_cache(maxsize=2)
 def facades_in(scene: Scene) -> frozenset[int]:
     """The ids of the planes that an elevation can be drawn of."""
-    return frozenset(facade.plane for facade in facades_of(build_model(scene)))
+    return frozenset(facade.plane for facade in facades_of(_model_of(scene)))
 
 
 @lru_cache(maxsize=2)
 def triangles_of(scene: Scene) -> dict[int, dict[str, Any]]:
     """Of each face by its id: rings and triangles, indices into the points of all rings in their order."""
-    flat = {face.id: face for face in build_model(scene).faces}
+    flat = {face.id: face for face in _model_of(scene).faces}
     found: dict[int, dict[str, Any]] = {}
     for _, face in scene.faces:
         try:

@@ -2,7 +2,6 @@
 
 import os
 import socket
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -21,6 +20,7 @@ from linecad.editing.body_document import places_of
 from linecad.editing.cell_layer import picture_of_cells
 from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
+from linecad.editing.downloads import Download, download_of
 from linecad.editing.edits import proposal_to_json, read_edit
 from linecad.editing.guard import HOST, Guard, TooLargeError
 from linecad.editing.labelling import labels_to_json
@@ -33,7 +33,6 @@ from linecad.editing.tiles import Pyramid
 from linecad.editing.wanted import document_of_shown, read_wanted, values_of
 from linecad.errors import EditorError, LinecadError
 from linecad.io.strict_json import JsonError, Node, parse
-from linecad.outputs import write_outputs
 
 PAGE = Path(__file__).parent / "page"
 MEDIA_TYPES = {
@@ -223,33 +222,28 @@ class Editor:
             return _error(404, "there is no such format")
         try:
             text = request.query_params.get("wanted")
-            data = self._exported(suffix, None if text is None else parse(text))
+            return _attached(self._exported(suffix, None if text is None else parse(text)))
         except (JsonError, LinecadError) as error:
             return _error(422, str(error))
-        return self._attached(data, suffix)
 
     def _labels(self) -> Response:
         """GET /api/export/labels: what `linecad evaluate` reads."""
         lines, photo = self.session.lines, self.session.photo
-        return self._attached(
-            labels_to_json(photo, self.camera, lines.graph, lines.annotations).encode(), ".labels.json"
-        )
+        labels = labels_to_json(photo, self.camera, lines.graph, lines.annotations)
+        return _attached(Download(f"{self._stem}.labels.json", labels.encode()))
 
-    def _attached(self, data: bytes, ending: str) -> Response:
+    @property
+    def _stem(self) -> str:
+        """The photo's name in letters that every system takes."""
         stem = Path(self.session.photo.name).stem
-        name = "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in stem)
-        disposition = f'attachment; filename="{name or "scene"}{ending}"'
-        return Response(data, media_type="application/octet-stream", headers={"content-disposition": disposition})
+        return "".join(c if c.isascii() and (c.isalnum() or c in "-_.") else "_" for c in stem) or "scene"
 
-    def _exported(self, suffix: str, wanted: Node | None) -> bytes:
+    def _exported(self, suffix: str, wanted: Node | None) -> Download:
         scene = self.session.scene()
         if wanted is not None:
             scene = read_wanted(wanted).of(scene)
         values = values_of(scene, suffix, wanted)
-        with tempfile.TemporaryDirectory(prefix="linecad-") as folder:
-            path = Path(folder) / f"scene{suffix}"
-            write_outputs(scene, self.session.photo.pixels, [path], values)
-            return path.read_bytes()
+        return download_of(scene, self.session.photo.pixels, f"{self._stem}{suffix}", values)
 
 
 def page_files() -> dict[str, bytes]:
@@ -319,6 +313,11 @@ def _post(answer: Callable[[Node], Response]) -> Callable[[Request], Any]:
             return _error(422, str(error))
 
     return route
+
+
+def _attached(file: Download) -> Response:
+    headers = {"content-disposition": f'attachment; filename="{file.name}"'}
+    return Response(file.data, media_type="application/octet-stream", headers=headers)
 
 
 def _base(body: Node) -> int:

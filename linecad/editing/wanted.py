@@ -10,7 +10,7 @@ from exporters.model import build_model
 from exporters.options import Value
 from linecad.corrections.nodes import point
 from linecad.editing.state import Now
-from linecad.errors import CorrectionError
+from linecad.errors import ConfidenceError, CorrectionError, GroupError
 from linecad.io.strict_json import Node
 from linecad.model.choice import DETAILS, Detail
 from linecad.model.groups import GROUPS, Groups
@@ -33,12 +33,16 @@ def read_wanted(node: Node) -> Wanted:
 def document_of_shown(now: Now, wanted: Wanted) -> dict[str, object]:
     """The page's lines and the faces that stay, by ids, and what was left out, in words.
 
-    LinecadError where there is no model, or nothing stays.
+    Where nothing would stay, no ids and the reason. CorrectionError where there is no model.
     """
     if now.model is None:
         raise CorrectionError("there is no model yet; solve first")
     scene = now.model.scene
-    rest = wanted.of(scene)
+    try:
+        rest = wanted.of(scene)
+    except (ConfidenceError, GroupError) as error:
+        # The page has no arguments: it has a slider.
+        return {"version": now.version, "lines": [], "faces": [], "notes": [], "nothing": _without_dashes(str(error))}
     kept, rows = set(rest.lines.id.tolist()), scene.lines.row_by_look
     looks = zip(now.lines.ids, now.lines.graph.axis.tolist(), now.lines.graph.segments.ends, strict=True)
     places = ((number, rows.get((axis, ends.tobytes()))) for number, axis, ends in looks)
@@ -47,7 +51,12 @@ def document_of_shown(now: Now, wanted: Wanted) -> dict[str, object]:
         "lines": [number for number, row in places if row is not None and int(scene.lines.id[row]) in kept],
         "faces": [face.id for _, face in rest.faces],
         "notes": list(rest.notes[len(scene.notes) :]),
+        "nothing": None,
     }
+
+
+def _without_dashes(text: str) -> str:
+    return text.replace(" --", " ")
 
 
 def values_of(scene: Scene, suffix: str, node: Node | None) -> Mapping[str, Value]:

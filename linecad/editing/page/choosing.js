@@ -24,7 +24,11 @@ export class Choosing {
     this.value = element("output", {});
     this.colours = element(
       "button",
-      { "aria-pressed": "false", title: "Colour lines and faces by how sure their depth is (Shift+S)", onclick: () => this.toggleColours() },
+      {
+        "aria-pressed": "false",
+        title: "Colour lines and faces by how sure their depth is (Shift+S)",
+        onclick: () => this.toggleColours(),
+      },
       "How sure",
     );
     this.groups = this.#select("Groups of lines", [
@@ -37,16 +41,24 @@ export class Choosing {
       ["openings", "Without detail"],
       ["none", "Outlines only"],
     ], () => this.#set({ detail: this.detail.value })); // prettier-ignore
-    this.legend = element("p", { class: "sure-legend", hidden: true }, "guess", element("i", { class: "ramp sure", "aria-hidden": "true" }), "sure", element("span", { class: "quiet" }, "that the depth is right"));
+    this.legend = element(
+      "p",
+      { class: "sure-legend", hidden: true },
+      "guess",
+      element("i", { class: "ramp sure", "aria-hidden": "true" }),
+      "sure",
+      element("span", { class: "quiet" }, "that the depth is right"),
+    );
+    const least = element("label", { title: "Hide what is less sure ([ and ])" }, "at least", this.slider, this.value);
     const panel = element(
       "div",
       { class: "float choosing", role: "group", "aria-label": "What is shown and exported" },
       this.legend,
-      element("div", {}, this.colours, element("label", { title: "Hide what is less sure ([ and ])" }, "at least", this.slider, this.value)),
+      element("div", {}, this.colours, least),
       element("div", {}, this.groups, this.detail),
     );
     document.querySelector("#model-stage").append(panel);
-    this.note = element("li", { role: "none", class: "exported", hidden: true });
+    this.note = element("li", { role: "none", class: "exported" });
     document.querySelector("#export-list").prepend(this.note);
     store.listen((changed) => this.#noticed(changed));
     this.#show();
@@ -58,7 +70,7 @@ export class Choosing {
   }
 
   #noticed(changed) {
-    if (changed.has("choice") || changed.has("colouring") || changed.has("state")) this.#show();
+    if (["choice", "colouring", "state", "selection"].some((name) => changed.has(name))) this.#show();
     const { lines, planes } = this.store.state;
     const isNew = lines !== this.#asked?.lines || planes !== this.#asked.planes;
     if (changed.has("choice") || (changed.has("state") && isNew && this.store.choice !== EVERYTHING)) this.#ask();
@@ -73,11 +85,18 @@ export class Choosing {
     this.colours.setAttribute("aria-pressed", String(colouring === "confidence"));
     this.colours.disabled = !tells;
     this.legend.hidden = colouring !== "confidence";
-    this.note.hidden = choice === EVERYTHING;
     const all = element("button", { role: "menuitem", onclick: () => this.everything() }, "Show all");
-    this.note.replaceChildren("Files hold what is shown, not all of the model.", all);
+    const told = element("p", {}, "Files hold what is shown, not all of the model.", all);
+    const part = choice === EVERYTHING ? [] : [told];
+    this.note.replaceChildren(...part, element("p", {}, this.#facadeText()));
     this.groups.value = choice.main ? "own" : choice.groups;
     this.detail.value = choice.detail;
+  }
+
+  #facadeText() {
+    const plane = this.store.selectedPlane;
+    if (plane?.is_facade) return `Elevations are of the selected facade, plane ${plane.id}.`;
+    return "Elevations are of the largest facade; select another one for its own.";
   }
 
   toggleColours() {
@@ -93,6 +112,7 @@ export class Choosing {
 
   everything() {
     this.store.set({ choice: EVERYTHING });
+    document.querySelector("#export-list [data-format]").focus(); // the button that was clicked is gone
   }
 
   #set(fields) {
@@ -136,13 +156,11 @@ export class Choosing {
       try {
         const answer = choice === EVERYTHING ? null : await this.actions.server.post("shown", choice);
         this.store.set({ shown: answer && { lines: new Set(answer.lines), faces: new Set(answer.faces) } });
+        const choices = [["Show all", () => this.everything()]];
+        this.actions.messages.keep("choice", answer?.nothing ?? null, "warning", choices);
       } catch (error) {
-        this.#asking = false;
         if (!(error instanceof RequestError)) throw error;
-        this.store.set({ shown: { lines: new Set(), faces: new Set() } });
-        this.actions.messages.tell(error.message.replaceAll("--", ""), "warning");
-        if (this.#wanted) return void this.#ask();
-        return;
+        this.actions.messages.tell(error.message, "error");
       }
     }
     this.#asking = false;
@@ -158,7 +176,12 @@ export class Choosing {
   /** Rows of the table of keys. */
   keys() {
     return [
-      { keys: ["shift+s"], shown: "Shift+S", text: "Colours tell how sure depths are", run: () => this.toggleColours() },
+      {
+        keys: ["shift+s"],
+        shown: "Shift+S",
+        text: "Colours tell how sure depths are",
+        run: () => this.toggleColours(),
+      },
       { keys: ["]"], text: "Show only what is surer, by 5 %", run: () => this.step(1), repeats: true },
       { keys: ["["], text: "Show what is less sure too", run: () => this.step(-1), repeats: true },
     ];

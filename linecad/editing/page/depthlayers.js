@@ -73,8 +73,9 @@ export class DepthLayers {
       const [low, high] = ENDS[name];
       return element("p", {}, low, element("i", { class: `ramp ${name}`, "aria-hidden": "true" }), high);
     });
-    const map = shown.some((name) => name in ENDS) ? [element("p", { class: "quiet" }, this.store.state.depth_map.text)] : [];
-    this.legend.replaceChildren(...rows, ...map);
+    const ofMap = shown.some((name) => name in ENDS);
+    this.legend.replaceChildren(...rows);
+    if (ofMap) this.legend.append(element("p", { class: "quiet" }, this.store.state.depth_map.text));
   }
 
   /** The kinds of what parts of the photo were taken for, with their colours. */

@@ -18,7 +18,8 @@ const NEAREST_DEPTH = 1e-3; // of a scene's units; nothing nearer to the camera 
 
 /** All layers that are switched on; with a `box` (left, top, width, height) only the marks that touch it. */
 export function draw(context, store, viewport, marks, box = [0, 0, viewport.width, viewport.height]) {
-  if (store.layers.faces) drawFaces(context, store, viewport);
+  // Over the parts of the photo they would change the colours that the legend tells.
+  if (store.layers.faces && !store.layers.cells) drawFaces(context, store, viewport);
   drawLines(context, store, viewport);
   drawCrossings(context, store, viewport, marks, box);
 }

@@ -56,7 +56,11 @@ export class Inspector {
     const thing = store.meant;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());
-    const tell = { line: () => this.#line(found), crossing: () => this.#crossing(found), face: () => this.#face(found) };
+    const tell = {
+      line: () => this.#line(found),
+      crossing: () => this.#crossing(found),
+      face: () => this.#face(found),
+    };
     this.panel.replaceChildren(...tell[thing.kind]());
   }
 

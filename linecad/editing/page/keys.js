@@ -62,7 +62,7 @@ export function keyTable({ store, actions, tools, pointer, panels, views, choosi
         { keys: ["s"], text: "Solve again; while it runs, stop and keep the best", run: () => actions.solveOrStop() },
         {
           keys: ["escape"],
-          text: "Leave the unfinished line, the labelling, the cross-hair, the selection, the tool, in this order",
+          text: "Leave the unfinished line or measure, the labelling, the cross-hair, the selection, the tool, in this order",
           run: () => actions.escape(),
         },
         { keys: ["e"], text: "Export", run: () => panels.openExport() },

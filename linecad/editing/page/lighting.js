@@ -57,7 +57,8 @@ function crossingLit(store, crossing, colour) {
     points.length === 2
       ? [{ start: points[0], end: points[1], colour: [...colour, 0.8], width: 1.5 * devicePixelRatio }]
       : [];
-  return [...lines.flatMap((line) => lineLit(store, line, colour)), ...apart, ...points.map((at) => dot(at, colour, 11))];
+  const dots = points.map((at) => dot(at, colour, 11));
+  return [...lines.flatMap((line) => lineLit(store, line, colour)), ...apart, ...dots];
 }
 
 /** Where a crossing is on each of its lines: one point when it is real, two when it is not. */

@@ -1,4 +1,4 @@
-// Measuring: two points of lines and faces, in the photo or the model, how far apart they are, and that as a known length.
+// Measuring: two points of lines and faces, in the photo or the model, how far apart they are, also as known length.
 
 import { CASING, INK } from "./colours.js";
 import { element, keyButton } from "./dom.js";
@@ -82,7 +82,8 @@ export class Measuring {
     const [start, end] = [...points, ...(near ? [near] : [])].map(({ point }) => point);
     if (points.length === 0 || !end) return null;
     const parts = subtract(end, start);
-    const { text, unit } = lengthsText([Math.hypot(...parts), ...parts.map(Math.abs)], this.store.state.metres_per_unit);
+    const lengths = [Math.hypot(...parts), ...parts.map(Math.abs)];
+    const { text, unit } = lengthsText(lengths, this.store.state.metres_per_unit);
     return { whole: `${text[0]} ${unit}`, parts: `x ${text[1]} · y ${text[2]} · z ${text[3]} ${unit}`, unit };
   }
 

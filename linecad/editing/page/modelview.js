@@ -79,10 +79,9 @@ export class ModelView {
   #noticed(changed) {
     const { lines, planes, contradiction } = this.store.state;
     const isNew = changed.has("state") && (lines !== this.#built?.lines || planes !== this.#built.planes);
-    const rebuilding = ["layers", "texture", "colouring", "shown", "unseen", "theme"];
-    if (isNew || rebuilding.some((name) => changed.has(name))) this.renew();
-    else if (["hover", "selection", "measure"].some((name) => changed.has(name)) || contradiction !== this.#built?.contradiction)
-      this.#lightUp();
+    const has = (...names) => names.some((name) => changed.has(name));
+    if (isNew || has("layers", "texture", "colouring", "shown", "unseen", "theme")) this.renew();
+    else if (has("hover", "selection", "measure") || contradiction !== this.#built?.contradiction) this.#lightUp();
     else return;
     // One picture of the screen later: a click on the photo is not to wait for the model to be drawn.
     requestAnimationFrame(() => this.redraw());
@@ -178,7 +177,8 @@ export class ModelView {
   /** Walls as a plan shows them: faces that stand upright are seen on edge there, as nothing. */
   #walls() {
     const look = { colour: [...themeColour("--model-ink"), 1], width: WIDTH.wall * devicePixelRatio };
-    const faces = [...this.store.faces.values()].filter(({ face, plane }) => plane.normal[2] === 0 && this.store.showsFace(face));
+    const upright = [...this.store.faces.values()].filter(({ plane }) => plane.normal[2] === 0);
+    const faces = upright.filter(({ face }) => this.store.showsFace(face));
     return faces.flatMap(({ face: { outline } }) =>
       outline.map((start, index) => ({ start, end: outline[(index + 1) % outline.length], ...look })),
     );

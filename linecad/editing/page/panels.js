@@ -161,7 +161,8 @@ export class Panels {
     try {
       this.actions.messages.tell(`Writing ${format.toUpperCase()}…`);
       await this.actions.editing.settled();
-      this.actions.messages.tell(`Saved ${await this.actions.server.download(format, this.actions.choosing.wanted(format))}.`);
+      const wanted = this.actions.choosing.wanted(format);
+      this.actions.messages.tell(`Saved ${await this.actions.server.download(format, wanted)}.`);
     } catch (error) {
       this.actions.messages.tell(error.message, "error");
     }

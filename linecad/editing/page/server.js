@@ -79,7 +79,11 @@ export class Server {
     return createImageBitmap(await (await this.#ask(path, options)).blob());
   }
 
-  /** Save what is wanted of the model in a format: name and content are the server's, the browser asks where to or takes its folder. */
+  /**
+   * Save what is wanted of the model (linecad/editing/wanted.py) in a format.
+   *
+   * Name and content are the server's, the browser asks where to or takes its folder.
+   */
   async download(format, wanted = {}) {
     const query = new URLSearchParams({ wanted: JSON.stringify(wanted) });
     const answer = await this.#ask(`export/${encodeURIComponent(format)}?${query}`);

@@ -20,9 +20,11 @@ export function sightOfPhoto(store, viewport) {
   };
 }
 
+/** The model as a sight. In the front of a plane, where depths are not seen, that plane goes before all others. */
 export function sightOfModel(model) {
   const matrix = model.orbit.matrix;
   return {
+    plane: model.orbit.flat?.name === "front" ? model.store.selectedPlane : undefined,
     toScreen: (point) => model.toScreen(point, matrix),
     along: (at) => model.orbit.sight(at),
     showsHiddenLines: false,
@@ -95,9 +97,11 @@ function nearestSide(sides, sight, at, along, store) {
 
 /** Of points that are seen within a reach, CSS px, the nearest one; of several at one place that before the others. */
 function best(candidates, reach, sight, at, store) {
-  const near = candidates
+  let near = candidates
     .map((candidate) => ({ ...candidate, away: apart(sight.toScreen(candidate.point), at) }))
     .filter(({ away, point, on }) => away < reach && isSeen(store, sight, point, on));
+  const meant = near.filter(({ on }) => isOf(sight.plane, on));
+  if (meant.length > 0) near = meant;
   if (near.length === 0) return null;
   const least = Math.min(...near.map(({ away }) => away));
   const share = ({ point }) => shareOf(point, sight.along(at));
@@ -106,6 +110,11 @@ function best(candidates, reach, sight, at, store) {
   // A line goes before the corner of a face there: it is what a model made anew has again.
   const { point, on, what } = here.find((candidate) => share(candidate) <= first * (1 + HIDDEN));
   return { point, on, what };
+}
+
+/** Whether a line or a face, `{line: id}` or `{face: id}`, is of a plane. */
+function isOf(plane, { line, face }) {
+  return plane !== undefined && (plane.lines.includes(line) || plane.faces.some(({ id }) => id === face));
 }
 
 function apart(place, at) {

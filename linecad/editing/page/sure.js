@@ -12,7 +12,8 @@ export function colourOfProbability(probability) {
   if (probability === null || probability === undefined) return UNTOLD;
   const place = (Math.round(probability * STEPS) / STEPS) * (STOPS.length - 1);
   const below = Math.min(Math.floor(place), STOPS.length - 2);
-  const [one, other] = [STOPS[below], STOPS[below + 1]].map((stop) => [1, 3, 5].map((at) => parseInt(stop.slice(at, at + 2), 16)));
+  const channelsOf = (stop) => [1, 3, 5].map((at) => parseInt(stop.slice(at, at + 2), 16));
+  const [one, other] = [channelsOf(STOPS[below]), channelsOf(STOPS[below + 1])];
   const mixed = one.map((value, k) => Math.round(value + (place - below) * (other[k] - value)));
   return `#${mixed.map((value) => value.toString(16).padStart(2, "0")).join("")}`;
 }

@@ -16,7 +16,12 @@ export const TOOLS = [
     key: "c",
     hint: "Click a crossing to turn it from real to fake or back; click a line to select it",
   },
-  { name: "select", label: "Select", key: "v", hint: "Click a line or a crossing, or drag a rectangle around many" },
+  {
+    name: "select",
+    label: "Select",
+    key: "v",
+    hint: "Click a line, a crossing or a face, or drag a rectangle around many",
+  },
   { name: "draw", label: "Draw", key: "d", hint: "Click both ends of a line, or drag; x, y or z fixes its axis" },
   { name: "body", label: "Body", key: "b", hint: "Click a line or a face, in either view, to select the body that it is of" },
   { name: "split", label: "Split", key: "k", hint: "Click where a line is to be cut in two" },

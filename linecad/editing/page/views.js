@@ -32,15 +32,16 @@ function frontOfLine([start, end]) {
 export class Views {
   constructor(store, model, messages) {
     Object.assign(this, { store, model, messages });
+    const common = { "aria-pressed": "false", disabled: !model.works };
     const button = (name, label, title, action) =>
-      element("button", { "data-view": name, "aria-pressed": "false", title, onclick: action, disabled: !model.works }, label);
+      element("button", { ...common, "data-view": name, title, onclick: action }, label);
     this.buttons = [
       button("plan", "Plan", "From above, without perspective (Shift+P)", () => this.plan()),
       button("front", "Front", "Straight at the plane of the selected face or line (Shift+F)", () => this.front()),
       button("free", "Free", "Turn freely (Shift+O)", () => this.free()),
     ];
-    const group = element("div", { class: "float views", role: "group", "aria-label": "Views of the model" }, ...this.buttons);
-    model.stage.append(group);
+    const named = { class: "float views", role: "group", "aria-label": "Views of the model" };
+    model.stage.append(element("div", named, ...this.buttons));
     const before = model.onView;
     model.onView = () => (before(), this.#show());
     this.#show();
@@ -82,7 +83,7 @@ export class Views {
   /** Rows of the table of keys. */
   keys() {
     return [
-      { keys: ["shift+p"], shown: "Shift+P", text: "The model from above, without perspective", run: () => this.plan() },
+      { keys: ["shift+p"], shown: "Shift+P", text: "The model from above", run: () => this.plan() },
       { keys: ["shift+f"], shown: "Shift+F", text: "The front of the selected face or line", run: () => this.front() },
       { keys: ["shift+o"], shown: "Shift+O", text: "Turn the model freely", run: () => this.free() },
     ];
@@ -106,6 +107,8 @@ function extent(plane) {
 
 function areaOf(ring) {
   const sum = [0, 0, 0];
-  ring.forEach((point, index) => cross(point, ring[(index + 1) % ring.length]).forEach((part, k) => (sum[k] += part / 2)));
+  ring.forEach((point, index) => {
+    cross(point, ring[(index + 1) % ring.length]).forEach((part, k) => (sum[k] += part / 2));
+  });
   return Math.hypot(...sum);
 }

@@ -1,7 +1,9 @@
 """What the page can ask for: state, tiles, edits, undo, solving, labels, exports."""
 
+import io
 import json
 import re
+import zipfile
 from dataclasses import replace
 
 import cv2
@@ -562,12 +564,26 @@ class TestExport:
         cv2.imwrite(str(tmp_path / "made.png"), made_photo.pixels[..., ::-1])
         photo = ["--photo", str(tmp_path / "made.png")]
         cheap = [suffix for suffix in FORMATS if suffix not in (".png", ".step", ".usdz", ".fspy")]
-        outputs = [argument for suffix in cheap for argument in ("-o", str(tmp_path / f"scene{suffix}"))]
-        assert main(["export", str(tmp_path / "made.json"), *photo, *outputs, "--quiet"]) == 0
-        for suffix in cheap:
+        outputs = {suffix: tmp_path / suffix[1:] / f"made{suffix}" for suffix in cheap}
+        for path in outputs.values():
+            path.parent.mkdir()
+        named = [argument for path in outputs.values() for argument in ("-o", str(path))]
+        assert main(["export", str(tmp_path / "made.json"), *photo, *named, "--quiet"]) == 0
+        with_more = set()
+        for suffix, path in outputs.items():
             answer = page.get(f"export/{suffix[1:]}")
-            assert answer.headers["content-disposition"] == f'attachment; filename="made{suffix}"'
-            assert answer.content == (tmp_path / f"scene{suffix}").read_bytes(), suffix
+            written = {each.relative_to(path.parent).as_posix(): each for each in path.parent.rglob("*.*")}
+            files = {name: each.read_bytes() for name, each in written.items() if each.is_file()}
+            ending = suffix + (".zip" if len(files) > 1 else "")
+            assert answer.headers["content-disposition"] == f'attachment; filename="made{ending}"'
+            if len(files) == 1:
+                assert answer.content == files[f"made{suffix}"], suffix
+                continue
+            with_more.add(suffix)
+            with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
+                assert {name: archive.read(name) for name in archive.namelist()} == files, suffix
+            assert page.get(f"export/{suffix[1:]}").content == answer.content
+        assert {".obj", ".usda", ".elevation.dxf"} <= with_more
 
     @pytest.mark.thorough
     def test_convert_with_the_corrections_file_makes_the_same_scene(self, page, tmp_path, made_photo):
@@ -577,6 +593,8 @@ class TestExport:
         page.edit(op="draw", ends=[[300, 300], [305, 520]], axis=None)
         line = next(one for one in page.solve()["lines"] if one["component"] == 0)
         page.edit(op="length", line=line["id"], metres=2.0)
+        points = [{"pixel": end, "line": line["id"]} for end in line["segment"]]
+        page.edit(op="distance", points=points, metres=4.0)
         photo, camera, said, scene = (
             tmp_path / name for name in ("made.png", "camera.json", "said.json", "scene.json")
         )

@@ -1,6 +1,8 @@
 """What of the model is shown and exported: the page, the command and the library choose the same."""
 
+import io
 import json
+import zipfile
 
 import cv2
 import numpy as np
@@ -66,8 +68,10 @@ def test_the_elevation_of_a_plane_is_that_of_linecad_elevation(solved, files, su
     drawn = set()
     for facade in facades[:2]:
         of_page = exported(solved, f"elevation.{suffix}", plane=facade.plane, confidence=0.01)
+        if suffix == "dxf":  # its picture lies beside it
+            of_page = zipfile.ZipFile(io.BytesIO(of_page)).read("made.elevation.dxf")
         more = ["--plane", str(facade.plane), "--confidence", "0.01"]
-        assert of_page == command(files, "elevation", f"scene.elevation.{suffix}", *more)
+        assert of_page == command(files, "elevation", f"made.elevation.{suffix}", *more)
         drawn.add(of_page)
     assert len(drawn) == 2
 
@@ -87,12 +91,13 @@ def test_planes_that_are_facades_say_so(solved):
 @given(st.floats(0, 1), st.sampled_from(GROUPS), st.sampled_from(DETAILS))
 def test_what_is_shown_is_what_the_files_hold(solved, confidence, groups, detail):
     scene, wanted = solved.session.scene(), {"confidence": confidence, "groups": groups, "detail": detail}
-    answer = solved.post("shown", **wanted)
-    if answer.status_code == 422:
-        assert confidence > np.asarray(scene.lines.probability)[scene.lines.component == 0].max() or groups == "all"
+    shown = solved.post("shown", **wanted).json()
+    own = np.asarray(scene.lines.probability)[(scene.lines.component == 0) | (groups == "all")]
+    assert (shown["nothing"] is not None) == bool(confidence > own.max())
+    if shown["nothing"] is not None:
+        assert (shown["lines"], shown["faces"]) == ([], [])
         return
     rest = Wanted(None, None, groups, confidence, detail).of(scene)
-    shown = answer.json()
     assert shown["faces"] == [face.id for _, face in rest.faces]
     kept = {ends.tobytes() for row in range(len(rest.lines)) for ends in rest.lines.segments_of(row)}
     of_page = zip(solved.session.lines.ids, solved.session.lines.graph.segments.ends, strict=True)
@@ -101,9 +106,14 @@ def test_what_is_shown_is_what_the_files_hold(solved, confidence, groups, detail
 
 
 def test_a_threshold_that_leaves_nothing_is_told(solved):
-    answer = solved.post("shown", confidence=1.0)
+    assert "choose a smaller confidence" in solved.post("shown", confidence=1.0).json()["nothing"]
+    answer = solved.get("export/dxf", params={"wanted": json.dumps({"confidence": 1.0})})
     assert answer.status_code == 422
     assert "choose a smaller --confidence" in answer.json()["error"]
+
+
+def test_a_place_where_nothing_stands_is_told(solved):
+    assert "no line and no face stands at" in solved.post("shown", main=[1e6, 1e6], groups="main").json()["nothing"]
 
 
 def test_without_a_model_nothing_is_shown(page):

@@ -287,8 +287,11 @@ def screen(shared_screen) -> Iterator[Screen]:
           const { store, editing, photo, model, draft } = linecad;
           await editing.refresh();
           draft.clear();
-          const layers = Object.fromEntries(Object.keys(store.layers).map((name) => [name, true]));
+          const { EVERYTHING } = await import("/page/store.js");
+          const layers = Object.fromEntries(Object.keys(store.layers).map((name) => [name, name !== "cells"]));
           store.set({ layers, tool: "correct", labelling: false, selection: null, hover: null, texture: true });
+          store.set({ choice: EVERYTHING, shown: null, colouring: "axis" });
+          model.change((orbit) => orbit.throughCamera());
           photo.change((viewport) => viewport.fit());
           model.fit();
           document.activeElement.blur();

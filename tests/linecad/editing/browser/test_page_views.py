@@ -137,7 +137,7 @@ def test_a_layer_goes_and_comes_back(screen):
 
 
 def test_without_a_depth_map_there_is_nothing_of_one(screen):
-    assert screen.page.locator("#layers [data-layer]").count() == 7
+    assert screen.page.locator("#layers [data-layer]").count() == 8
     assert screen.page.locator("#help-columns dd", has_text="depth map").count() == 0
     for key in ("8", "9"):
         screen.press(key)
