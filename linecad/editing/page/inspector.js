@@ -112,7 +112,7 @@ export class Inspector {
       line.probability === null ? null : `depth ${Math.round(100 * line.probability)} % sure`,
       line.ends && line.guess ? "its depth is a guess" : null,
       line.by_depth_map ? "placed by the depth map" : null,
-      line.component > 0 ? `component ${line.component}` : null,
+      line.component > 0 ? `in ${this.#group(line.component)}` : null,
       ORIGINS[line.origin],
       line.metres === null ? null : `known to be ${line.metres} m`,
       this.#length(line),
@@ -139,6 +139,11 @@ export class Inspector {
         keyButton("Delete", "Del", () => this.actions.remove(), locked),
       ),
     ];
+  }
+
+  #group(component) {
+    const found = this.store.state.groups.find((group) => group.component === component);
+    return found?.name ?? `group ${component}`;
   }
 
   #length(line) {
