@@ -97,6 +97,7 @@ export class GroupList {
       this.#show();
     };
     input.addEventListener("keydown", (event) => {
+      event.stopPropagation(); // Ctrl+Z takes back what is written here, not a correction
       if (event.key === "Enter") end(input.value);
       if (event.key === "Escape") end(null);
     });
