@@ -66,7 +66,7 @@ export class ModelView {
   #noticed(changed) {
     const { lines, planes, contradiction } = this.store.state;
     const isNew = changed.has("state") && (lines !== this.#built?.lines || planes !== this.#built.planes);
-    if (isNew || changed.has("layers") || ["texture", "unseen", "theme"].some((name) => changed.has(name))) this.#rebuild();
+    if (isNew || ["layers", "texture", "unseen", "theme"].some((name) => changed.has(name))) this.#rebuild();
     else if (changed.has("hover") || changed.has("selection") || contradiction !== this.#built?.contradiction)
       this.#lightUp();
     else return;
@@ -191,7 +191,8 @@ export class ModelView {
     this.#built = { ...this.#built, contradiction: this.store.state.contradiction };
     const wrong = this.store.state.contradiction?.lines ?? [];
     const lit = wrong.map((id) => [{ kind: "line", id }, channels(WRONG)]);
-    for (const thing of [this.store.selection, this.store.hover]) if (thing) lit.push([thing, themeColour("--model-ink")]);
+    const ink = themeColour("--model-ink");
+    for (const thing of [this.store.selection, this.store.hover]) if (thing) lit.push([thing, ink]);
     this.#lit = this.graphics.lines(
       lit.flatMap(([thing, colour]) => this.#litLines(thing, colour)),
       this.#lit,

@@ -90,7 +90,8 @@ export class Solving {
     this.button.disabled = !store.owner;
     const { fresh } = solve;
     this.button.classList.toggle("waiting", !this.running && !fresh);
-    this.text.textContent = this.running ? progressText(solve, performance.now() - this.#since) : resultText(solve, fresh);
+    const elapsed = performance.now() - this.#since;
+    this.text.textContent = this.running ? progressText(solve, elapsed) : resultText(solve, fresh);
     this.bar.hidden = !this.running;
     // A gap that is closed is not the end: planes and faces are still to be built.
     const isSearching = !solve.stage && typeof solve.gap === "number" && solve.gap > 0;
