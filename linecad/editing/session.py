@@ -310,11 +310,9 @@ class Session:
         return Lines(corrected, graph, annotations_of(graph, corrected), tuple(ids.tolist()), crossings)
 
     def _order(self) -> tuple[int, ...]:
-        model = self._solved
-        decided = {} if model is None else model.decided
-        real = frozenset(crossing for crossing, found in decided.items() if found.real)
-        scene = None if model is None else model.scene
-        return self._orders.of(self._lines.graph, self._lines.crossings, scene, real.__contains__)
+        model, lines = self._solved, self._lines
+        scene, decided = (None, {}) if model is None else (model.scene, model.decided)
+        return self._orders.of(lines.graph, lines.crossings, scene, decided)
 
     def _content(self) -> Content:
         """The edits that bear on the solve."""

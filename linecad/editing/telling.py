@@ -6,7 +6,8 @@ length of that one in the photo, as far as its depth is not sure. Once a part is
 would move it is worth half of the one before. Crossings inside a part come last.
 """
 
-from collections.abc import Callable
+from collections.abc import Mapping
+from typing import Protocol
 
 import numpy as np
 
@@ -47,27 +48,43 @@ def by_worth(graph: LineGraph, real: Bool, probability: Float) -> Int:
     return order
 
 
-class Order:
-    """The crossings in the order of what they tell, kept while neither the lines nor the model change.
+class IsReal(Protocol):
+    """The decision about a crossing."""
 
-    Labels do not change it: who goes from one to the next meets each once.
+    @property
+    def real(self) -> bool:
+        """Whether its lines meet."""
+
+
+class Order:
+    """The crossings in the order of what they tell, found once for each model: that takes longer than an edit may.
+
+    Labels do not change it: who goes from one to the next meets each once. Crossings of lines that the model does not
+    have come first, since a person has just made them.
     """
 
     def __init__(self) -> None:
-        self._of: tuple[object, ...] = ()
-        self._order: tuple[int, ...] = ()
+        self._scene: Scene | None = None
+        self._of_model: tuple[int, ...] = ()
+        self._graph: LineGraph | None = None
+        self._now: tuple[int, ...] = ()
 
     def of(
-        self, graph: LineGraph, crossings: tuple[int, ...], scene: Scene | None, real: Callable[[int], bool]
+        self, graph: LineGraph, crossings: tuple[int, ...], scene: Scene | None, decided: Mapping[int, IsReal]
     ) -> tuple[int, ...]:
-        """The ids of the `crossings` of a graph in the `scene` of its model, `real` by the model's decisions."""
-        of = (graph, scene)
-        if len(self._of) != len(of) or any(one is not other for one, other in zip(self._of, of, strict=True)):
+        """The ids of the `crossings` of a graph in the `scene` of its model, with its decisions by id."""
+        is_new = self._graph is None or scene is not self._scene
+        if is_new or (scene is None and graph is not self._graph):
             probability = np.zeros(len(graph.segments))
             if scene is not None:
                 row = rows_in_scene(graph, scene)
                 probability[row >= 0] = sureness(scene)[row[row >= 0]]
-            decided = np.array([real(crossing) for crossing in crossings], bool)
-            order = by_worth(graph, decided, probability)
-            self._of, self._order = of, tuple(crossings[edge] for edge in order.tolist())
-        return self._order
+            real = np.array([crossing in decided and decided[crossing].real for crossing in crossings], bool)
+            order = by_worth(graph, real, probability)
+            self._scene, self._of_model = scene, tuple(crossings[edge] for edge in order.tolist())
+            self._graph, self._now = graph, self._of_model
+        elif graph is not self._graph:
+            here, known = frozenset(crossings), frozenset(self._of_model)
+            new = (crossing for crossing in crossings if crossing not in known)
+            self._graph, self._now = graph, (*new, *(crossing for crossing in self._of_model if crossing in here))
+        return self._now

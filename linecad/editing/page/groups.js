@@ -73,7 +73,8 @@ export class GroupList {
       this.store.set({ selection: { kind: "line", id: group.line } });
       this.actions.showSelection();
     };
-    return element("button", { class: "name", title: "Select its longest line, or the one it is named by", onclick: select }, group.name);
+    const title = "Select its longest line, or the one it is named by";
+    return element("button", { class: "name", title, onclick: select }, group.name);
   }
 
   #rename(group) {
@@ -82,11 +83,13 @@ export class GroupList {
       this.#show();
       this.list.querySelector("input").select();
     };
-    return element("button", { disabled: !this.store.owner, "aria-label": `Rename ${group.name}`, onclick: start }, "Rename");
+    const attributes = { disabled: !this.store.owner, "aria-label": `Rename ${group.name}`, onclick: start };
+    return element("button", attributes, "Rename");
   }
 
   #input(group) {
-    const input = element("input", { type: "text", maxlength: "60", value: group.name, "aria-label": `Name of ${group.name}` });
+    const label = `Name of ${group.name}`;
+    const input = element("input", { type: "text", maxlength: "60", value: group.name, "aria-label": label });
     const end = (text) => {
       if (this.#renamed === null) return;
       this.#renamed = null;
@@ -97,6 +100,7 @@ export class GroupList {
       this.#show();
     };
     input.addEventListener("keydown", (event) => {
+      event.stopPropagation(); // Ctrl+Z takes back what is written here, not a correction
       if (event.key === "Enter") end(input.value);
       if (event.key === "Escape") end(null);
     });

@@ -126,7 +126,7 @@ export class Inspector {
       line.probability === null ? null : `depth ${Math.round(100 * line.probability)} % sure`,
       line.ends && line.guess ? "its depth is a guess" : null,
       line.by_depth_map ? "placed by the depth map" : null,
-      line.component > 0 ? `component ${line.component}` : null,
+      line.component > 0 ? `in ${this.#group(line.component)}` : null,
       ORIGINS[line.origin],
       line.metres === null ? null : `known to be ${line.metres} m`,
       this.#length(line),
@@ -159,7 +159,7 @@ export class Inspector {
     const { metres_per_unit: metres } = this.store.state;
     const { text, unit } = lengthsText([plane.offset], metres);
     const sure = plane.probability === null ? null : `depth ${Math.round(100 * plane.probability)} % sure`;
-    const group = plane.component > 0 ? `component ${plane.component}` : null;
+    const group = plane.component > 0 ? this.#group(plane.component) : null;
     const where = `plane ${plane.id} at ${plane.axis} = ${text[0]} ${unit}`;
     const facts = [where, counted(plane.lines.length, "line"), sure, group, face.guess ? "a guess" : null];
     const name = face.kind === "other" ? "Face" : `${face.kind[0].toUpperCase()}${face.kind.slice(1)}`;
@@ -167,6 +167,11 @@ export class Inspector {
       element("p", {}, element("strong", {}, name), ` · ${facts.filter(Boolean).join(" · ")}`),
       element("div", { class: "buttons" }, keyButton("Front", "Shift+F", () => this.actions.views.front())),
     ];
+  }
+
+  #group(component) {
+    const found = this.store.state.groups.find((group) => group.component === component);
+    return found?.name ?? `group ${component}`;
   }
 
   #length(line) {

@@ -6,7 +6,8 @@ import { readLength } from "./lengths.js";
 export function whatLengthSets(line) {
   if (line.sets_scale) return "It sets the scale of the whole model; where several lengths are known, their mean does.";
   const why = line.ends ? "The depth of this line is a guess (it is dashed)" : "This line is not in the model";
-  return `${why}, so its length sets no scale now. It is kept and counts once the depth is sure. To set the scale, choose a line that is drawn through.`;
+  const instead = "To set the scale, choose a line that is drawn through.";
+  return `${why}, so its length sets no scale now. It is kept and counts once the depth is sure. ${instead}`;
 }
 
 /** Adds `openLength` to the actions, which takes a line, or `{points}`: two points as an edit names them. */

@@ -35,8 +35,10 @@ const messages = new Messages();
 
 async function start() {
   const token = takeToken();
-  if (!token)
-    return messages.keep("token", "Open the whole address that linecad edit printed: its end, from # on, is missing here.", "error");
+  if (!token) {
+    const text = "Open the whole address that linecad edit printed: its end, from # on, is missing here.";
+    return messages.keep("token", text, "error");
+  }
   const server = new Server(token);
   const store = new Store();
   const editing = new Editing(server, store, (text, kind) => messages.tell(text, kind));

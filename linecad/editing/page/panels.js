@@ -212,8 +212,9 @@ export class Panels {
       button.querySelector(".count").textContent = String(notes.length);
       const rows = (lines) => element("ul", {}, ...lines.map((line) => element("li", {}, line)));
       const isOpen = list.querySelector("details")?.open ?? false;
-      const told = details.length > 0 && element("details", { open: isOpen }, element("summary", {}, "What the program did"), rows(details));
-      list.replaceChildren(rows(notes), ...(told ? [told] : []));
+      const summary = element("summary", {}, "What the program did");
+      const more = element("details", { open: isOpen, hidden: details.length === 0 }, summary, rows(details));
+      list.replaceChildren(rows(notes), more);
     };
     this.store.listen((changed) => changed.has("state") && show());
     show();

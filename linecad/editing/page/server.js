@@ -4,9 +4,11 @@ const TOKEN_KEY = "linecad-token";
 
 // What a user is to do when linecad edit has ended, or another one runs at its address.
 const GONE =
-  "linecad edit has ended, or does not answer. What you corrected is saved: start it again with the same photo and go on in the page that it opens.";
+  "linecad edit has ended, or does not answer. What you corrected is saved: " +
+  "start it again with the same photo and go on in the page that it opens.";
 const OTHER =
-  "linecad edit was started again. What you corrected is saved: close this tab and go on in the page that it opened, or open the address that it printed.";
+  "linecad edit was started again. What you corrected is saved: " +
+  "close this tab and go on in the page that it opened, or open the address that it printed.";
 
 /** An answer of the server that is no success; `status` is the HTTP status, 0 where no answer came at all. */
 export class RequestError extends Error {

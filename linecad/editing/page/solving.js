@@ -94,8 +94,9 @@ export class Solving {
     const { fresh } = solve;
     this.button.classList.toggle("waiting", !this.running && !fresh);
     const isBehind = this.running && !this.actions.hasAsked;
-    const ran = () => (this.running ? progressText(solve, performance.now() - this.#since) : resultText(solve, fresh));
-    this.text.textContent = isBehind ? "Building the scene anew" : ran();
+    const elapsed = performance.now() - this.#since;
+    const ran = this.running ? progressText(solve, elapsed) : resultText(solve, fresh);
+    this.text.textContent = isBehind ? "Building the scene anew" : ran;
     this.bar.hidden = !this.running;
     // A gap that is closed is not the end: planes and faces are still to be built.
     const isSearching = !solve.stage && typeof solve.gap === "number" && solve.gap > 0;

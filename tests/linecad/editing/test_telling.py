@@ -66,8 +66,24 @@ def test_each_crossing_is_there_once(pairs):
     assert sorted(order.tolist()) == list(range(len(pairs)))
 
 
-def test_the_order_stays_while_lines_and_model_do(parted, monkeypatch):
-    order = Order()
-    first = order.of(parted, tuple(range(7)), None, lambda _: False)
+def test_the_order_is_found_once_for_a_model(parted, monkeypatch):
+    order, ids = Order(), tuple(range(100, 107))
+    scene = SimpleNamespace(lines=SimpleNamespace(probability=np.array([0.5])))
+    monkeypatch.setattr(telling, "rows_in_scene", lambda *_: np.zeros(10, int))
+    first = order.of(parted, ids, scene, {})
+    assert sorted(first) == list(ids)
     monkeypatch.setattr(telling, "by_worth", lambda *_: pytest.fail("found again"))
-    assert order.of(parted, tuple(range(7)), None, lambda _: True) is first
+    assert order.of(parted, ids, scene, {}) is first
+    # Two crossings went with a line, three came with another one: these come first.
+    others = (98, *ids[2:], 99, 200)
+    rest = [crossing for crossing in first if crossing in others]
+    assert order.of(graph_of(EDGES), others, scene, {}) == (98, 99, 200, *rest)
+    assert order.of(graph_of(EDGES), ids, scene, {}) == first  # undo
+
+
+@pytest.mark.usefixtures("parted")
+def test_before_a_model_the_order_depends_on_nothing_that_was_there_before():
+    order, ids = Order(), tuple(range(7))
+    order.of(graph_of(EDGES), ids, None, {})
+    fewer = graph_of(EDGES[:5])
+    assert order.of(fewer, ids[:5], None, {}) == Order().of(fewer, ids[:5], None, {})

@@ -85,6 +85,17 @@ def screen(screen):
     )
 
 
+MENU = """() => [...document.querySelectorAll("#export-list button")].filter((each) => {
+  const name = each.querySelector("b");
+  const menu = document.querySelector("#export-list").getBoundingClientRect();
+  const text = document.createRange();
+  text.selectNode(each.lastChild);
+  const [left, right] = [name.getBoundingClientRect(), text.getBoundingClientRect()];
+  const isInside = right.right <= menu.right + 1 && menu.right <= document.documentElement.clientWidth + 1;
+  return name.scrollWidth > name.clientWidth || left.right > right.left || !isInside;
+}).map((each) => each.textContent)"""
+
+
 def set_state(screen, change):
     """Show the state as it would be after `change`, a function of JavaScript that alters a copy."""
     screen.run(
@@ -319,6 +330,9 @@ class TestWindows:
         try:
             assert screen.run(CUT_OFF) == []
             assert screen.run(OVERLAPPING) == []
+            screen.press("e")
+            assert screen.run(MENU) == []
+            screen.press("Escape")
             assert screen.run("linecad.photo.viewport.width") > 0.35 * min(size[0], 800)
         finally:
             screen.page.set_viewport_size(before)
