@@ -158,7 +158,6 @@ def test_a_click_on_a_window_and_del_takes_it_away(screen):
     solve(screen)
     (pane,) = panes(screen.state)
     middle = project(screen.state, pane).mean(axis=0)
-    screen.press("Escape")  # what was drawn is left, so that a click means the model
     screen.click(middle)
     assert "Del takes it away" in screen.page.locator("#inspector").inner_text()
     screen.press("Delete")
