@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import shapely
 
 from linecad.camera.photo import Photo
 from linecad.camera.vanishing_points import fit_frame
@@ -18,11 +19,16 @@ from linecad.corrections.edits import (
     LabelCrossing,
     OnePlane,
     PlaceAt,
+    Region,
     SetFrame,
+    WallAnchor,
+    WallByEdges,
+    Window,
 )
 from linecad.decide.blocks import find_blocks
 from linecad.errors import ContradictionError, ReconstructionError
 from linecad.finding import FoundLines, connect, name_lines
+from linecad.geometry import project
 from linecad.model.known_lengths import measured
 from linecad.options import SHORT_REACH, Options
 from linecad.pipeline import prepare, reconstruct, reconstruct_lines, reconstruct_prepared
@@ -275,6 +281,58 @@ def test_only_crossings_called_real_or_fake_change_the_graph(house, graph):
     nothing = Corrections("made.jpg", 1600, 1200)
     nothing = Corrections("made.jpg", 1600, 1200)
     assert correct(house.made.segments, house.made.camera, house.made.frame, nothing).is_like(corrected)
+
+
+def largest_wall(scene):
+    """The plane of the wall that the photo shows most of, and its outline, px."""
+    faces = [(plane, face) for plane in scene.planes for face in plane.faces if face.kind == "wall"]
+    shapes = [
+        shapely.Polygon(project(face.outline, scene.camera.matrix, scene.rotation)).buffer(0) for _, face in faces
+    ]
+    best = int(np.argmax([shape.area for shape in shapes]))
+    return faces[best][0], shapes[best]
+
+
+class TestFaces:
+    def test_a_window_is_an_opening_and_a_hole_exactly_where_it_was_drawn(self, house):
+        plane, shape = largest_wall(house.scene())
+        middle = np.array(shape.representative_point().coords[0])
+        corners = plain([middle - 9, middle + 9])
+        scene = house.scene(Window(WallAnchor(plane.axis, None), corners, "window"))
+        (opening,) = scene.openings
+        wall = next(each for each in scene.planes if each.id == opening.plane)
+        (hole,) = [hole for face in wall.faces for hole in face.holes]
+        seen = project(hole, scene.camera.matrix, scene.rotation)
+        assert min(np.abs(seen - corners[0]).sum(axis=1)) < 1e-6
+        assert min(np.abs(seen - corners[1]).sum(axis=1)) < 1e-6
+        assert [face.kind for plane in scene.planes for face in plane.faces if face.opening is not None] == ["window"]
+
+    def test_no_face_is_where_the_sky_was_told(self, house):
+        _, shape = largest_wall(house.scene())
+        middle = np.array(shape.representative_point().coords[0])
+        corners = middle + 60 * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        scene = house.scene(Region(tuple(map(tuple, corners.tolist())), "sky"))
+        for _, face in scene.faces:
+            rings = [project(ring, scene.camera.matrix, scene.rotation) for ring in (face.outline, *face.holes)]
+            seen = shapely.Polygon(rings[0], rings[1:]).buffer(0)
+            assert seen.intersection(shapely.Polygon(corners)).area < 1e-3
+
+    def test_a_wall_by_edges_is_a_face_with_just_these(self, house):
+        made = house.made
+        front = np.flatnonzero((made.ends[:, :, 1] == 9.0).all(axis=1))
+        upright, level = (front[made.axis[front] == axis] for axis in (2, 0))
+        by_u, by_v = np.argsort(made.ends[upright, 0, 0]), np.argsort(made.ends[level, 0, 2])
+        rows = [*upright[by_u[[0, 2]]], *level[by_v[[1, 3]]]]
+        scene = house.scene(WallByEdges(tuple(house.anchor(row) for row in rows)))
+        u, v = made.ends[upright[by_u[[0, 2]]], 0, 0] / 9.0, made.ends[level[by_v[[1, 3]]], 0, 2] / 9.0
+        expected = np.array([[u[0], v[0]], [u[1], v[0]], [u[1], v[1]], [u[0], v[1]]])
+        quads = [
+            face.outline[:, [0, 2]] / face.outline[:, 1:2]
+            for _, face in scene.faces
+            if face.kind == "wall" and len(face.outline) == 4
+        ]
+        off = [np.linalg.norm(quad[:, None] - expected[None], axis=2).min(axis=0).max() for quad in quads]
+        assert min(off) < 1e-6
 
 
 class TestFacts:

@@ -72,6 +72,7 @@ export class Actions {
   // --- history ---
 
   undo() {
+    if (this.faces.undo()) return;
     if (this.draft.canUndo) this.draft.undo();
     else if (this.store.state.undo > 0 || this.store.busy > 0) this.editing.undo();
   }

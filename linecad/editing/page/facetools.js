@@ -43,7 +43,10 @@ export class FaceTools {
   constructor(store, actions) {
     Object.assign(this, { store, actions });
     actions.faces = this;
-    store.listen((changed) => changed.has("tool") && this.#clear());
+    store.listen((changed) => {
+      if (changed.has("tool")) this.#clear();
+      if (changed.has("state")) this.#forget();
+    });
   }
 
   listen(listener) {
@@ -58,6 +61,14 @@ export class FaceTools {
   #clear() {
     Object.assign(this, { outline: [], lines: [], rectangle: null, chosen: null });
     this.#pressed = false;
+    this.#tell();
+  }
+
+  /** What is drawn on a wall that is no more is left. */
+  #forget() {
+    const { rectangle, store } = this;
+    if (!rectangle || store.state.planes.some((plane) => plane.faces.includes(rectangle.face))) return;
+    this.rectangle = null;
     this.#tell();
   }
 
@@ -196,6 +207,16 @@ export class FaceTools {
     if (made.sent) this.#sendWindow();
     else this.#tell();
     return true;
+  }
+
+  /** Whether a corner or an edge was taken back; what was sent is for the server to take back. */
+  undo() {
+    this.rectangle = null;
+    const { outline, lines } = this;
+    this.outline = outline.slice(0, -1);
+    this.lines = lines.slice(0, -1);
+    this.#tell();
+    return outline.length > 0 || lines.length > 0;
   }
 
   /** Del: no window is where one was clicked. */

@@ -130,6 +130,18 @@ def clear_place(state, line):
     return places[shapely.distance(shapely.points(places), others).argmax()]
 
 
+def test_undo_takes_back_a_corner_before_what_was_sent(screen):
+    take(screen, "Shift+A", "ground")
+    for place in ((60, 60), (260, 60), (260, 160), (60, 160)):
+        screen.click(place)
+    screen.press("Control+z")
+    screen.press("Enter")
+    (edit,) = corrections(screen)
+    assert len(edit.polygon) == 3
+    screen.press("Control+z")
+    assert corrections(screen) == ()
+
+
 def test_escape_leaves_what_is_being_drawn_and_then_the_tool(screen):
     screen.press("Shift+A")
     screen.click((60, 60))
@@ -146,7 +158,6 @@ def test_a_click_on_a_window_and_del_takes_it_away(screen):
     solve(screen)
     (pane,) = panes(screen.state)
     middle = project(screen.state, pane).mean(axis=0)
-    screen.press("Escape")  # what was drawn is left, so that a click means the model
     screen.click(middle)
     assert "Del takes it away" in screen.page.locator("#inspector").inner_text()
     screen.press("Delete")

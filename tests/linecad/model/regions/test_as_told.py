@@ -1,5 +1,8 @@
 """Regions of the painted house as a person told them: they hold to the last cell, in labels and in faces."""
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 import shapely
 
@@ -7,7 +10,11 @@ from linecad.corrections.edits import Region
 from linecad.geometry import project
 from linecad.model.faces import find_faces
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.surfaces import GroundOfFeet
 
+ARRAYS = (
+    "id", "axis", "segment", "ends", "is_boundary", "component", "confidence", "role", "by_face", "by_depth_map",
+)  # fmt: skip
 SHAPES = [
     ((100.0, 40.0), (260.0, 60.0), (250.0, 200.0), (90.0, 180.0)),  # in the sky, over a corner of the roof's edge
     ((430.0, 250.0), (560.0, 260.0), (500.0, 420.0)),  # on the walls
@@ -62,3 +69,29 @@ def test_no_face_is_where_the_sky_was_told(house):
         rings = [project(ring, house.camera.matrix, house.rotation) for ring in (face.outline, *face.holes)]
         seen = shapely.Polygon(rings[0], rings[1:]).buffer(0)
         assert seen.intersection(area).area < 1e-3
+
+
+def test_told_ground_is_a_face_where_none_was_found(house):
+    """No line ends below the horizon, so that no ground is found, though the feet of walls tell its height."""
+    above = np.flatnonzero(house.lines.ends[:, :, 2].min(axis=1) > 0)
+    kept = set(house.lines.id[above].tolist())
+    lines = replace(house.lines, **{name: getattr(house.lines, name)[above] for name in ARRAYS}, pieces=())
+    planes = tuple(replace(plane, lines=tuple(n for n in plane.lines if n in kept)) for plane in house.planes)
+    planes = tuple(plane for plane in planes if plane.axis != 2)
+    look = Look(house.photo, GroundOfFeet(2.0, 5.0), None)
+    for edits in ((), (Region(SHAPES[2], "ground"),)):
+        regions = find_regions(planes, lines, house.camera, house.rotation, replace(look, faces=edits))
+        faces = [
+            face
+            for plane in find_faces(planes, lines, regions, house.camera, house.rotation)
+            for face in plane.faces
+            if face.kind == "ground"
+        ]
+        if not edits:
+            assert faces == []
+            continue
+        assert {height for face in faces for height in face.outline[:, 2].tolist()} == {-2.0}
+        seen = shapely.union_all(
+            [shapely.Polygon(project(face.outline, house.camera.matrix, house.rotation)) for face in faces]
+        )
+        assert seen.buffer(1e-3).covers(shapely.Polygon(SHAPES[2]))
