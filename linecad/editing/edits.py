@@ -79,16 +79,17 @@ def _part(node: Node, session: Session) -> Part:
 def proposal_to_json(node: Node, lines: Correcting) -> dict[str, object]:
     """What a drawn line would be, or one whose end is dragged; of one point, what it snaps to.
 
-    `ends` are one or two places, or `line`, `end` and `at` name an end and where it is dragged to.
+    `ends` are one or two places, or `line`, `end` and `at` name an end and where it is dragged to. Where no line can be
+    made of it, that is the answer: the pointer asks at every place that it passes.
     """
-    if node.get("line") is not None:
-        return _proposal_to_json(_stretched(node, lines))
-    places = node["ends"].items()
-    if len(places) > 1:
-        return _proposal_to_json(_drawn(node, lines)) | _nearest_axes(node, lines)
-    if not places:
-        raise node["ends"].wrong("a list of 1 or 2")
-    at = np.array(point(places[0]))
+    try:
+        if node.get("line") is not None:
+            return _proposal_to_json(_stretched(node, lines))
+        if len(node["ends"].items()) != 1:
+            return _proposal_to_json(_drawn(node, lines)) | _nearest_axes(node, lines)
+    except CorrectionError as error:
+        return {"refused": str(error)}
+    at = np.array(point(node["ends"].items()[0]))
     snap = find_snap(at, lines.table, _reach(node, lines))
     told = None if snap is None else {"line": snap.line, "is_end": snap.is_end}
     return {"axis": None, "ends": [(at if snap is None else snap.point).tolist()], "snapped": [told]}

@@ -8,7 +8,7 @@ const PAN_STEP = 80; // CSS px
 
 export class Actions {
   constructor(parts) {
-    Object.assign(this, parts); // store, editing, draft, photo, model, messages, server
+    Object.assign(this, parts); // store, editing, draft, photo, model, messages, server, many, lineWalk
     this.redoBeforeDraft = 0;
     this.openLength = () => {};
   }
@@ -22,8 +22,10 @@ export class Actions {
     return meant?.kind === "crossing" ? this.store.find(meant) : undefined;
   }
 
-  /** Say what a crossing is: real, fake, unsure, or null to leave it to the solver. */
-  label(value, crossing = this.crossing) {
+  /** Say what a crossing is, or all that are selected: real, fake, unsure, or null to leave it to the solver. */
+  label(value, chosen) {
+    if (!chosen && this.store.many) return this.many.label(value);
+    const crossing = chosen ?? this.crossing;
     if (!crossing) return this.messages.tell("Point at a crossing first, or click one.");
     if (!this.store.labelling) this.store.set({ selection: { kind: "crossing", id: crossing.id } });
     return this.editing.edit({ op: "label", crossing: crossing.id, value });
@@ -47,15 +49,18 @@ export class Actions {
   }
 
   axis(axis) {
+    if (this.store.many) return this.many.axis(axis);
     return this.#withLine((line) => line.axis !== axis && this.editing.edit({ op: "axis", line: line.id, axis }));
   }
 
   /** The same axis of the next frame, for the line. */
   nextFrame() {
+    if (this.store.many) return this.many.nextFrame();
     return this.#withLine((line) => this.axis(inNextFrame(line.axis, this.store.state.frames)));
   }
 
   remove() {
+    if (this.store.many) return this.many.remove();
     return this.#withLine((line) => this.editing.edit({ op: "delete", line: line.id }));
   }
 
@@ -98,9 +103,14 @@ export class Actions {
     else this.photo.change((viewport) => viewport.zoom(factor));
   }
 
-  /** Arrow keys: the view goes that way over the photo, the model turns, or moves when `shift` is held. */
+  /**
+   * Arrow keys: the cross-hair moves, else the view goes that way over the photo, or the nearest line there is selected
+   * when `shift` is held; the model turns, or moves when `shift` is held.
+   */
   arrow(x, y, shift) {
-    if (this.view !== this.model) this.photo.change((viewport) => viewport.pan(-x * PAN_STEP, -y * PAN_STEP));
+    if (this.view !== this.model && this.crosshair.isShown) this.crosshair.move(x, y, shift);
+    else if (this.view !== this.model && shift) this.lineWalk.towards(x, y);
+    else if (this.view !== this.model) this.photo.change((viewport) => viewport.pan(-x * PAN_STEP, -y * PAN_STEP));
     else if (shift) this.model.change((camera) => camera.pan(-x * PAN_STEP, -y * PAN_STEP));
     else this.model.change((camera) => camera.orbit(x * PAN_STEP, y * PAN_STEP));
   }
@@ -121,7 +131,8 @@ export class Actions {
   escape() {
     if (!this.draft.isEmpty) this.draft.clear();
     else if (this.store.labelling) this.toggleLabelling();
-    else if (this.store.selection) this.store.set({ selection: null });
+    else if (this.crosshair.isShown) this.crosshair.leave();
+    else if (this.store.selection || this.store.many) this.store.set({ selection: null, many: null });
     else if (this.store.tool !== "correct") this.store.set({ tool: "correct" });
   }
 }

@@ -12,6 +12,7 @@ const CASING_OPACITY = 0.75;
 const GUESS_DASHES = [6, 3]; // CSS px
 const UNSOLVED_DASHES = [2, 4]; // lines that are not in the model yet
 const FACE_OPACITY = 0.16;
+const HANDLE = 8; // CSS px, of the squares at the ends of the selected line, which can be dragged
 const NEAREST_DEPTH = 1e-3; // of a scene's units; nothing nearer to the camera is drawn
 
 /** All layers that are switched on; with a `box` (left, top, width, height) only the marks that touch it. */
@@ -105,7 +106,7 @@ function dashes(line) {
   return line.guess ? GUESS_DASHES : [];
 }
 
-function strokeLines(context, viewport, lines, colour, width) {
+export function strokeLines(context, viewport, lines, colour, width) {
   context.strokeStyle = colour;
   context.lineWidth = width;
   context.beginPath();
@@ -127,6 +128,7 @@ function drawCrossings(context, store, viewport, marks, [x, y, width, height]) {
   for (const crossing of store.state.crossings) {
     const [u, v] = crossing.pixel;
     if (u < left || u > right || v < top || v > bottom || !store.showsCrossing(crossing)) continue;
+    if (!store.thinning.shows(crossing, viewport.scale)) continue;
     seen[isReal(crossing) ? "real" : "fake"].push(crossing);
     if (crossing.changed && store.layers.changed) seen.changed.push(crossing);
   }
@@ -146,24 +148,31 @@ function put(context, viewport, marks, name, pixel) {
   context.drawImage(marks.stamp(name), left, top);
 }
 
-/** What changes with the pointer: a contradiction, the selection, what is under the pointer. */
-export function drawAttention(context, store, viewport, marks) {
+/**
+ * What changes with the pointer: a contradiction, the selection and its crossings, what is under the pointer.
+ *
+ * `stretched` is the line whose end is dragged, as it would be, or null.
+ */
+export function drawAttention(context, store, viewport, marks, stretched) {
   const wrong = store.state.contradiction;
   const lit = new Set();
   const light = (id, colour, border) => {
     if (!store.lines.has(id)) return;
     lit.add(id);
-    glow(context, viewport, store.lines.get(id), colour, border);
+    const line = store.lines.get(id);
+    glow(context, viewport, id === stretched?.id ? { ...line, segment: stretched.ends } : line, colour, border);
   };
   for (const id of wrong?.lines ?? []) light(id, WRONG, 4);
   for (const id of store.selectedCrossing?.lines ?? []) light(id, INK, 0.5);
   if (store.selectedLine) light(store.selectedLine.id, INK, 2.5);
+  for (const id of store.many?.lines ?? []) light(id, INK, 1.8);
   if (store.hover?.kind === "line") light(store.hover.id, INK, 1.2);
   // The lines lie over the marks of the canvas below: those of the lit ones come again on top.
   context.save();
   context.resetTransform();
   for (const crossing of store.state.crossings) {
-    if (crossing.lines.some((id) => lit.has(id)) && store.showsCrossing(crossing)) {
+    const isLit = crossing.lines.some((id) => lit.has(id)) || store.isNear(crossing);
+    if (isLit && store.drawsCrossing(crossing, viewport.scale)) {
       put(context, viewport, marks, markOf(crossing), crossing.pixel);
     }
   }
@@ -171,8 +180,39 @@ export function drawAttention(context, store, viewport, marks) {
     if (store.crossings.has(id)) put(context, viewport, marks, "wrong", store.crossings.get(id).pixel);
   }
   context.restore();
+  for (const id of store.many?.crossings ?? []) dot(context, viewport, store.crossings.get(id).pixel);
   if (store.selectedCrossing) circleAround(context, viewport, marks, store.selectedCrossing, 2.6);
   if (store.hover?.kind === "crossing") circleAround(context, viewport, marks, store.find(store.hover), 1.4);
+  if (store.selectedLine) drawHandles(context, viewport, stretched?.ends ?? store.selectedLine.segment);
+}
+
+/** Squares on top of all marks. */
+function drawHandles(context, viewport, ends) {
+  for (const end of ends) {
+    const [x, y] = viewport.toScreen(end);
+    for (const [side, ink] of [
+      [HANDLE + 4, INK],
+      [HANDLE + 1, CASING],
+      [HANDLE - 3, INK],
+    ]) {
+      context.fillStyle = ink;
+      context.fillRect(x - side / 2, y - side / 2, side, side);
+    }
+  }
+}
+
+/** One of many that are selected: small, since there may be hundreds that are not drawn at this scale. */
+function dot(context, viewport, pixel) {
+  const [x, y] = viewport.toScreen(pixel);
+  for (const [radius, ink] of [
+    [3.4, CASING],
+    [2.2, INK],
+  ]) {
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fillStyle = ink;
+    context.fill();
+  }
 }
 
 function circleAround(context, viewport, marks, crossing, width) {
@@ -206,36 +246,4 @@ function glow(context, viewport, line, colour, border) {
     context.fillStyle = colour;
     context.fillRect(x - 2.5, y - 2.5, 5, 5);
   }
-}
-
-/** The unfinished lines of a tool: what the person drew, thin, over what the server would make of it. */
-export function drawDraft(context, viewport, draft) {
-  context.lineCap = "round";
-  for (const { ends, axis } of draft.lines) strokeDraft(context, viewport, ends, axis);
-  const proposal = draft.proposal;
-  if (proposal) strokeDraft(context, viewport, proposal.ends, proposal.axis);
-  if (draft.rubber) {
-    context.setLineDash([4, 4]);
-    strokeLines(context, viewport, [{ segment: draft.rubber }], INK, 1);
-    context.setLineDash([]);
-  }
-  for (const point of draft.points) knob(context, viewport.toScreen(point), INK);
-  (proposal?.ends ?? []).forEach((end, index) => {
-    if (proposal.snapped?.[index]) knob(context, viewport.toScreen(end), AXIS[proposal.axis] ?? INK);
-  });
-}
-
-function strokeDraft(context, viewport, ends, axis) {
-  strokeLines(context, viewport, [{ segment: ends }], CASING, 5.5);
-  strokeLines(context, viewport, [{ segment: ends }], AXIS[axis] ?? INK, 3);
-}
-
-function knob(context, [x, y], colour) {
-  context.beginPath();
-  context.arc(x, y, 4.5, 0, 2 * Math.PI);
-  context.fillStyle = CASING;
-  context.fill();
-  context.lineWidth = 2;
-  context.strokeStyle = colour;
-  context.stroke();
 }

@@ -18,9 +18,30 @@ export function expected(state, edit) {
         lines: state.lines.filter((line) => line.id !== edit.line),
         crossings: state.crossings.filter((crossing) => !crossing.lines.includes(edit.line)),
       };
+    case "many":
+      return expectedOfMany(state, edit.edits);
     default:
       return state; // what the others lead to is geometry, which the server computes
   }
+}
+
+/** The same for one step of many edits, in one pass: there may be thousands. */
+function expectedOfMany(state, edits) {
+  const of = (op) => edits.filter((edit) => edit.op === op);
+  const labels = new Map(of("label").map(({ crossing, value }) => [crossing, value]));
+  const axes = new Map(of("axis").map(({ line, axis }) => [line, axis]));
+  const gone = new Set(of("delete").map(({ line }) => line));
+  const changed = (list, values, key) => {
+    const change = (each) => (values.has(each.id) ? { ...each, [key]: values.get(each.id) } : each);
+    return values.size === 0 ? list : list.map(change);
+  };
+  const [lines, crossings] = [changed(state.lines, axes, "axis"), changed(state.crossings, labels, "label")];
+  if (gone.size === 0) return relabelled({ ...state, lines, crossings });
+  return relabelled({
+    ...state,
+    lines: lines.filter((line) => !gone.has(line.id)),
+    crossings: crossings.filter((crossing) => !crossing.lines.some((id) => gone.has(id))),
+  });
 }
 
 function relabelled(state) {

@@ -3,6 +3,7 @@
 import { frameOf, letterOf } from "./axes.js";
 import { counted, element, keyButton } from "./dom.js";
 import { isReal } from "./store.js";
+import { snapText } from "./proposals.js";
 import { fixesFrame } from "./tools.js";
 
 // Why a crossing is real or not, by the key of the state.
@@ -17,6 +18,7 @@ const REASONS = {
   "small group": "its group has fewer than four lines",
   "other group": "not of the largest group, which is asked for alone",
 };
+const MOST_AXES = 5; // that a line may mean, the nearest first
 const KINDS = { L: "L crossing", T: "T crossing", X: "X crossing", collinear: "collinear pair" };
 const ORIGINS = { found: "", drawn: "drawn by you", split: "split by you", joined: "joined by you" };
 
@@ -24,7 +26,7 @@ export class Inspector {
   constructor(store, actions, tools) {
     Object.assign(this, { store, actions, tools });
     this.panel = document.querySelector("#inspector");
-    const shown = ["state", "selection", "hover", "tool", "labelling", "owner"];
+    const shown = ["state", "selection", "many", "hover", "tool", "labelling", "owner"];
     store.listen((changed) => shown.some((name) => changed.has(name)) && this.#renew());
     actions.draft.listen(() => this.#renew());
     this.#renew();
@@ -43,7 +45,9 @@ export class Inspector {
     this.panel.classList.toggle("labelling", store.labelling);
     if (store.labelling) return this.panel.replaceChildren(...this.#labelling());
     if (store.tool === "frame") return this.panel.replaceChildren(...this.#frame());
-    if (store.tool === "draw") return this.panel.replaceChildren(...this.#drawing());
+    if (store.many) return this.panel.replaceChildren(...this.actions.many.panel());
+    const isDrawn = store.selectedLine && this.actions.draft.isEmpty; // the line that was drawn last
+    if (store.tool === "draw" && !isDrawn) return this.panel.replaceChildren(...this.#drawing());
     const thing = store.selection ?? store.hover;
     const found = store.find(thing);
     if (!found) return this.panel.replaceChildren(...this.#summary());
@@ -148,15 +152,38 @@ export class Inspector {
 
   #drawing() {
     const { draft } = this.actions;
-    const axis = this.tools.forcedAxis ?? draft.proposal?.axis;
-    const how = this.tools.forcedAxis ? "fixed" : "proposed";
-    const text =
-      draft.points.length === 0
-        ? "Click where the line begins"
-        : axis
-          ? `Along ${axis}, ${how}; click where it ends`
-          : "Click where the line ends";
-    return [element("p", {}, text), this.#axisButtons(this.tools.forcedAxis)];
+    if (draft.question) return this.#question(draft.question);
+    return [element("p", {}, this.#drawingText(draft)), this.#axisButtons(this.tools.forcedAxis)];
+  }
+
+  #drawingText({ points, proposal, start }) {
+    const { forcedAxis } = this.tools;
+    const near = snapText(start?.snapped[0]);
+    if (points.length === 0) return near ? `Click where the line begins: ${near}` : "Click where the line begins";
+    if (!proposal) return "Click where the line ends";
+    const off = proposal.is_bent ? `, ${Math.round(proposal.off)}° off` : "";
+    const how = forcedAxis ? "fixed" : "proposed";
+    const [from, to] = proposal.snapped.map(snapText);
+    const snaps = `${from ? `, from ${from}` : ""}${to ? `, to ${to}` : ""}`;
+    if (off && !forcedAxis) return `Along no axis: ${proposal.axis} is nearest${off}${snaps}; click where it ends`;
+    return `Along ${forcedAxis ?? proposal.axis}, ${how}${off}${snaps}; click where it ends`;
+  }
+
+  /** A line that lies along no axis is not bent to the nearest: a person says along which it runs. */
+  #question({ axes }) {
+    const [[nearest, off]] = axes;
+    const axis = ([name, degrees]) => {
+      const key = name.length === 1 ? name.toUpperCase() : "";
+      return keyButton(`${name}, ${Math.round(degrees)}° off`, key, () => this.tools.axis(name), {
+        class: `axis ${letterOf(name)}`,
+      });
+    };
+    const cancel = keyButton("Drop it", "Esc", () => this.actions.escape());
+    const text = ` The nearest, ${nearest}, is ${Math.round(off)}° off.`;
+    return [
+      element("p", {}, element("strong", {}, "Along which axis does this line run?"), text),
+      element("div", { class: "buttons" }, ...axes.slice(0, MOST_AXES).map(axis), cancel),
+    ];
   }
 
   #axisButtons(current, ...more) {

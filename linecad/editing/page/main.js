@@ -1,11 +1,14 @@
 // Starts the page: asks for the state, builds the views, and wires them to the keys.
 
 import { Actions } from "./actions.js";
+import { Crosshair } from "./crosshair.js";
 import { Draft } from "./draft.js";
 import { Editing } from "./editing.js";
 import { Inspector } from "./inspector.js";
 import { keyHelp, keyTable, listenToKeys } from "./keys.js";
 import { Labelling } from "./labelling.js";
+import { LineWalk } from "./linewalk.js";
+import { Many } from "./many.js";
 import { Messages } from "./messages.js";
 import { ModelView } from "./modelview.js";
 import { Panels } from "./panels.js";
@@ -31,9 +34,12 @@ async function start() {
   const draft = new Draft();
   const photo = new PhotoView(store, server, draft);
   const model = new ModelView(store);
-  const actions = new Actions({ store, server, editing, draft, photo, model, messages });
+  const many = new Many(store, editing, messages);
+  const lineWalk = new LineWalk(store, photo, messages);
+  const actions = new Actions({ store, server, editing, draft, photo, model, messages, many, lineWalk });
   const tools = new Tools(store, actions);
   const pointer = new Pointer(store, photo, tools);
+  actions.crosshair = new Crosshair(store, photo, pointer);
   const panels = new Panels(store, actions, pointer);
   new Labelling(store, actions);
   new Inspector(store, actions, tools);

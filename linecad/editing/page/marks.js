@@ -1,12 +1,10 @@
-// The marks of crossings, drawn once for a screen and stamped where they are needed, since there may be 4,000.
+// The marks of crossings, drawn once for a screen and stamped where they are needed.
 // A disc is real, a cross is fake; a ring around it says that a person decided; a wide ring that the last solve did.
 
 import { CASING, CHANGED, FAKE, INK, REAL, UNSURE, WRONG } from "./colours.js";
 import { isReal } from "./store.js";
 
-const LARGE = 5; // CSS px, radius of a mark
-const SMALLEST = 3.2; // where there are so many that they would cover the photo
-const FEW = 500; // crossings; from there on marks are smaller
+export const RADIUS = 5; // CSS px, of a mark at every zoom
 
 // Names are not put together for each of 4,000 crossings.
 const LABELS = ["open", "real", "fake", "unsure"];
@@ -14,24 +12,19 @@ const NAMES = Object.fromEntries(
   ["real", "fake"].map((shape) => [shape, Object.fromEntries(LABELS.map((label) => [label, `${shape} ${label}`]))]),
 );
 
-/** CSS px, the radius of the marks of so many crossings: the same at every zoom. */
-export function markRadius(count) {
-  return Math.max(LARGE * Math.min(FEW / Math.max(count, 1), 1) ** 0.35, SMALLEST);
-}
-
 /** What the mark of a crossing looks like, as a name; crossings of one name look the same. */
 export function markOf(crossing) {
   return NAMES[isReal(crossing) ? "real" : "fake"][crossing.label ?? "open"];
 }
 
-/** Stamps by name, for one radius and one density of the screen. */
+/** Stamps by name, for one density of the screen. */
 export class Marks {
+  radius = RADIUS;
   #stamps = new Map();
 
-  constructor(radius, density) {
-    this.radius = radius;
+  constructor(density) {
     this.density = density;
-    this.half = Math.ceil((radius + 6) * density); // device px
+    this.half = Math.ceil((RADIUS + 6) * density); // device px
   }
 
   /** What a mark at a point (CSS px) may cover, on whole device px: left, top, width, height in CSS px. */

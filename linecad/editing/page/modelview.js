@@ -1,11 +1,11 @@
 // The model: its lines, its faces with the photo on them, and the camera, seen from anywhere.
 
 import { AXIS, INK, WRONG, channels } from "./colours.js";
+import { wheelFactor } from "./gestures.js";
 import { Graphics } from "./graphics.js";
 import { nearestToRay, product, projected, ray } from "./matrices.js";
 import { Orbit, withoutOutliers } from "./orbit.js";
 import { distance } from "./picking.js";
-import { wheelFactor } from "./pointer.js";
 
 const PAPER = [0.965, 0.965, 0.97];
 const FACE_COLOURS = { x: [0.88, 0.83, 0.82], y: [0.83, 0.86, 0.82], z: [0.82, 0.84, 0.89] };

@@ -1,8 +1,9 @@
 // The photo and what lies over it: four canvases, so that a pointer that moves redraws the least of them.
 
 import { DepthLayers } from "./depthlayers.js";
-import { draw, drawAttention, drawDraft } from "./drawing.js";
-import { Marks, markRadius } from "./marks.js";
+import { drawCrosshair, drawDraft, drawMarquee } from "./drawdraft.js";
+import { draw, drawAttention } from "./drawing.js";
+import { Marks } from "./marks.js";
 import { Tiles } from "./tiles.js";
 import { Viewport } from "./viewport.js";
 
@@ -25,6 +26,8 @@ export class PhotoView {
   #asked = false;
   #marks = null;
   #relabelled = []; // crossings whose marks alone are to be drawn anew
+  marquee = null; // two pixels, while a rectangle is drawn
+  crosshair = null; // CSS px, where the keyboard points
   #drawn = null; // the state that the canvases hold
 
   constructor(store, server, draft) {
@@ -59,7 +62,7 @@ export class PhotoView {
       this.#relabelled.push(...relabelled);
       this.redraw("marks", "overlay");
     }
-    if (changed.has("hover") || changed.has("selection")) this.redraw("overlay");
+    if (["hover", "selection", "many"].some((name) => changed.has(name))) this.redraw("overlay");
   }
 
   /** Draw canvases again before the next picture of the screen. */
@@ -151,7 +154,7 @@ export class PhotoView {
     this.depthLayers.draw(this.#clearedForPhoto("depth"));
   }
 
-  /** The surroundings of some crossings, as a click on one changes them: 4,000 marks take longer than one. */
+  /** The surroundings of some crossings, as a click on one changes them: all marks take longer than one. */
   #paintMarks() {
     const [relabelled, isDone] = [this.#relabelled, this.#dirty.has("drawing")];
     this.#relabelled = [];
@@ -179,15 +182,14 @@ export class PhotoView {
   #paintOverlay() {
     const context = this.#cleared("overlay");
     if (this.store.hidden) return;
-    drawAttention(context, this.store, this.viewport, this.#currentMarks());
+    drawAttention(context, this.store, this.viewport, this.#currentMarks(), this.draft.stretched);
     drawDraft(context, this.viewport, this.draft);
+    if (this.marquee) drawMarquee(context, this.viewport, this.marquee);
+    if (this.crosshair) drawCrosshair(context, this.viewport, this.crosshair);
   }
 
   #currentMarks() {
-    const radius = markRadius(this.store.state.crossings.length);
-    if (this.#marks?.radius !== radius || this.#marks.density !== devicePixelRatio) {
-      this.#marks = new Marks(radius, devicePixelRatio);
-    }
+    if (this.#marks?.density !== devicePixelRatio) this.#marks = new Marks(devicePixelRatio);
     return this.#marks;
   }
 }

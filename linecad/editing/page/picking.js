@@ -1,6 +1,9 @@
 // What is under the pointer: crossings before lines, the nearest first.
 
+import { RADIUS } from "./marks.js";
+
 const CROSSING_REACH = 10; // CSS px
+const FLIP_REACH = RADIUS + 2; // where a click changes the crossing: what misses its mark means the line
 const LINE_REACH = 7;
 
 /** All that a person may mean at a point of the stage, as `{kind, id}`, the most likely first. */
@@ -8,9 +11,10 @@ export function thingsAt(store, viewport, at, kinds = ["crossing", "line"]) {
   const pixel = viewport.toPhoto(at);
   const found = [];
   if (kinds.includes("crossing")) {
-    const reach = CROSSING_REACH / viewport.scale;
+    const changes = store.tool === "correct" && !store.labelling;
+    const reach = (changes ? FLIP_REACH : CROSSING_REACH) / viewport.scale;
     for (const crossing of store.state.crossings) {
-      if (Math.abs(crossing.pixel[0] - pixel[0]) > reach || !store.showsCrossing(crossing)) continue;
+      if (Math.abs(crossing.pixel[0] - pixel[0]) > reach || !store.drawsCrossing(crossing, viewport.scale)) continue;
       const away = Math.hypot(crossing.pixel[0] - pixel[0], crossing.pixel[1] - pixel[1]);
       if (away <= reach) found.push([away, { kind: "crossing", id: crossing.id }]);
     }

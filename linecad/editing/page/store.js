@@ -1,5 +1,7 @@
 // What the page knows: the state that the server sent, with the edits under way laid over it, and what is seen here.
 
+import { Thinning } from "./thinning.js";
+
 /**
  * The layers that can be switched on and off, in the order of their buttons; `key` is the digit that does it.
  *
@@ -20,7 +22,8 @@ export const LAYERS = [
 /**
  * One value that all views draw. `set` stores fields and tells every listener the names of those that changed.
  *
- * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing", id}`.
+ * `state` is what `/api/state` answers. `hover` and `selection` are null or `{kind: "line"|"crossing", id}`; `many` is
+ * null or what is selected in its place, ids in `{lines, crossings}`.
  */
 export class Store {
   state = null;
@@ -30,6 +33,8 @@ export class Store {
   hidden = false; // everything over the photo, while a key is held
   hover = null;
   selection = null;
+  many = null;
+  thinning = new Thinning();
   tool = "correct";
   labelling = false;
   owner = true; // false in a second tab, which only looks
@@ -54,6 +59,7 @@ export class Store {
     if (changed.has("state")) {
       this.lines = new Map(this.state.lines.map((line) => [line.id, line]));
       this.crossings = new Map(this.state.crossings.map((crossing) => [crossing.id, crossing]));
+      this.thinning.renew(this.state);
       for (const name of ["hover", "selection"]) {
         if (this[name] && !this.find(this[name])) {
           this[name] = null;
@@ -61,7 +67,18 @@ export class Store {
         }
       }
     }
+    if (this.many && (changed.has("state") || changed.has("selection")) && this.#keepMany()) changed.add("many");
     if (changed.size > 0) for (const listener of this.#listeners) listener(changed);
+  }
+
+  /** Of many things those that are there still, none beside a selected one; whether that changes them. */
+  #keepMany() {
+    const lines = this.many.lines.filter((id) => this.lines.has(id));
+    const crossings = this.many.crossings.filter((id) => this.crossings.has(id));
+    const isSame = lines.length === this.many.lines.length && crossings.length === this.many.crossings.length;
+    if (isSame && !this.selection) return false;
+    this.many = this.selection || lines.length + crossings.length === 0 ? null : { lines, crossings };
+    return true;
   }
 
   /** The line or crossing that a `{kind, id}` names, or undefined. */
@@ -91,6 +108,18 @@ export class Store {
 
   showsCrossing(crossing) {
     return this.layers[isReal(crossing) ? "real" : "fake"] || (this.layers.changed && crossing.changed);
+  }
+
+  /** Whether a crossing is drawn at a scale, and can be clicked there: those of what is selected are at every one. */
+  drawsCrossing(crossing, scale) {
+    return this.showsCrossing(crossing) && (this.thinning.shows(crossing, scale) || this.isNear(crossing));
+  }
+
+  /** Whether a crossing is selected, or one of the selected line or of a contradiction. */
+  isNear({ id, lines }) {
+    const { selection, state } = this;
+    if (state.contradiction?.crossings.includes(id)) return true;
+    return selection?.kind === "line" ? lines.includes(selection.id) : selection?.id === id;
   }
 
   toggleLayer(name) {

@@ -1,7 +1,10 @@
 // The tools: what a click on the photo means. Each tool is told of presses, moves and releases, in px of the photo.
 
 import { inNextFrame } from "./axes.js";
+import { Handles } from "./handles.js";
 import { nearest, thingsAt } from "./picking.js";
+import { Proposals } from "./proposals.js";
+import { RequestError } from "./server.js";
 
 /** The tools in the order of their buttons. */
 export const TOOLS = [
@@ -11,7 +14,7 @@ export const TOOLS = [
     key: "c",
     hint: "Click a crossing to turn it from real to fake or back; click a line to select it",
   },
-  { name: "select", label: "Select", key: "v", hint: "Click a line or a crossing to see what it is" },
+  { name: "select", label: "Select", key: "v", hint: "Click a line or a crossing, or drag a rectangle around many" },
   { name: "draw", label: "Draw", key: "d", hint: "Click both ends of a line, or drag; x, y or z fixes its axis" },
   { name: "split", label: "Split", key: "k", hint: "Click where a line is to be cut in two" },
   { name: "join", label: "Join", key: "j", hint: "Click two lines that are one" },
@@ -35,19 +38,26 @@ export function fixesFrame(lines) {
 export class Tools {
   forcedAxis = null; // of the line that is being drawn
   frameAxis = "x"; // of the next line for the frame
-  #asking = false;
-  #asked = null; // what to ask next, while an answer is awaited
+  reach = 0; // px of the photo within which ends snap
+  #finishing = false; // the line is drawn, and whether it lies along an axis is not known yet
 
   constructor(store, actions) {
     this.store = store;
     this.actions = actions;
     this.draft = actions.draft;
+    this.proposals = new Proposals(actions.server);
+    this.handles = new Handles(store, actions.draft, actions.editing, this.proposals);
     store.listen((changed) => changed.has("tool") && this.#leave());
   }
 
   /** Whether a drag with the left button belongs to the tool and does not move the photo. */
   get draws() {
     return this.store.tool === "draw" || this.store.tool === "frame";
+  }
+
+  /** Whether a drag with the left button encloses what it selects. */
+  get encloses() {
+    return this.store.tool === "select" && !this.store.labelling;
   }
 
   #leave() {
@@ -62,7 +72,7 @@ export class Tools {
   }
 
   /** A click that did not move; `at` in CSS px of the stage. */
-  click(at, viewport) {
+  click(at, viewport, adds) {
     const [thing] = thingsAt(this.store, viewport, at, this.kinds);
     const found = this.store.find(thing);
     switch (this.store.tool) {
@@ -74,8 +84,16 @@ export class Tools {
         return;
       case "join":
         return this.#join(found);
+      case "select":
+        if (adds && thing) return this.actions.many.toggle(thing);
+        if (adds) return;
     }
-    this.store.set({ selection: thing ?? null });
+    this.store.set({ selection: thing ?? null, many: null });
+  }
+
+  /** What a rectangle between two pixels holds is selected. */
+  enclose(from, to, adds) {
+    this.actions.many.enclose(from, to, adds);
   }
 
   #join(line) {
@@ -92,19 +110,35 @@ export class Tools {
 
   /** The first end, or the second by a second click. */
   press(pixel) {
-    const { points, lines } = this.draft;
-    if (points.length > 0) return this.#finish(pixel);
+    const { points, lines, start } = this.draft;
+    if (points.length > 0) return void this.#finish(pixel);
     if (lines.length === 0) this.actions.redoBeforeDraft = this.store.state.redo;
-    this.draft.step(lines, [pixel]);
+    this.store.set({ selection: null, many: null });
+    this.draft.step(lines, [this.#snapped(pixel, start)]);
+  }
+
+  /** The place that was shown as where a first end would snap to, while the pointer is near it. */
+  #snapped(pixel, start) {
+    if (!start?.snapped[0]?.is_end || this.store.tool === "frame") return pixel;
+    const [[u, v]] = start.ends;
+    return Math.hypot(u - pixel[0], v - pixel[1]) <= this.reach ? [u, v] : pixel;
   }
 
   follow(pixel) {
     const [start] = this.draft.points;
-    if (!start) return;
-    if (this.store.tool === "frame") this.draft.follow([start, pixel], { axis: this.frameAxis, ends: [start, pixel] });
-    else {
-      this.draft.follow([start, pixel], this.draft.proposal);
-      this.#propose({ ends: [start, pixel], axis: this.forcedAxis });
+    const { reach } = this;
+    if (this.#finishing) return;
+    if (this.store.tool === "frame") {
+      if (start) this.draft.follow([start, pixel], { axis: this.frameAxis, ends: [start, pixel] });
+    } else if (start) {
+      if (start[0] === pixel[0] && start[1] === pixel[1]) return; // no line yet
+      this.draft.follow([start, pixel], this.draft.proposal, this.draft.isForced);
+      this.#propose([start, pixel]);
+    } else {
+      this.proposals.ask({ ends: [pixel], reach }, (near) => {
+        const isAwaited = this.store.tool === "draw" && this.draft.points.length === 0;
+        if (isAwaited) this.draft.hover(near?.snapped[0] ? near : null);
+      });
     }
   }
 
@@ -113,44 +147,65 @@ export class Tools {
     if (this.draft.points.length > 0) this.#finish(pixel);
   }
 
-  #finish(pixel) {
+  /** The first end was none. */
+  takeBack() {
+    if (this.draft.points.length > 0) this.draft.undo();
+  }
+
+  async #finish(pixel) {
     const ends = [this.draft.points[0], pixel];
-    if (ends[0][0] === ends[1][0] && ends[0][1] === ends[1][1]) return;
+    if (this.#finishing || (ends[0][0] === ends[1][0] && ends[0][1] === ends[1][1])) return;
     if (this.store.tool === "frame") return this.draft.step([...this.draft.lines, { ends, axis: this.frameAxis }], []);
-    const axis = this.forcedAxis;
-    this.#asked = null;
+    const [axis, reach] = [this.forcedAxis, this.reach];
+    this.proposals.drop();
+    if (axis) return this.#draw(ends, axis, reach);
+    this.#finishing = true;
+    try {
+      const made = await this.actions.server.post("propose", { ends, axis, reach });
+      if (this.draft.points.length === 0) return; // taken back meanwhile
+      if (made.refused) this.actions.messages.tell(made.refused, "warning");
+      else if (made.is_bent) this.draft.step(this.draft.lines, [], { ends, reach, axes: made.axes });
+      else this.#draw(ends, axis, reach);
+    } catch (error) {
+      if (!(error instanceof RequestError)) throw error;
+      this.actions.messages.tell(error.message, "error");
+    } finally {
+      this.#finishing = false;
+    }
+  }
+
+  /** Send the line; it is selected, so that its ends can be dragged and its axis changed. */
+  async #draw(ends, axis, reach) {
+    const before = new Set(this.store.lines.keys());
     this.forcedAxis = null;
     this.draft.clear();
-    this.#edit({ op: "draw", ends, axis });
+    if (!(await this.#edit({ op: "draw", ends, axis, reach }))) return;
+    const drawn = this.store.state.lines.find(({ id, origin }) => origin === "drawn" && !before.has(id));
+    if (drawn && this.draft.isEmpty) this.store.set({ selection: { kind: "line", id: drawn.id } });
   }
 
-  /** Ask what a line would become, one question at a time: the pointer is faster than the answers. */
-  async #propose(question) {
-    this.#asked = question;
-    if (this.#asking) return;
-    this.#asking = true;
-    while (this.#asked) {
-      const asked = this.#asked;
-      this.#asked = null;
-      try {
-        const proposal = await this.actions.server.post("propose", asked);
-        if (this.draft.points.length > 0 && this.draft.rubber) this.draft.follow(this.draft.rubber, proposal);
-      } catch {
-        if (this.draft.points.length > 0) this.draft.follow(this.draft.rubber, null); // nothing can be made of it
+  /** Ask what a line would become, unless a person has finished or left it when the answer comes. */
+  #propose(ends) {
+    const [axis, reach] = [this.forcedAxis, this.reach];
+    this.proposals.ask({ ends, axis, reach }, (proposal) => {
+      if (this.draft.points.length > 0 && this.draft.rubber) {
+        this.draft.follow(this.draft.rubber, proposal, axis !== null);
       }
-    }
-    this.#asking = false;
+    });
   }
 
-  /** x, y or z: the axis of the line that is being drawn, of the next one for the frame, or of the selected line. */
+  /** x, y or z: of the line that is asked about or being drawn, of the next for the frame, or of the selected line. */
   axis(axis) {
     if (this.store.tool === "frame") {
       this.frameAxis = axis;
       this.draft.follow(this.draft.rubber, this.draft.proposal && { ...this.draft.proposal, axis });
-    } else if (this.store.tool === "draw") {
+    } else if (this.draft.question) {
+      const { ends, reach } = this.draft.question;
+      this.#draw(ends, axis, reach);
+    } else if (this.store.tool === "draw" && !this.store.selectedLine) {
       this.forcedAxis = this.forcedAxis === axis ? null : axis;
       const { rubber, points } = this.draft;
-      if (points.length > 0 && rubber) this.#propose({ ends: rubber, axis: this.forcedAxis });
+      if (points.length > 0 && rubber) this.#propose(rubber);
       else this.draft.follow(null, null);
     } else this.actions.axis(axis);
   }
@@ -159,7 +214,8 @@ export class Tools {
   nextFrame() {
     if (this.store.state.frames === 1) this.actions.messages.tell("All lines are of one frame: x, y and z are its axes.");
     else if (this.store.tool === "frame") this.actions.messages.tell("These lines fix the main frame: x, y or z.");
-    else if (this.store.tool !== "draw") this.actions.nextFrame();
+    else if (this.store.tool !== "draw" || this.store.selectedLine) this.actions.nextFrame();
+    else if (this.draft.question) this.axis(inNextFrame(this.draft.question.axes[0][0], this.store.state.frames));
     else {
       const axis = this.forcedAxis ?? this.draft.proposal?.axis ?? "x";
       this.axis(inNextFrame(axis, this.store.state.frames));

@@ -262,6 +262,22 @@ class TestEdits:
         assert near["ends"][0] != at == far["ends"][0]
         assert page.post("propose", ends=[at]).json()["snapped"] == [None]
 
+    @pytest.mark.parametrize(
+        "body",
+        [
+            {"ends": [[700, 200], [701, 200]]},
+            {"line": 0, "end": 1, "at": None},
+            {"line": 10**6, "end": 0, "at": [1, 1]},
+        ],
+    )
+    def test_a_place_where_no_line_can_end_is_an_answer(self, page, body):
+        """The browser wrote an error on its console for each place that the pointer passed there."""
+        if body.get("at", 0) is None:
+            body = {**body, "at": page.state()["lines"][0]["segment"][0]}
+        answer = page.post("propose", **body)
+        assert answer.status_code == 200
+        assert list(answer.json()) == ["refused"]
+
     def test_an_end_that_is_dragged_moves_along_its_line(self, page):
         line = max(page.state()["lines"], key=lambda one: np.linalg.norm(np.subtract(*one["segment"])))
         start, end = np.array(line["segment"])
@@ -369,7 +385,7 @@ class TestUndo:
             lines = states[-1]["lines"]
             line = lines[(7 * number) % len(lines)]
             middle = np.mean(line["segment"], axis=0).tolist()
-            match number % 5:
+            match number % 7:
                 case 0:
                     edit = {"op": "label", "crossing": states[-1]["crossings"][number]["id"], "value": "fake"}
                 case 1:
@@ -379,6 +395,15 @@ class TestUndo:
                 case 3:
                     drawn += 1
                     edit = {"op": "draw", "ends": [[100 + 9 * number, 100], [300 + 9 * number, 140]], "axis": "x"}
+                case 4:
+                    edit = {
+                        "op": "ends",
+                        "line": line["id"],
+                        "end": 0,
+                        "at": np.mean([middle, line["segment"][0]], 0).tolist(),
+                    }
+                case 5:
+                    edit = {"op": "many", "edits": [{"op": "delete", "line": each["id"]} for each in lines[3:5]]}
                 case _:
                     edit = {"op": "delete", "line": line["id"]}
             states.append(page.edit(**edit))
