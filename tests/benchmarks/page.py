@@ -51,11 +51,13 @@ def large_street(folder: Path) -> Path:
 
 
 def places(page, count):
-    """Where on the screen to click: crossings that no other one is near."""
+    """Where on the screen to click: crossings that are drawn, and that no other one is near."""
     at = page.evaluate(
         """() => {
           const { left, top } = document.querySelector("#overlay-canvas").getBoundingClientRect();
-          return linecad.store.state.crossings.map(({ pixel }) => linecad.photo.viewport.toScreen(pixel))
+          const { store, photo } = linecad;
+          const drawn = store.state.crossings.filter((each) => store.drawsCrossing(each, photo.viewport.scale));
+          return drawn.map(({ pixel }) => photo.viewport.toScreen(pixel))
             .map(([x, y]) => [x + left, y + top]);
         }"""
     )

@@ -36,7 +36,9 @@ def correcting(page, folder):
           const { state, lines } = linecad.store;
           const inside = ([u, v]) => u > 500 && u < 1000 && v > 250 && v < 600;
           const solid = (id) => lines.get(id)?.component === 0;
-          const fits = (each) => each.real && each.kind === "T" && inside(each.pixel) && each.lines.every(solid);
+          const isDrawn = (each) => linecad.store.drawsCrossing(each, 3); // at the scale below
+          const isChosen = (each) => each.real && each.kind === "T" && inside(each.pixel) && isDrawn(each);
+          const fits = (each) => isChosen(each) && each.lines.every(solid);
           return state.crossings.find(fits);
         }"""
     )

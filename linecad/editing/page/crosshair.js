@@ -56,7 +56,7 @@ export class Crosshair {
     this.photo.redraw("overlay");
   }
 
-  /** Enter clicks; with Shift it takes hold of an end of the selected line, or begins a rectangle, and lets go again. */
+  /** Enter clicks; with Shift it takes hold of an end of the selected line or begins a rectangle. */
   click(holds) {
     this.pointer.clickAt(this.at, holds);
     this.pointer.go(this.at);

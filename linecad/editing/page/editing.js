@@ -31,8 +31,10 @@ function expectedOfMany(state, edits) {
   const labels = new Map(of("label").map(({ crossing, value }) => [crossing, value]));
   const axes = new Map(of("axis").map(({ line, axis }) => [line, axis]));
   const gone = new Set(of("delete").map(({ line }) => line));
-  const changed = (list, values, key) =>
-    values.size === 0 ? list : list.map((each) => (values.has(each.id) ? { ...each, [key]: values.get(each.id) } : each));
+  const changed = (list, values, key) => {
+    const change = (each) => (values.has(each.id) ? { ...each, [key]: values.get(each.id) } : each);
+    return values.size === 0 ? list : list.map(change);
+  };
   const [lines, crossings] = [changed(state.lines, axes, "axis"), changed(state.crossings, labels, "label")];
   if (gone.size === 0) return relabelled({ ...state, lines, crossings });
   return relabelled({

@@ -4,6 +4,7 @@ const REACH = 9; // CSS px
 
 export class Handles {
   held = null; // {id, end, at}: the end that is dragged, and the pixel where to
+  #refused = null; // why the line cannot end there
 
   constructor(store, draft, editing, proposals) {
     Object.assign(this, { store, draft, editing, proposals });
@@ -23,7 +24,8 @@ export class Handles {
 
   drag({ id, end }, pixel, reach) {
     this.held = { id, end, at: pixel };
-    this.proposals.ask({ line: id, end, at: pixel, reach }, (stretched) => {
+    this.proposals.ask({ line: id, end, at: pixel, reach }, (stretched, refused = null) => {
+      this.#refused = refused;
       if (this.held) this.draft.stretch(stretched && { id, end, ...stretched });
     });
   }
@@ -31,6 +33,8 @@ export class Handles {
   /** Let go: the line ends there, and is shown so until the server has answered. */
   async drop(reach) {
     const { id, end, at } = this.held;
+    if (this.#refused) this.editing.tell(this.#refused, "warning");
+    if (this.#refused) return this.cancel();
     this.held = null;
     this.proposals.drop();
     await this.editing.edit({ op: "ends", line: id, end, at, reach });
@@ -39,6 +43,7 @@ export class Handles {
 
   cancel() {
     this.held = null;
+    this.#refused = null;
     this.proposals.drop();
     this.draft.stretch(null);
   }

@@ -189,7 +189,8 @@ export class Inspector {
 
   #drawingText({ points, proposal, start }) {
     const { forcedAxis } = this.tools;
-    if (points.length === 0) return ["Click where the line begins", snapText(start?.snapped[0])].filter(Boolean).join(": ");
+    const near = snapText(start?.snapped[0]);
+    if (points.length === 0) return near ? `Click where the line begins: ${near}` : "Click where the line begins";
     if (!proposal) return "Click where the line ends";
     const off = proposal.is_bent ? `, ${Math.round(proposal.off)}° off` : "";
     const how = forcedAxis ? "fixed" : "proposed";

@@ -100,9 +100,10 @@ export class Many {
       keyButton(label, key, action, { disabled: !owner, ...attributes });
     const word = (value, name, key) => button(name, key, () => this.label(value));
     const lines = [
-      ...["x", "y", "z"].map((axis) =>
-        button(axis, axis.toUpperCase(), () => this.axis(axis), { class: `axis ${axis}`, "aria-label": `Axis ${axis}` }),
-      ),
+      ...["x", "y", "z"].map((axis) => {
+        const attributes = { class: `axis ${axis}`, "aria-label": `Axis ${axis}` };
+        return button(axis, axis.toUpperCase(), () => this.axis(axis), attributes);
+      }),
       ...(state.frames > 1 ? [button("next frame", "Q", () => this.nextFrame())] : []),
       button("Delete lines", "Del", () => this.remove()),
     ];

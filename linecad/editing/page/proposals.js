@@ -15,7 +15,10 @@ export class Proposals {
     this.server = server;
   }
 
-  /** Ask; `hear` is called with the answer, or with null where nothing can be made of it, unless a later one came. */
+  /**
+   * Ask, unless a later question comes before; `hear` is called with the answer, or with null where nothing can be made
+   * of it, and why.
+   */
   async ask(question, hear) {
     this.#next = { question, hear };
     if (this.#asking) return;
@@ -23,14 +26,14 @@ export class Proposals {
     while (this.#next) {
       const { question: asked, hear: tell } = this.#next;
       this.#next = null;
-      let answer = null;
       try {
         const made = await this.server.post("propose", asked);
-        answer = made.refused ? null : made;
+        if (made.refused) tell(null, made.refused);
+        else tell(made);
       } catch (error) {
         if (!(error instanceof RequestError)) throw error;
+        tell(null, error.message);
       }
-      tell(answer);
     }
     this.#asking = false;
   }

@@ -4,6 +4,7 @@
 
 const APART = 20; // CSS px between two crossings that are drawn
 const TOLD_APART = 12; // between two that a person labelled or the last solve changed
+const FIRST = 1 / 8; // of the photo's part that has crossings: the distance at which so few are drawn that none need go
 const ALL_SCALE = 16; // CSS px a photo pixel: from here on all are drawn
 const FINER = Math.SQRT1_2; // from one distance to the next
 
@@ -24,7 +25,7 @@ export function reaches(crossings, lines) {
   const found = new Map();
   const placed = []; // pixels
   const last = APART / ALL_SCALE;
-  for (let apart = widest(crossings); left.length > 0 && apart > last; apart *= FINER) {
+  for (let apart = FIRST * widest(crossings); left.length > 0 && apart > last; apart *= FINER) {
     const grid = new Grid(apart);
     for (const pixel of placed) grid.add(pixel);
     left = left.filter(({ id, pixel }) => {

@@ -76,6 +76,11 @@ export class Tools {
     return this.store.tool === "select" && !this.store.labelling;
   }
 
+  /** Whether a drag with the left button encloses what it selects. */
+  get encloses() {
+    return this.store.tool === "select" && !this.store.labelling;
+  }
+
   #leave() {
     this.forcedAxis = null;
     this.draft.clear();
@@ -155,11 +160,13 @@ export class Tools {
     if (this.store.tool === "frame") {
       if (start) this.draft.follow([start, pixel], { axis: this.frameAxis, ends: [start, pixel] });
     } else if (start) {
+      if (start[0] === pixel[0] && start[1] === pixel[1]) return; // no line yet
       this.draft.follow([start, pixel], this.draft.proposal, this.draft.isForced);
       this.#propose([start, pixel]);
     } else {
       this.proposals.ask({ ends: [pixel], reach }, (near) => {
-        if (this.store.tool === "draw" && this.draft.points.length === 0) this.draft.hover(near?.snapped[0] ? near : null);
+        const isAwaited = this.store.tool === "draw" && this.draft.points.length === 0;
+        if (isAwaited) this.draft.hover(near?.snapped[0] ? near : null);
       });
     }
   }

@@ -387,7 +387,7 @@ class TestUndo:
             lines = states[-1]["lines"]
             line = lines[(7 * number) % len(lines)]
             middle = np.mean(line["segment"], axis=0).tolist()
-            match number % 5:
+            match number % 7:
                 case 0:
                     edit = {"op": "label", "crossing": states[-1]["crossings"][number]["id"], "value": "fake"}
                 case 1:
@@ -397,6 +397,15 @@ class TestUndo:
                 case 3:
                     drawn += 1
                     edit = {"op": "draw", "ends": [[100 + 9 * number, 100], [300 + 9 * number, 140]], "axis": "x"}
+                case 4:
+                    edit = {
+                        "op": "ends",
+                        "line": line["id"],
+                        "end": 0,
+                        "at": np.mean([middle, line["segment"][0]], 0).tolist(),
+                    }
+                case 5:
+                    edit = {"op": "many", "edits": [{"op": "delete", "line": each["id"]} for each in lines[3:5]]}
                 case _:
                     edit = {"op": "delete", "line": line["id"]}
             states.append(page.edit(**edit))

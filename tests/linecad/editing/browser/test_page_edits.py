@@ -335,9 +335,12 @@ def test_a_contradiction_is_named_and_lit_up(screen, made):
     for crossing in (first, second, others[0]["id"]):
         edit(screen.served, op="label", crossing=crossing, value="real")
     screen.run("linecad.editing.refresh()")
+    # Fitted, a more important crossing beside it is drawn in its place.
+    screen.run("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel, 16))", others[1]["pixel"])
     screen.page.mouse.move(*screen.on_screen(others[1]["pixel"]))
     screen.press("r")
     screen.press("Escape")
+    screen.press("0")
     plain = screen.painted("#overlay-canvas")
     screen.press("s")
 
