@@ -154,7 +154,7 @@ def _is_guess(scene: Scene) -> Bool:
 def _crossings(now: Now) -> list[dict[str, object]]:
     graph, annotations, ids = now.lines.graph, now.lines.annotations, now.lines.ids
     decided = {} if now.model is None else now.model.decided
-    changed = frozenset() if now.model is None else now.model.changed
+    changed, far = (frozenset(), frozenset()) if now.model is None else (now.model.changed, now.model.far)
     rows = zip(
         now.lines.crossings,
         graph.edges.tolist(),
@@ -173,6 +173,7 @@ def _crossings(now: Now) -> list[dict[str, object]]:
             "reason": decided[crossing].reason if crossing in decided else None,
             "label": label,
             "changed": crossing in changed,
+            "far": crossing in far,
         }
         for crossing, (i, j), kind, pixel, label in rows
     ]

@@ -5,15 +5,17 @@ Everything here is kept by one lock; the server's threads and the one that hears
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
+from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import annotations_of, rows_of
 from linecad.corrections.apply import CorrectedLines, Correcting, ToldFact, correcting_of
 from linecad.corrections.edits import Corrections, Edit, Fact, KnownLength, SetFrame, Withdraw, anchors_of
 from linecad.corrections.lengths import measured
 from linecad.editing.bodies import ShownBodies
+from linecad.editing.distant import distant
 from linecad.editing.solving import Answer, Step, Task
 from linecad.editing.state import (
     Contradiction,
@@ -310,4 +312,20 @@ class Session:
         bodies = None
         if made.places is not None:
             bodies = ShownBodies.of(made.places, made.graph, self._lines.corrected)
-        return Model(made.scene, self._version, now, changed, made.solution.seconds, bodies)
+        far = distant(changed, self._place(changed), self._edited_since(), self.photo.width)
+        return Model(made.scene, self._version, now, changed, made.solution.seconds, far, bodies)
+
+    def _edited_since(self) -> list[Edit]:
+        """The edits that the model which is shown does not hold, and those that it does and were taken back."""
+        shown = next((content for content, model in self._models.items() if model is self._solved), None)
+        if shown is None:
+            return []
+        now = self._content()
+        same = next((k for k, (one, other) in enumerate(zip(shown, now, strict=False)) if one != other), None)
+        start = min(len(shown), len(now)) if same is None else same
+        return [*shown[start:], *now[start:]]
+
+    def _place(self, crossings: Iterable[int]) -> dict[int, Float]:
+        """Where crossings are in the photo, px."""
+        graph, edge = self._lines.graph, self._lines.edge
+        return {crossing: graph.crossing[edge[crossing]] for crossing in crossings}

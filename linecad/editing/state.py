@@ -63,6 +63,7 @@ class Model:
     decided: dict[int, Decided]  # by the id of the crossing
     changed: frozenset[int]  # crossings whose decision differs from that of the model before
     seconds: float  # of the solver
+    far: frozenset[int] = frozenset()  # of `changed`, those far from all that was edited (`linecad.editing.distant`)
     bodies: ShownBodies | None = None  # None for programs without them
 
 

@@ -44,6 +44,7 @@ from linecad.model.regions.surfaces import GroundOfFeet
 from linecad.model.window_grids import find_window_grid_cues
 from linecad.options import MIN_COMPONENT
 from linecad.scene import Camera, Certainty, DepthMapReport, Intersections, Lines, Opening, Plane, Scene, SolveReport
+from linecad.ties.facts import common_planes
 from linecad.ties.placing import Placed
 
 TYPICAL_DEPTH = 10.0  # the median depth of a scene whose scale is not known, so that files open at a handy size
@@ -118,7 +119,8 @@ def build_scene(
     Where bodies were `placed`, all components have one scale. Else each is put at the depth of its neighbours.
     """
     if placed is not None:
-        found = replace(found, lifted=join_planes(found.lifted, found.component, graph.axis))
+        told = common_planes(placed.setting, placed.places.facts)
+        found = replace(found, lifted=join_planes(found.lifted, found.component, graph.axis, told))
     kept = np.flatnonzero(found.kept)
     scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
     scale = scales[found.component]

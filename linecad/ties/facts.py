@@ -9,7 +9,7 @@ from linecad.arrays import Float, Int
 from linecad.corrections.apply import ToldFact
 from linecad.corrections.edits import Anchor, Cut, Foot, Meet, OnePlane, PlaceAt, Point
 from linecad.corrections.words import said
-from linecad.directions import UP, axis_name, components, lies_across, partner
+from linecad.directions import UP, across, axis_name, common_frame, components, lies_across, partner, third
 from linecad.errors import ContradictionError, CorrectionError
 from linecad.geometry import PhotoLength, depths_beside, homogeneous, segment_coordinates, world_rays
 from linecad.ties.setting import Setting
@@ -195,3 +195,23 @@ def _log_height(setting: Setting, line: int, pixel: Point) -> float:
     if not height > 0:
         raise CorrectionError("that place is above the camera, where no ground is; choose the foot of the wall")
     return float(np.log(height))
+
+
+def common_planes(setting: Setting, facts: Sequence[ToldFact]) -> tuple[tuple[int, int, int], ...]:
+    """Two lines each, and the normal of a plane that facts say they lie in both."""
+    axis = setting.graph.axis
+    found = []
+    for told in facts:
+        if not isinstance(told.fact, Meet | OnePlane):
+            continue
+        first, second = told.lines
+        if isinstance(told.fact, OnePlane):
+            normal = told.fact.normal
+        elif axis[first] == axis[second]:
+            normal = int(across(axis[[first]])[0, 0])
+        elif common_frame(axis[first], axis[second]) >= 0:
+            normal = int(third(axis[first], axis[second]))
+        else:  # level lines of two frames, of which none has the other's coordinates
+            continue
+        found.append((first, second, normal))
+    return tuple(found)

@@ -36,7 +36,8 @@ class BodyPlaces:
     """Bodies in their places."""
 
     evidence: Evidence
-    told: FactTies  # what facts say
+    facts: tuple[ToldFact, ...]  # about the nodes of the graph
+    told: FactTies  # what they say
     # Of each tie: a candidate, the edge of a crossing called real, -1 less the number of a fact, None for a depth map
     sources: tuple[Candidate | int | None, ...]
     ties: Ties
@@ -204,7 +205,7 @@ def place_bodies(
     if isinstance(heard, DepthWitness):
         mapped = follow_map(heard, ties, placement, reference, size)
     sources += [None] * (len(ties) - len(sources))
-    return BodyPlaces(evidence, told, tuple(sources), ties, placement, mapped)
+    return BodyPlaces(evidence, tuple(facts), told, tuple(sources), ties, placement, mapped)
 
 
 def _sure(setting: Setting, real: Bool) -> tuple[Ties, Int]:

@@ -9,13 +9,23 @@ from linecad.camera.photo import Photo
 from linecad.camera.vanishing_points import fit_frame
 from linecad.corrections.annotations import annotations_of
 from linecad.corrections.apply import correct
-from linecad.corrections.edits import Anchor, Corrections, Delete, KnownLength, LabelCrossing, SetFrame
+from linecad.corrections.edits import (
+    Anchor,
+    Corrections,
+    Cut,
+    Delete,
+    KnownLength,
+    LabelCrossing,
+    OnePlane,
+    PlaceAt,
+    SetFrame,
+)
 from linecad.corrections.lengths import measured
 from linecad.decide.blocks import find_blocks
 from linecad.errors import ContradictionError, ReconstructionError
 from linecad.finding import FoundLines, connect, name_lines
 from linecad.options import SHORT_REACH, Options
-from linecad.pipeline import reconstruct, reconstruct_lines
+from linecad.pipeline import prepare, reconstruct, reconstruct_lines, reconstruct_prepared
 from solver.options import FORMULATIONS, SolveOptions
 
 # False crossings too, one of them between the two boxes; their optimum takes long to prove, and is not what is tested.
@@ -265,3 +275,62 @@ def test_only_crossings_called_real_or_fake_change_the_graph(house, graph):
     nothing = Corrections("made.jpg", 1600, 1200)
     nothing = Corrections("made.jpg", 1600, 1200)
     assert correct(house.made.segments, house.made.camera, house.made.frame, nothing).is_like(corrected)
+
+
+class TestFacts:
+    """The two boxes are two bodies; one word about an edge of each says how they stand."""
+
+    OPTIONS = Options()
+
+    @pytest.fixture
+    def pair(self, house):
+        """A level edge of each box, on one side of the camera."""
+        made = house.made
+        side = np.sign(made.ends[:, :, 2]).mean(axis=1)
+        levels = [np.flatnonzero((made.axis != 2) & (made.box == box)).tolist() for box in range(2)]
+        return next([one, other] for one in levels[0] for other in levels[1] if abs(side[one] + side[other]) == 2)
+
+    def height(self, scene, house, line):
+        look = house.made.pixels[line].tobytes()
+        (row,) = [row for row in range(len(scene.lines.id)) if look in {ends.tobytes() for ends in
+                  scene.lines.segments_of(row)}]  # fmt: skip
+        return scene.lines.ends[row, :, 2]
+
+    def test_levels_that_are_one_are_exactly_so(self, house, pair):
+        fact = OnePlane(tuple(map(house.anchor, pair)), 2)
+        free, told = house.scene(options=self.OPTIONS), house.scene(fact, options=self.OPTIONS)
+        heights = [[self.height(scene, house, line) for line in pair] for scene in (free, told)]
+        assert np.ptp(heights[0]) > 1e-3
+        assert np.ptp(heights[1]) == 0
+        assert not any("left out" in note for note in told.notes)
+
+    def test_what_says_nothing_is_a_note(self, house):
+        one = np.flatnonzero((house.made.box == 0) & (house.made.axis == 0))[:2].tolist()
+        fact = OnePlane(tuple(map(house.anchor, one)), 2)
+        scene = house.scene(fact, options=self.OPTIONS)
+        [note] = [note for note in scene.notes if "left out" in note and "same height" in note]
+        assert "on opposite sides of the camera" in note
+
+    def test_programs_without_bodies_say_so(self, house, pair):
+        fact = OnePlane(tuple(map(house.anchor, pair)), 2)
+        assert any("places none" in note for note in house.scene(fact, options=NEAR).notes)
+
+    def test_what_cannot_hold_is_named(self, house, pair):
+        first, second = map(house.anchor, pair)
+        facts = [PlaceAt(second, first, log_ratio) for log_ratio in (0.1, 0.7)]
+        with pytest.raises(ContradictionError, match=r'"stands here at .*", "stands here at .*" cannot all') as told:
+            house.scene(*facts, options=self.OPTIONS)
+        assert told.value.facts == tuple(facts)
+        assert set(told.value.lines) == set(pair)
+
+    def test_a_scene_by_what_was_prepared_is_the_same(self, house, pair):
+        fact = OnePlane(tuple(map(house.anchor, pair)), 2)
+        free, told = house.corrected(), house.corrected(fact)
+        prepared = prepare(house.found(self.OPTIONS), self.OPTIONS, corrected=free)
+        assert prepared.is_for(told)
+        assert not prepared.is_for(house.corrected(Cut(fact.lines)))
+        made = reconstruct_prepared("made.jpg", prepared, self.OPTIONS, corrected=told)
+        scene = house.scene(fact, options=self.OPTIONS)
+        for name in ("ends", "segment", "probability", "component"):
+            assert getattr(made.scene.lines, name).tobytes() == getattr(scene.lines, name).tobytes()
+        assert made.scene.notes == scene.notes

@@ -55,7 +55,7 @@ class TestDocument:
     def test_what_ties_a_body_is_told_in_words(self, solved):
         body = solved.state()["bodies"][1]
         assert body["guess"] == (body["probability"] < 0.5)
-        assert ["a foot on the ground"] == [tie["words"] for tie in body["ties"] if tie["counted"]]
+        assert [tie["words"] for tie in body["ties"] if tie["counted"]] == ["a foot on the ground"]
         assert [tie["other"] for tie in body["ties"]] == [None]
 
     def test_before_the_first_solve_there_are_none(self, page):
@@ -90,9 +90,7 @@ class TestFacts:
     def test_its_faces_move_along(self, solved):
         before = solved.state()
         there = solved.edit(**place(before, 0.5))
-        [factor] = {
-            round(float(np.median(now / depths(before, 1)[line])), 6) for line, now in depths(there, 1).items()
-        }
+        [factor] = {round(float(np.median(now / depths(before, 1)[line])), 6) for line, now in depths(there, 1).items()}
         for was, now in zip(before["planes"], there["planes"], strict=True):
             expected = factor if was["body"] == 1 else 1.0
             if was["body"] < 2:

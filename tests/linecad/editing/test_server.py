@@ -537,3 +537,19 @@ class TestTabs:
     @pytest.mark.parametrize("tab", ["", "x" * 101, 7, None])
     def test_a_tab_has_a_short_name(self, page, tab):
         assert page.post("hello", tab=tab).status_code == 422
+
+
+def test_a_solve_tells_what_changed_far_from_the_edits(page):
+    """A deleted line takes its crossings along; whatever else changes is told as near it or far from it."""
+    state = page.solve()
+    line = max(state["lines"], key=lambda one: sum(one["id"] in each["lines"] for each in state["crossings"]))
+    page.edit(op="delete", line=line["id"])
+    solved = page.solve()
+    ends = np.array(line["segment"])
+    along = (ends[1] - ends[0]) / np.linalg.norm(ends[1] - ends[0])
+    for crossing in solved["crossings"]:
+        assert not crossing["far"] or crossing["changed"]
+        apart = np.array(crossing["pixel"]) - ends[0]
+        place = ends[0] + along * np.clip(apart @ along, 0, np.linalg.norm(ends[1] - ends[0]))
+        is_far = np.linalg.norm(np.array(crossing["pixel"]) - place) > 200 * state["photo"]["width"] / 3840
+        assert crossing["far"] == (crossing["changed"] and is_far)

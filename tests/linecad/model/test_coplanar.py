@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from linecad.model.coplanar import SAME, join_planes
+from linecad.model.coplanar import SAME, TOLD, join_planes
 from linecad.model.lifting import Lifted
 
 LINES = 6  # of a wall, half of them upright
@@ -93,3 +93,27 @@ def test_lines_of_no_component_stay():
     component = np.where(component == 2, -1, component)
     found = join_planes(lifted, component, axis)
     assert found.ends[component < 0].tobytes() == lifted.ends[component < 0].tobytes()
+
+
+def test_lines_that_a_person_told_to_be_in_one_plane_are_so_before_all_others():
+    """The single line before the second wall is at the first one's place; the walls themselves would be joined else."""
+    lifted, component, axis = walls(4.0, 4.0 * np.exp(0.5 * SAME))
+    lifted.ends[component == 1] *= 1.02
+    offset = lifted.offset.copy()
+    offset[component == 1] *= 1.02
+    alone = np.flatnonzero(component == 1)[-1]
+    offset[alone, 0] = lifted.ends[alone, :, 0] = 4.05
+    far = type(lifted)(lifted.ends, offset, lifted.shared, lifted.residual, lifted.shift)
+    found = join_planes(far, component, axis, [(0, int(alone), 0)])
+    assert found.offset[alone, 0] == found.offset[0, 0] == 4.0
+    assert found.shared[alone, 0] == found.shared[0, 0]
+    np.testing.assert_allclose(found.ends[component == 1], far.ends[component == 1] * 4.0 / 4.05, rtol=1e-12)
+    assert join_planes(far, component, axis).offset[alone, 0] == 4.05
+
+
+@pytest.mark.parametrize("factor", [np.exp(1.5 * TOLD), -1.0])
+def test_what_a_person_told_moves_nothing_far(factor):
+    lifted, component, axis = walls(4.0, 4.0 * factor)
+    second = int(np.flatnonzero(component == 1)[0])
+    found = join_planes(lifted, component, axis, [(0, second, 0)])
+    assert found.ends.tobytes() == lifted.ends.tobytes()

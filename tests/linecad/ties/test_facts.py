@@ -112,7 +112,7 @@ def test_feet_ask_for_one_ground(street, build_setting, moved, across, of_second
 def test_an_upright_stands_on_the_ground_at_its_own_foot(street, build_setting):
     setting, line = build_setting(street), 3
     foot = street.graph.segments.ends[line][np.argmax(street.graph.segments.ends[line][:, 1])]
-    beside = tuple((foot + [30.0, 2.0]).tolist())
+    beside = tuple((foot + np.array([30.0, 2.0])).tolist())
     (_, ground), log_ratio = tie_of(setting, ToldFact(Foot(anchor(street, line), beside), (line,)))
     assert ground == 2
     assert np.exp(-log_ratio) == pytest.approx(3.0, abs=0.25), "the wall's uprights end about 3 below the camera"
@@ -148,7 +148,9 @@ def test_depths_are_those_of_the_line(street, build_setting):
     setting = build_setting(street)
     for line in (0, 13, 30, 40):
         for end in range(2):
-            true = (street.graph.end_rays[line, end] / street.graph.rays[line])[1] if street.graph.axis[line] != 1 else 1
+            true = (
+                (street.graph.end_rays[line, end] / street.graph.rays[line])[1] if street.graph.axis[line] != 1 else 1
+            )
             found = depth_at(setting, line, street.graph.segments.ends[line, end])
             distance = NEAR if street.part[line] == 0 else FAR
             assert found * street.graph.end_rays[line, end, 1] == pytest.approx(distance, rel=1e-6), true
@@ -178,7 +180,7 @@ def test_a_fact_outweighs_what_was_found(street, evidence):
     assert (free.probability[placed] < SAID * there.evidence.held[placed]).all()
 
 
-def test_places_without_pixels_are_those_with_them(street, evidence):
+def test_places_without_pixels_are_those_with_them(evidence):
     with_photo, without = (place_bodies(each, SolveOptions()) for each in (evidence, evidence.without_photo()))
     assert with_photo.log_depth.tobytes() == without.log_depth.tobytes()
 
@@ -266,7 +268,8 @@ class TestCuts:
             return weight[side[ends[:, 0]] != side[ends[:, 1]]].sum()
 
         lightest = min(
-            joined(np.array([0, *(number >> bit & 1 for bit in range(count - 2)), 1])) for number in range(2 ** (count - 2))
+            joined(np.array([0, *(number >> bit & 1 for bit in range(count - 2)), 1]))
+            for number in range(2 ** (count - 2))
         )
         assert joined(body) == pytest.approx(lightest)
 
