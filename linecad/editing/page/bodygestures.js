@@ -298,7 +298,8 @@ export class BodyGestures {
         await this.actions.editing.settled();
         preview = await this.actions.server.post("preview", { base_version: this.store.state.version, edit: asked });
       } catch (error) {
-        preview = error.status === 422 ? { moves: {}, conflict: null, refused: error.message } : null;
+        preview = null; // the lines have changed: the gesture ends with them
+        if (error.status !== 409) this.actions.messages.tell(error.message, "error");
       }
       const tried = JSON.stringify(asked);
       if (this.now && JSON.stringify(this.edit) === tried) this.#put({ preview, tried });

@@ -57,6 +57,7 @@ export class BodyPointer {
     const chosen = line ?? this.#lineOfFace(hit);
     if (now && now.kind !== "place" && now.kind !== "move") {
       if (!chosen?.ends) return;
+      if (!now.first) this.store.set({ selection: { kind: "line", id: chosen.id } });
       gestures.choose(chosen, line ? null : hit.plane.axis);
       if (gestures.edit && gestures.now?.second?.id === chosen.id) gestures.take();
       return;
