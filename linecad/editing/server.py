@@ -167,9 +167,16 @@ class Editor:
 
     def preview(self, body: Node) -> Response:
         """POST /api/preview: by which log factors a fact would move bodies, and the ground, and what it contradicts."""
-        moves, against = self.session.preview(_base(body), lambda session: read_edit(body["edit"], session))
+        try:
+            moves, against, refused = self.session.preview(
+                _base(body), lambda session: read_edit(body["edit"], session)
+            )
+        except StaleError as error:  # the page has gone on meanwhile, and wants to know no more
+            moves, against, refused = {}, None, str(error)
         conflict = None if against is None else {"text": against.text, "lines": list(against.lines)}
-        return JSONResponse({"moves": {str(number): by for number, by in moves.items()}, "conflict": conflict})
+        return JSONResponse(
+            {"moves": {str(number): by for number, by in moves.items()}, "conflict": conflict, "refused": refused}
+        )
 
     def places(self, request: Request) -> Response:
         """GET /api/places/BODY: where else a body could stand, the most likely first."""

@@ -70,6 +70,7 @@ class Session:
         self._raw, self._on_change = raw, on_change
         self._lock = threading.RLock()
         self._version = 1
+        self._changed = 1  # version at the last change of what a person said
         self._corrections = corrections
         self._found: dict[SetFrame | None, FoundLines] = {}
         self._models: OrderedDict[Content, Model] = OrderedDict()
@@ -133,23 +134,29 @@ class Session:
             edits = (*self._corrections.edits, last)
             self._change(replace(self._corrections, edits=edits, undone=tuple(undone)), added=last)
 
-    def preview(self, base: int, make: Callable[["Session"], Edit]) -> tuple[dict[int, float], Contradiction | None]:
-        """What a fact would do: the log factor by which each body would move, and what it contradicts.
+    def preview(
+        self, base: int, make: Callable[["Session"], Edit]
+    ) -> tuple[dict[int, float], Contradiction | None, str | None]:
+        """What a fact would do: the log factors by which bodies would move, what it contradicts, why it says nothing.
 
-        StaleError or CorrectionError as for `edit`; nothing changes.
+        StaleError as for `edit`, CorrectionError where it is no fact; nothing changes.
         """
         with self._lock:
             self._check(base)
             edit = make(self)
-            told = self._check_fact(edit)
-            if told is None:
+            if isinstance(edit, Withdraw) or not isinstance(edit, Fact):
                 raise CorrectionError("only what is said of bodies can be tried out")
+            try:
+                told = self._check_fact(edit)
+            except CorrectionError as error:
+                return {}, None, str(error)
+            assert told is not None
             bodies = self._bodies_now()
             corrected = replace(self._lines.corrected, facts=(*self._lines.corrected.facts, told))
             try:
-                return bodies.preview(corrected, self.options), None
+                return bodies.preview(corrected, self.options), None, None
             except ContradictionError as error:
-                return {}, contradiction_of(error.lines, error.crossings, str(error), error.facts)
+                return {}, contradiction_of(error.lines, error.crossings, str(error), error.facts), None
 
     @property
     def wants_solve(self) -> bool:
@@ -230,7 +237,8 @@ class Session:
             return self._model.scene
 
     def _check(self, base: int) -> None:
-        if base != self._version:
+        # A model that came since has changed no line: who has not heard of it yet speaks of the same lines.
+        if not self._changed <= base <= self._version:
             raise StaleError("the lines have changed in the meantime; the page shows them now, try again")
 
     def _nothing(self, what: str) -> tuple[Edit, ...]:
@@ -245,6 +253,7 @@ class Session:
             self._editing, self._notes = self._replay(corrections)
         self._corrections = corrections
         self._version += 1
+        self._changed = self._version
         self._lines = self._connect(before)
         self._contradiction = None
         known = self._models.get(self._content())

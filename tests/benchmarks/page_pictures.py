@@ -53,6 +53,27 @@ def correcting(page, folder):
     page.keyboard.press("0")
 
 
+def bodies(page, folder):
+    """The largest guess, and the most likely of its other places as a ghost."""
+    page.evaluate("linecad.model.fit()")
+    page.keyboard.press("b")
+    page.evaluate(
+        """() => {
+          const { bodies } = linecad.bodies;
+          bodies.select(bodies.list.find((body) => body.guess).id);
+        }"""
+    )
+    page.keyboard.press("Shift+N")
+    while not page.evaluate("linecad.bodies.gestures.now?.places && linecad.bodies.gestures.effect !== null"):
+        page.wait_for_timeout(100)
+    page.mouse.move(4, 4)
+    page.evaluate("document.querySelectorAll('#messages button').forEach((each) => each.click())")
+    picture(page, folder / "page-bodies.jpg")
+    for _ in range(3):
+        page.keyboard.press("Escape")
+    page.evaluate("linecad.bodies.panel.open(false)")
+
+
 def labelling(page, folder):
     """A question of the labelling mode, with the model through the camera."""
     page.keyboard.press("l")
@@ -75,6 +96,7 @@ def main():
             with opened(address, *LARGE) as page:
                 overview(page, target)
                 correcting(page, target)
+                bodies(page, target)
             with opened(address, *SMALL) as page:
                 labelling(page, target)
 

@@ -2,24 +2,13 @@
 
 import { apartAcross, normalsOf, partnersOf, placeEdit, snapsOf } from "./bodyplaces.js";
 import { lengthOf, middleOf, movedText } from "./bodies.js";
+import { gestureOf } from "./gesturelist.js";
 
 const PARTNERS = 60; // lines that the arrow keys go through
 const FOOT_STEP = 6; // px of the photo an arrow key
 const MOVE_STEP = 0.01; // log factor an arrow key
+const EVEN = 1.2; // odds below which two places are equally likely
 const FINELY = 0.1; // of a step, with Shift
-
-/** The gestures in the order of their buttons; those with `second` are about two lines. */
-export const GESTURES = [
-  { kind: "meet", key: "shift+m", label: "Meet", first: "Click an edge of one body", second: "Click the edge of another body that meets it" },
-  { kind: "height", key: "shift+h", label: "Same height", first: "Click a level line: an eave, a sill, a cornice", second: "Click a line at the same height" },
-  { kind: "plane", key: "shift+e", label: "One plane", first: "Click a line or a face", second: "Click a line or a face in the same plane" },
-  { kind: "foot", key: "shift+g", label: "On the ground", first: "Click a line of a wall, best an upright one", second: "Click where this wall meets the ground" },
-  { kind: "cut", key: "shift+x", label: "Not connected", first: "Click a line of one part", second: "Click a line of the part that is not connected with it" },
-  { kind: "place", key: "shift+n", label: "Next place", first: "Click a body" },
-  { kind: "move", key: "shift+d", label: "Move", first: "Click a body" },
-];
-
-const of = (kind) => GESTURES.find((gesture) => gesture.kind === kind);
 
 /** The gesture under way, `now`: null or `{kind, body, first, second, normal, pixel, fixed, places, index, log, preview}`. */
 export class BodyGestures {
@@ -54,14 +43,18 @@ export class BodyGestures {
 
   #isStale() {
     const ids = [this.now.first, this.now.second].filter(Boolean).map(({ id }) => id);
-    return ids.some((id) => !this.store.lines.has(id)) || (this.now.body !== undefined && this.now.body !== this.bodies.selected);
+    return (
+      ids.some((id) => !this.store.lines.has(id)) ||
+      (this.now.body !== undefined && this.now.body !== this.bodies.selected)
+    );
   }
 
   // --- begin and end ---
 
   /** Begin a gesture with what is selected, the other places at an index; again goes on to the next place, or leaves. */
   begin(kind, index = 0) {
-    if (!this.store.owner) return this.actions.messages.tell("Another tab edits this photo. Take over first.", "warning");
+    if (!this.store.owner)
+      return this.actions.messages.tell("Another tab edits this photo. Take over first.", "warning");
     if (this.bodies.list.length === 0)
       return this.actions.messages.tell("The bodies are not known yet; they come with the model.");
     if (this.now?.kind === kind) return kind === "place" ? this.step(1) : this.leave();
@@ -131,7 +124,7 @@ export class BodyGestures {
   #consider(line) {
     const { kind, first, second, fixed } = this.now;
     if (!first || !line?.ends || line.id === first.id || line.id === second?.id || fixed) return;
-    if (of(kind).second && kind !== "foot") this.#second(line, null);
+    if (gestureOf(kind).second && kind !== "foot") this.#second(line, null);
   }
 
   #second(second, normal) {
@@ -243,16 +236,22 @@ export class BodyGestures {
   get told() {
     const { kind, first, second, normals, body, places, index } = this.now;
     if (kind === "place" && places?.length === 0) return "Nothing speaks for another place; move it by hand (Shift+D)";
-    if (kind === "place" && body !== undefined) return index >= 0 ? this.#placeText(places[index]) : "Looking for other places";
-    if (kind === "move" && body !== undefined) return "Drag it in the model, or by its foot in the photo; arrows step, left and right snap";
-    if (!first) return of(kind).first;
+    if (kind === "place" && body !== undefined)
+      return index >= 0 ? this.#placeText(places[index]) : "Looking for other places";
+    if (kind === "move" && body !== undefined)
+      return "Drag it in the model, or by its foot in the photo; arrows step, left and right snap";
+    if (!first) return gestureOf(kind).first;
     if (kind === "plane" && second && normals.length === 0) return "These two lines can lie in no plane of the axes";
-    return of(kind).second;
+    return gestureOf(kind).second;
   }
 
   #placeText({ worth, words }) {
     const { places, index } = this.now;
-    const against = worth > 0 ? "more likely than the present one" : `${(-worth).toFixed(1)} less likely, in log-odds`;
+    const odds = Math.exp(Math.abs(worth));
+    const against =
+      odds < EVEN
+        ? "about as likely as where it is"
+        : `odds ${odds.toFixed(odds < 9.5 ? 1 : 0)} : 1 ${worth > 0 ? "for" : "against"} it`;
     return `Place ${index + 1} of ${places.length}: ${words.join(", ") || "no evidence of its own"} · ${against}`;
   }
 
@@ -267,7 +266,8 @@ export class BodyGestures {
     moves.sort((a, b) => this.#share(b[0]) - this.#share(a[0]));
     const [[id, log], ...others] = moves;
     const depth = this.bodies.depthOf(id);
-    const from = depth === null ? "" : `: ${this.bodies.distanceText(depth)} → ${this.bodies.distanceText(depth * Math.exp(log))}`;
+    const from =
+      depth === null ? "" : `: ${this.bodies.distanceText(depth)} → ${this.bodies.distanceText(depth * Math.exp(log))}`;
     const more = others.length > 0 ? ` · ${others.length} more` : "";
     return `${this.bodies.nameOf(id)} ${movedText(log)}${from}${more}`;
   }
@@ -298,7 +298,8 @@ export class BodyGestures {
         await this.actions.editing.settled();
         preview = await this.actions.server.post("preview", { base_version: this.store.state.version, edit: asked });
       } catch (error) {
-        preview = error.status === 422 ? { moves: {}, conflict: null, refused: error.message } : null;
+        preview = null; // the lines have changed: the gesture ends with them
+        if (error.status !== 409) this.actions.messages.tell(error.message, "error");
       }
       const tried = JSON.stringify(asked);
       if (this.now && JSON.stringify(this.edit) === tried) this.#put({ preview, tried });

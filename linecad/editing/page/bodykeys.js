@@ -1,6 +1,6 @@
 // The keys for bodies: rows of the table of keys, and those that mean something else while a gesture is under way.
 
-import { GESTURES } from "./bodygestures.js";
+import { GESTURES } from "./gesturelist.js";
 
 /** A group of the table of keys (keys.js). */
 export function bodyKeys({ bodies, gestures, panel }) {
@@ -14,8 +14,19 @@ export function bodyKeys({ bodies, gestures, panel }) {
         run: () => gestures.begin(kind),
       })),
       { keys: ["shift+b"], shown: "Shift+B", text: "The list of bodies, open or shut", run: () => panel.toggle() },
-      { keys: ["]"], text: "Select the next body, by share of the photo", run: () => bodies.selectNext(1), repeats: true },
-      { keys: ["["], text: "Select the body before", run: () => bodies.selectNext(-1), repeats: true },
+      {
+        keys: ["]"],
+        text: "Select the next body, by share of the photo",
+        run: () => bodies.selectNext(1),
+        repeats: true,
+      },
+      {
+        keys: ["shift+pageup"],
+        shown: "Shift+PgUp",
+        text: "Select the body before",
+        run: () => bodies.selectNext(-1),
+        repeats: true,
+      },
     ],
   ];
 }

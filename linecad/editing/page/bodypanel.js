@@ -1,7 +1,7 @@
 // The panel beside the model: bodies by their share of the photo, the selected one, what was said, what that moved.
 
 import { element, keyButton } from "./dom.js";
-import { GESTURES } from "./bodygestures.js";
+import { GESTURES } from "./gesturelist.js";
 import { movedText } from "./bodies.js";
 
 const MOST_TIES = 8; // shown of the selected body
@@ -17,7 +17,13 @@ export class BodyPanel {
     document.querySelector("#workspace").append(this.panel);
     this.button = element(
       "button",
-      { id: "bodies", "aria-expanded": "false", "aria-controls": "bodies-panel", title: "What holds together, and how sure its place is (B)", onclick: () => this.toggle() },
+      {
+        id: "bodies",
+        "aria-expanded": "false",
+        "aria-controls": "bodies-panel",
+        title: "What holds together, and how sure its place is (B)",
+        onclick: () => this.toggle(),
+      },
       "Bodies ",
       element("span", { class: "count" }),
     );
@@ -80,7 +86,13 @@ export class BodyPanel {
       ...this.#list(),
     );
     if (bodies.list.length === 0)
-      panel.append(element("p", { class: "quiet" }, store.solve.state === "running" ? "They come with the model." : "This program places no bodies."));
+      panel.append(
+        element(
+          "p",
+          { class: "quiet" },
+          store.solve.state === "running" ? "They come with the model." : "This program places no bodies.",
+        ),
+      );
     this.#pressButtons();
     panel.scrollTop = scroll;
     const again = at === null ? controls()[index] : panel.querySelector(`[data-at="${at}"]`);
@@ -138,7 +150,9 @@ export class BodyPanel {
     if (!body) return [element("h3", {}, "The ground"), element("p", {}, "It lies where the feet of walls say.")];
     const depth = bodies.depthOf(id);
     const place = `${depth === null ? "no line is in the model" : `${bodies.distanceText(depth)} away`} · ${body.lines.length} lines`;
-    const sure = body.reference ? "The largest: all others are placed against it." : `${sureText(body)}${body.by_depth_map ? ", by the depth map" : ""}`;
+    const sure = body.reference
+      ? "The largest: all others are placed against it."
+      : `${sureText(body)}${body.by_depth_map ? ", by the depth map" : ""}`;
     const [counted, refused] = [true, false].map((wanted) => body.ties.filter((tie) => tie.counted === wanted));
     return [
       element("h3", {}, bodies.nameOf(id)),
@@ -152,7 +166,8 @@ export class BodyPanel {
   #ties(title, ties) {
     if (ties.length === 0) return [];
     const rows = ties.slice(0, MOST_TIES).map((tie) => element("li", {}, this.#tieText(tie)));
-    const more = ties.length > MOST_TIES ? [element("li", { class: "quiet" }, `and ${ties.length - MOST_TIES} more`)] : [];
+    const more =
+      ties.length > MOST_TIES ? [element("li", { class: "quiet" }, `and ${ties.length - MOST_TIES} more`)] : [];
     return [element("h4", {}, title), element("ul", { class: "ties" }, rows, more)];
   }
 
@@ -172,17 +187,19 @@ export class BodyPanel {
     const { list } = this.#places;
     if (list === null) return [];
     if (list.length === 0) return [element("p", { class: "quiet" }, "Nothing speaks for another place.")];
-    const rows = list.slice(0, MOST_TIES).map(({ move, words }, index) =>
-      element(
-        "li",
-        {},
+    const rows = list
+      .slice(0, MOST_TIES)
+      .map(({ move, words }, index) =>
         element(
-          "button",
-          { class: "place", title: "Show this place; Enter takes it", onclick: () => this.#try(index) },
-          `${movedText(move)}: ${words.join(", ") || "no evidence of its own"}`,
+          "li",
+          {},
+          element(
+            "button",
+            { class: "place", title: "Show this place; Enter takes it", onclick: () => this.#try(index) },
+            `${movedText(move)}: ${words.join(", ") || "no evidence of its own"}`,
+          ),
         ),
-      ),
-    );
+      );
     return [element("h4", {}, "Other places"), element("ol", { class: "ties" }, rows)];
   }
 

@@ -71,8 +71,7 @@ function lowestOf(lines) {
 /** Places in order, of those that are one the first named. */
 function distinct(places) {
   const kept = [];
-  for (const place of places)
-    if (kept.every(({ log }) => Math.abs(log - place.log) > SAME)) kept.push(place);
+  for (const place of places) if (kept.every(({ log }) => Math.abs(log - place.log) > SAME)) kept.push(place);
   return kept.sort((a, b) => a.log - b.log);
 }
 

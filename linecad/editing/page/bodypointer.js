@@ -57,6 +57,7 @@ export class BodyPointer {
     const chosen = line ?? this.#lineOfFace(hit);
     if (now && now.kind !== "place" && now.kind !== "move") {
       if (!chosen?.ends) return;
+      if (!now.first) this.store.set({ selection: { kind: "line", id: chosen.id } });
       gestures.choose(chosen, line ? null : hit.plane.axis);
       if (gestures.edit && gestures.now?.second?.id === chosen.id) gestures.take();
       return;
@@ -92,18 +93,26 @@ export class BodyPointer {
     const stage = document.querySelector("#stage");
     const canvas = this.photo.canvases.overlay;
     const at = (event) => [event.offsetX, event.offsetY];
-    stage.addEventListener("pointermove", (event) => {
-      if (!this.#isOn || event.target !== canvas) return;
-      if (this.#drag) return this.#dragTo(at(event), event);
-      const { now } = this.gestures;
-      if (now?.kind === "foot") return this.gestures.foot(this.photo.viewport.toPhoto(at(event)));
-      this.store.set({ bodyHover: now ? null : this.#bodyInPhoto(at(event)) });
-    }, true);
-    stage.addEventListener("pointerdown", (event) => {
-      if (!this.#isOn || event.target !== canvas || event.button !== 0) return;
-      if (this.gestures.now?.kind !== "move" || this.#bodyInPhoto(at(event)) !== this.gestures.now.body) return;
-      this.#begin(at(event), this.#alongPhoto(at(event)), canvas, event);
-    }, true);
+    stage.addEventListener(
+      "pointermove",
+      (event) => {
+        if (!this.#isOn || event.target !== canvas) return;
+        if (this.#drag) return this.#dragTo(at(event), event);
+        const { now } = this.gestures;
+        if (now?.kind === "foot") return this.gestures.foot(this.photo.viewport.toPhoto(at(event)));
+        this.store.set({ bodyHover: now ? null : this.#bodyInPhoto(at(event)) });
+      },
+      true,
+    );
+    stage.addEventListener(
+      "pointerdown",
+      (event) => {
+        if (!this.#isOn || event.target !== canvas || event.button !== 0) return;
+        if (this.gestures.now?.kind !== "move" || this.#bodyInPhoto(at(event)) !== this.gestures.now.body) return;
+        this.#begin(at(event), this.#alongPhoto(at(event)), canvas, event);
+      },
+      true,
+    );
     this.#listenToEnd(stage, canvas);
     canvas.addEventListener("pointerleave", () => this.store.set({ bodyHover: null }));
   }
@@ -145,16 +154,24 @@ export class BodyPointer {
     const { canvas } = this.model;
     const at = (event) => [event.offsetX, event.offsetY];
     let from = null;
-    stage.addEventListener("pointerdown", (event) => {
-      if (!this.#isOn || event.target !== canvas || event.button !== 0 || event.shiftKey) return void (from = null);
-      from = at(event);
-      if (this.gestures.now?.kind !== "move") return;
-      const line = this.store.find(this.store.hover);
-      const hit = line ? null : this.#faceOfModel(from);
-      if ((line?.body ?? hit?.face.body) !== this.gestures.now.body) return;
-      this.#begin(from, this.#alongRay(from, line, hit), canvas, event);
-    }, true);
-    stage.addEventListener("pointermove", (event) => this.#drag && event.target === canvas && this.#dragTo(at(event), event), true);
+    stage.addEventListener(
+      "pointerdown",
+      (event) => {
+        if (!this.#isOn || event.target !== canvas || event.button !== 0 || event.shiftKey) return void (from = null);
+        from = at(event);
+        if (this.gestures.now?.kind !== "move") return;
+        const line = this.store.find(this.store.hover);
+        const hit = line ? null : this.#faceOfModel(from);
+        if ((line?.body ?? hit?.face.body) !== this.gestures.now.body) return;
+        this.#begin(from, this.#alongRay(from, line, hit), canvas, event);
+      },
+      true,
+    );
+    stage.addEventListener(
+      "pointermove",
+      (event) => this.#drag && event.target === canvas && this.#dragTo(at(event), event),
+      true,
+    );
     this.#listenToEnd(stage, canvas);
     // After the view's own listener, which selects a line.
     stage.addEventListener("pointerup", (event) => {
@@ -235,18 +252,26 @@ export class BodyPointer {
   }
 
   #listenToEnd(stage, canvas) {
-    stage.addEventListener("pointerup", (event) => {
-      if (!this.#drag || event.target !== canvas) return;
-      const { moved } = this.#drag;
-      this.#drag = null;
-      event.stopPropagation();
-      // Released: that is where it stands.
-      if (moved) this.gestures.take();
-    }, true);
-    stage.addEventListener("pointercancel", () => {
-      if (this.#drag) this.gestures.leave();
-      this.#drag = null;
-    }, true);
+    stage.addEventListener(
+      "pointerup",
+      (event) => {
+        if (!this.#drag || event.target !== canvas) return;
+        const { moved } = this.#drag;
+        this.#drag = null;
+        event.stopPropagation();
+        // Released: that is where it stands.
+        if (moved) this.gestures.take();
+      },
+      true,
+    );
+    stage.addEventListener(
+      "pointercancel",
+      () => {
+        if (this.#drag) this.gestures.leave();
+        this.#drag = null;
+      },
+      true,
+    );
   }
 }
 

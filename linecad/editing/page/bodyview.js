@@ -9,6 +9,8 @@ const FILL = { selected: 0.3, hovered: 0.16 }; // opacity of faces
 const GHOST_FACE = 0.55;
 const SECONDS = 2.5; // that what moved is shown
 const MOST_ARROWS = 12;
+const MOST_CHIPS = 6; // bodies whose move is told in the photo; the strip counts the others
+const LABEL_HEIGHT = 24; // CSS px
 const NEAREST_DEPTH = 1e-3;
 
 export class BodyView {
@@ -99,8 +101,12 @@ export class BodyView {
     this.#chosen(context);
     const chips = moves.length > 0 ? moves : [...this.#flash];
     const colour = moves.length > 0 ? GHOST : "#00707c";
-    for (const [body, log] of chips) this.#chip(context, body, log, colour);
+    const largest = (id) => this.bodies.byId.get(id)?.share ?? 0;
+    const taken = [];
+    for (const [body, log] of chips.sort((a, b) => largest(b[0]) - largest(a[0])).slice(0, MOST_CHIPS))
+      this.#chip(context, body, log, colour, taken);
     if (chips.length === 0 && selected !== null) this.#name(context, selected);
+    canvas.dispatchEvent(new Event("painted"));
   }
 
   #body(context, body, ink, fill, width) {
@@ -180,29 +186,35 @@ export class BodyView {
     context.restore();
   }
 
-  #chip(context, body, log, colour) {
+  #chip(context, body, log, colour, taken) {
     const depth = this.bodies.depthOf(body);
     const { distanceText } = this.bodies;
     const text = (value) => distanceText.call(this.bodies, value);
     const isOver = this.gestures.now !== null;
     const [before, after] = isOver ? [depth, depth * Math.exp(log)] : [depth * Math.exp(-log), depth];
     const words = depth === null ? "" : `  ${text(before)} → ${text(after)}`;
-    this.#label(context, body, `${this.bodies.nameOf(body)}: ${movedText(log)}${words}`, colour);
+    this.#label(context, body, `${this.bodies.nameOf(body)}: ${movedText(log)}${words}`, colour, taken);
   }
 
   #name(context, body) {
     this.#label(context, body, this.bodies.nameOf(body), INK);
   }
 
-  #label(context, body, text, colour) {
+  /** A label at the longest line of a body, within the stage; not where it would cover one of those `taken`. */
+  #label(context, body, text, colour, taken = []) {
     const line = this.bodies.lineOf(body);
     if (!line) return;
-    const [x, y] = this.photo.viewport.toScreen(middleOf(line));
+    const { viewport } = this.photo;
     context.font = "600 12.5px system-ui, sans-serif";
     const wide = context.measureText(text).width + 14;
+    const [left, y] = viewport.toScreen(middleOf(line));
+    const x = Math.min(Math.max(left, wide / 2 + 4), viewport.width - wide / 2 - 4);
+    if (taken.some((other) => Math.abs(other.x - x) < (other.wide + wide) / 2 && Math.abs(other.y - y) < LABEL_HEIGHT))
+      return;
+    taken.push({ x, y, wide });
     context.fillStyle = colour;
     context.beginPath();
-    context.roundRect(x - wide / 2, y - 12, wide, 24, 6);
+    context.roundRect(x - wide / 2, y - LABEL_HEIGHT / 2, wide, LABEL_HEIGHT, 6);
     context.fill();
     context.fillStyle = CASING;
     context.textAlign = "center";
@@ -225,9 +237,16 @@ export class BodyView {
     };
     if (hovered !== null && hovered !== selected) light(hovered, INK, 2);
     if (selected !== null) light(selected, INK, 2.2);
-    for (const [body, log] of this.#flash) light(body, CHANGED, 4), lit.push(...this.#arrow(body, -log, CHANGED, true));
+    for (const [body, log] of this.#flash)
+      (light(body, CHANGED, 4), lit.push(...this.#arrow(body, -log, CHANGED, true)));
     for (const line of [this.gestures.now?.first, this.gestures.now?.second])
-      if (line) lit.push({ start: line.ends[0], end: line.ends[1], colour: [...channels(GHOST), 1], width: 6 * devicePixelRatio });
+      if (line)
+        lit.push({
+          start: line.ends[0],
+          end: line.ends[1],
+          colour: [...channels(GHOST), 1],
+          width: 6 * devicePixelRatio,
+        });
     const corners = [];
     for (const [id, log] of Object.entries(this.gestures.moves)) {
       const [body, factor] = [Number(id), Math.exp(log)];
@@ -253,7 +272,12 @@ export class BodyView {
     const along = subtract(end, start);
     const aside = times(unit([along[1], -along[0], 0]), 0.12 * Math.hypot(...along));
     const back = subtract(end, times(along, 0.2));
-    const stroke = (from, to) => ({ start: from, end: to, colour: [...channels(colour), 1], width: 2.6 * devicePixelRatio });
+    const stroke = (from, to) => ({
+      start: from,
+      end: to,
+      colour: [...channels(colour), 1],
+      width: 2.6 * devicePixelRatio,
+    });
     return [stroke(start, end), stroke(end, add(back, aside)), stroke(end, subtract(back, aside))];
   }
 
@@ -269,4 +293,3 @@ export class BodyView {
     graphics.drawLines(lit, matrix, { always: true });
   }
 }
-

@@ -1,7 +1,7 @@
 // The strip over the photo while a gesture is under way: what to do next, what it would do, take it or leave it.
 
 import { element, keyButton } from "./dom.js";
-import { GESTURES } from "./bodygestures.js";
+import { gestureOf } from "./gesturelist.js";
 import { movedText } from "./bodies.js";
 
 export class GestureBar {
@@ -19,7 +19,7 @@ export class GestureBar {
     if (!now) return;
     const buttons = () => [...this.bar.querySelectorAll("button")];
     const focused = buttons().indexOf(document.activeElement);
-    const { label } = GESTURES.find(({ kind }) => kind === now.kind);
+    const { label } = gestureOf(now.kind);
     const { effect } = gestures;
     const isBad = Boolean(now.preview?.refused || now.preview?.conflict) && effect !== null;
     this.bar.replaceChildren(

@@ -143,7 +143,10 @@ export function keyTable({ store, actions, tools, pointer, panels, views, choosi
 
 /** Listen to the keys of a table, but not where text is typed or a dialog is open. */
 export function listenToKeys(table) {
-  const byName = new Map(table.flatMap(([, rows]) => rows).flatMap((row) => row.keys.map((key) => [key, row])));
+  const pairs = table.flatMap(([, rows]) => rows).flatMap((row) => row.keys.map((key) => [key, row]));
+  const byName = new Map(pairs);
+  const twice = pairs.find(([key, row]) => byName.get(key) !== row);
+  if (twice) throw new Error(`the key ${twice[0]} means two things`);
   const held = new Set();
   addEventListener("keydown", (event) => {
     if (isElsewhere(event)) return;

@@ -25,7 +25,8 @@ export class SaidList {
     this.#undo = state.undo;
     if (told === this.#told && !isOther) return;
     this.#told = told;
-    if ((state.moved ?? []).length > 0) this.#moved = state.moved.map((move) => this.#kept(move, state.moved)).filter(Boolean);
+    if ((state.moved ?? []).length > 0)
+      this.#moved = state.moved.map((move) => this.#kept(move, state.moved)).filter(Boolean);
   }
 
   #kept({ body, log_factor: log, asked }, moved) {
@@ -89,10 +90,20 @@ export class SaidList {
       if (move.asked) return element("li", {}, text);
       const refuse = element(
         "button",
-        { title: "Say that it stays where it was", "data-at": `back-${move.line}`, disabled: !this.store.owner, onclick: () => this.refuse(move) },
+        {
+          title: "Say that it stays where it was",
+          "data-at": `back-${move.line}`,
+          disabled: !this.store.owner,
+          onclick: () => this.refuse(move),
+        },
         "Put back",
       );
-      return element("li", { class: "distant" }, element("span", {}, text, element("em", {}, " not asked for")), refuse);
+      return element(
+        "li",
+        { class: "distant" },
+        element("span", {}, text, element("em", {}, " not asked for")),
+        refuse,
+      );
     });
   }
 

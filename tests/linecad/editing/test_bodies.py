@@ -199,6 +199,22 @@ class TestPreview:
         assert "cannot all hold" in told["conflict"]["text"]
         assert solved.state()["contradiction"] is None
 
+    def test_it_tells_why_a_fact_would_say_nothing(self, solved):
+        first, second = (line["id"] for line in lines_of(solved.state(), 0)[:2])
+        edit = {"op": "place", "line": first, "to": second, "log_ratio": 2.0}
+        told = solved.post("preview", base_version=solved.version, edit=edit).json()
+        assert (told["moves"], told["conflict"]) == ({}, None)
+        assert "cut it between them first" in told["refused"]
+
+    def test_a_page_that_has_not_heard_of_a_model_speaks_of_the_same_lines(self, solved):
+        state = solved.edit(**place(solved.state(), 0.5))
+        solved.solving.answer()
+        edit = {"op": "withdraw", "edit": state["facts"][0]["edit"]}
+        answer = solved.post("edit", base_version=state["version"], edit=edit)
+        assert answer.status_code == 200
+        assert answer.json()["facts"] == []
+        assert solved.post("edit", base_version=state["version"], edit=edit).status_code == 409
+
     def test_only_facts_are_tried_out(self, solved):
         text = solved.refused(422, "preview", edit={"op": "delete", "line": 0})
         assert "only what is said of bodies" in text
