@@ -80,7 +80,7 @@ def chances(pieces: Pieces, seams: list[Seam], links: list[Link], length: Float)
         place[:, link.body] = tied_to + _off(random, link.probability) - within[:, link.piece]
     at: Float = place[:, pieces.body] + within
     own = pieces.piece >= 0
-    weight: Float = np.bincount(pieces.piece[own], length[own], pieces.count)
+    weight = np.bincount(pieces.piece[own], length[own], pieces.count).astype(np.float64)
     off: Float = np.abs(at - _medians(at, weight)[:, None])
     near: Float = (off < RIGHT).mean(axis=0)
     return near
