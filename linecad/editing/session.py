@@ -5,10 +5,9 @@ Everything here is kept by one lock; the server's threads and the one that hears
 
 import threading
 from collections import OrderedDict
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
 
-from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import annotations_of, rows_of
 from linecad.corrections.apply import Correcting, correcting_of
@@ -344,10 +343,6 @@ class Session:
             bodies = ShownBodies.of(made.places, made.graph, self._lines.corrected)
         shown = next((content for content, model in self._models.items() if model is self._solved), None)
         edited = () if shown is None else between(shown, self._content())
-        far = distant(changed, self._place(changed), edited, self.photo.width)
+        pixel = {crossing: self._lines.graph.crossing[self._lines.edge[crossing]] for crossing in changed}
+        far = distant(changed, pixel, edited, self.photo.width)
         return Model(made.scene, self._version, now, changed, seconds, far, bodies)
-
-    def _place(self, crossings: Iterable[int]) -> dict[int, Float]:
-        """Where crossings are in the photo, px."""
-        graph, edge = self._lines.graph, self._lines.edge
-        return {crossing: graph.crossing[edge[crossing]] for crossing in crossings}
