@@ -23,38 +23,38 @@ LARGEST_MARGIN = 20.0
 TOLD = 0.97  # probability of a place that a person gave: nobody measured how often people are wrong
 FARTHEST_OFF = 6.0  # widths of a depth map
 # Logistic regression on bodies of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = 2.4905
+AT_ONCE = 2.2921
 LOG_ODDS: dict[str, float] = {
-    "margin": 0.1330,
-    "root of margin": 0.0355,
-    "lines of the body": -0.0227,
-    "lines of the piece": -1.0997,
-    "lines of the other": -0.7470,
-    "weight": 1.5495,
-    "weight of all": 0.7161,
-    "kinds": 0.2109,
-    "weakest": 0.5558,
-    "by a bundle": -0.1880,
-    "by the ground": -0.1371,
-    "bodies": -0.6566,
+    "margin": 0.1171,
+    "root of margin": 0.0622,
+    "lines of the body": -0.0292,
+    "lines of the piece": -1.1304,
+    "lines of the other": -0.6974,
+    "weight": 1.6330,
+    "weight of all": 0.7144,
+    "kinds": 0.1892,
+    "weakest": 0.5947,
+    "by a bundle": -0.1588,
+    "by the ground": -0.1556,
+    "bodies": -0.6459,
 }
 # The same where a depth map was heard.
-WITH_MAP_AT_ONCE = 1.7319
+WITH_MAP_AT_ONCE = 0.8300
 WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "margin": 0.0978,
-    "root of margin": 0.3389,
-    "lines of the body": 0.0003,
-    "lines of the piece": -1.1143,
-    "lines of the other": -0.5458,
-    "weight": 1.4329,
-    "weight of all": 0.4778,
-    "kinds": -0.0758,
-    "weakest": 0.4393,
-    "by a bundle": -0.2621,
-    "by the ground": -0.2950,
-    "bodies": -0.3124,
-    "map's word": 0.5523,
-    "off the map": -0.3507,
+    "margin": 0.0912,
+    "root of margin": 0.4182,
+    "lines of the body": -0.1821,
+    "lines of the piece": -1.1263,
+    "lines of the other": -0.2631,
+    "weight": 1.5551,
+    "weight of all": 0.6108,
+    "kinds": -0.0298,
+    "weakest": 0.2533,
+    "by a bundle": -0.2312,
+    "by the ground": -0.1358,
+    "bodies": -0.2096,
+    "map's word": 0.4827,
+    "off the map": -0.3055,
 }
 
 

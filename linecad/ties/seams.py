@@ -45,25 +45,25 @@ OF_BUNDLE = (
     "plane beside",
 )
 # Logistic regression on cuts of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -2.5690
+AT_ONCE = -2.3134
 LOG_ODDS: dict[str, float] = {
-    "near": -1.0286,
-    "levels": 0.3847,
-    "level excess": 0.1302,
-    "level lead": 0.2237,
-    "same eaves": 0.1123,
-    "size excess": 0.0931,
-    "corners": -0.1785,
-    "pieces": 0.4829,
-    "from both": -0.3133,
-    "supported": 1.1710,
-    "connected": 0.0510,
-    "plane of it": 1.5315,
-    "plane beside": 1.5675,
-    "shade": 1.6437,
-    "overlap across": 0.8798,
-    "overlap down": -0.4695,
-    "stays": 1.4912,
+    "near": -1.1980,
+    "levels": 0.3316,
+    "level excess": 0.1476,
+    "level lead": 0.1937,
+    "same eaves": 0.0556,
+    "size excess": 0.1040,
+    "corners": -0.1772,
+    "pieces": 0.5242,
+    "from both": -0.2840,
+    "supported": 1.2617,
+    "connected": 0.0025,
+    "plane of it": 1.5335,
+    "plane beside": 1.5984,
+    "shade": 1.4729,
+    "overlap across": 0.7903,
+    "overlap down": -0.3403,
+    "stays": 1.4746,
 }
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
+from linecad.directions import Turns, components
 from linecad.ties.setting import Setting
 from linecad.ties.walls import COLUMNS, ROW, ROWS, Strip, StripDrawer, find_walls
 
@@ -30,7 +31,7 @@ class Example:
 
 def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -> list[Example]:
     """The walls of all bodies of known scale (B,), NaN where it is not known."""
-    drawer, known = StripDrawer(setting), _Ground(truth)
+    drawer, known = StripDrawer(setting), GroundTruth(truth, setting.graph.turns)
     found = []
     for wall in find_walls(setting):
         strip = drawer.draw(wall) if np.isfinite(true_scale[wall.body]) else None
@@ -42,12 +43,13 @@ def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -
     return found
 
 
-class _Ground:
-    def __init__(self, truth: Truth) -> None:
+class GroundTruth:
+    def __init__(self, truth: Truth, turns: Turns) -> None:
         self._truth = truth
-        self._normal, offset = truth.planes()
+        normal, offset = truth.planes()
+        self.normal = components(normal, turns)  # (Q, K) along all directions, by which walls are numbered
         self._offset = np.abs(offset)
-        flat = np.abs(self._normal[:, 2]) > 0.99
+        flat = np.abs(self.normal[:, 2]) > 0.99
         height = truth.quads[..., 2].mean(axis=1)
         self._log_height = np.log(np.maximum(-height, 1e-9))
         self._is_ground = flat & (height < height[flat].min() + STEPPED)
@@ -72,7 +74,7 @@ class _Ground:
     def _is_wall(self, quads: Int, strip: Strip, scale: float) -> Bool:
         plane = strip.wall.plane
         apart = np.abs(np.log(np.maximum(self._offset[quads], 1e-9)) - plane.log_offset - scale)
-        wall: Bool = (quads != NOTHING) & (np.abs(self._normal[quads, plane.normal]) > 0.99) & (apart < SAME_PLANE)
+        wall: Bool = (quads != NOTHING) & (np.abs(self.normal[quads, plane.normal]) > 0.99) & (apart < SAME_PLANE)
         return wall
 
     def _shown(self, strip: Strip, drawer: StripDrawer, log_height: Float) -> Int:

@@ -1,10 +1,13 @@
 """What tests/benchmarks/feet_truth.py says of the feet of walls, on scenes of few quads."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
-from feet_truth import STEPPED, UNSEEN, examples_of
+from feet_truth import STEPPED, UNSEEN, GroundTruth, examples_of
 
 from linecad.dataset.truth import NOTHING, Truth
+from linecad.directions import directions_of
 from linecad.ties.walls import ROW
 
 BELOW = 1.6  # m from the camera down to the ground
@@ -94,3 +97,15 @@ def test_a_pavement_is_ground_and_a_terrace_is_not(known, above, is_ground):
     assert (example.row != UNSEEN) is is_ground
     if is_ground:
         assert example.log_height == pytest.approx(np.log(BELOW - above), abs=0.6 * ROW)
+
+
+def test_walls_of_further_frames_are_known_by_their_own_directions():
+    """Walls of a turned house are numbered from 3 on."""
+    turns = (0.4,)
+    normals = directions_of(turns)[[1, 2, 4]]
+    quads = np.zeros((3, 4, 3)) - [0.0, 0.0, BELOW]
+    truth = SimpleNamespace(planes=lambda: (normals, np.ones(3)), quads=quads)
+    known = GroundTruth(truth, turns)
+    along = np.abs(known.normal) > 0.99
+    assert along.tolist() == [[False, True, False, False, False], [False, False, True, False, False],
+                              [False, False, False, False, True]]  # fmt: skip
