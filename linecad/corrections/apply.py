@@ -126,12 +126,7 @@ class Correcting:
                 self._label((min(first, second), max(first, second)), edit.pixel, edit.label)
             case SetAxis():
                 if not before_frame:
-                    number = self.find(edit.line, before_frame)
-                    line = self.lines[number]
-                    turned = _Line(self.drawing.turned(line.ends, edit.axis), edit.axis, line.origin)
-                    if edit.axis != line.axis:
-                        self._check_new(turned)
-                        self._put(number, turned)
+                    self._turn(self.find(edit.line, before_frame), edit.axis)
             case Delete():
                 self._drop(self.find(edit.line, before_frame), ())
             case SetEnds():
@@ -262,6 +257,14 @@ class Correcting:
                 np.array([line.axis for line in lines], np.int64),
             )
         return self._table
+
+    def _turn(self, number: int, axis: int) -> None:
+        """Let a line run along another axis."""
+        line = self.lines[number]
+        turned = _Line(self.drawing.turned(line.ends, axis), axis, line.origin)
+        if axis != line.axis:
+            self._check_new(turned)
+            self._put(number, turned)
 
     def _apply_all(self, edits: tuple[Part, ...], before_frame: bool) -> None:
         """Apply edits one after another, all or none."""

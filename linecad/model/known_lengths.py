@@ -59,6 +59,12 @@ def measurable(scene: Scene) -> Bool:
     return tells
 
 
+def _is_measurable(scene: Scene, plane: Plane) -> bool:
+    """Whether most of a plane's lines are; one without lines is where it is of component 0."""
+    tells = measurable(scene)[np.isin(scene.lines.id, plane.lines)]
+    return bool(2 * tells.sum() >= len(tells)) if len(tells) else scene.components_of_planes[plane.id] == 0
+
+
 def units_between(scene: Scene, corrected: CorrectedLines, places: tuple[FoundPlace, FoundPlace]) -> float:
     """How far apart two points are, in units of the scene; ScaleError where it has no such point, or not for sure."""
     first, second = (_point(scene, corrected, place) for place in places)
@@ -94,8 +100,8 @@ def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
     plane = seen_plane(scene, place.face, place.normal)
     if plane is None:
         raise ScaleError(f"no face that a person measured on is at {place.face[0]:.0f},{place.face[1]:.0f} px any more")
-    if scene.components_of_planes[plane.id] != 0:
-        raise ScaleError(f"plane {plane.id} is not of component 0, whose scale alone is no guess")
+    if not _is_measurable(scene, plane):
+        raise ScaleError(f"plane {plane.id} {UNSURE}")
     along = float(plane.along_normal(ray, scene.turns))
     if along * plane.offset <= GRAZING * abs(plane.offset) * float(np.linalg.norm(ray)):
         raise ScaleError(f"the ray of {u:.0f},{v:.0f} px does not meet plane {plane.id}")

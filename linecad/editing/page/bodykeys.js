@@ -15,7 +15,8 @@ export function bodyKeys({ bodies, gestures, panel }) {
       })),
       { keys: ["shift+b"], shown: "Shift+B", text: "The list of bodies, open or shut", run: () => panel.toggle() },
       {
-        keys: ["]"],
+        keys: ["shift+pagedown"],
+        shown: "Shift+PgDn",
         text: "Select the next body, by share of the photo",
         run: () => bodies.selectNext(1),
         repeats: true,

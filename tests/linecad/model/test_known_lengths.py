@@ -112,7 +112,10 @@ def test_the_normal_tells_faces_at_one_place_apart(town):
     ("places", "words"),
     [
         ((on_face((0, 10, 0), (0, 10, 0)), on_face((0, 10, 0), (0, 10, 0))), "two points are one"),
-        ((on_face((0, 10, 0), (0, 10, 0)), on_face((4, BACK, 0), (4, BACK, 0))), "plane 1 is not of component 0"),
+        (
+            (on_face((0, 10, 0), (0, 10, 0)), on_face((4, BACK, 0), (4, BACK, 0))),
+            "plane 1 stands at a depth that is a guess",
+        ),
         ((on_face((0, 10, 0), (0, 10, 0)), on_face((0, 10, 0), (0, 10, 3.9), 0)), "no face .* any more"),
         ((on_face((0, 10, 0), (0, 10, 0)), FoundPlace(pixel_of((0, BACK, 1)), line=2)), "depth that is a guess"),
         ((on_face((0, 10, 0), (0, 10, 0)), FoundPlace((0, 0), face=pixel_of((0, 9, GROUND)), normal=2)), "not meet"),
