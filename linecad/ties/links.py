@@ -23,20 +23,20 @@ LARGEST_MARGIN = 20.0
 TOLD = 0.97  # probability of a place that a person gave: nobody measured how often people are wrong
 FARTHEST_OFF = 6.0  # widths of a depth map
 # Logistic regression on bodies of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = 2.2921
+AT_ONCE = 0.4945
 LOG_ODDS: dict[str, float] = {
-    "margin": 0.1171,
-    "root of margin": 0.0622,
-    "lines of the body": -0.0292,
-    "lines of the piece": -1.1304,
-    "lines of the other": -0.6974,
-    "weight": 1.6330,
-    "weight of all": 0.7144,
-    "kinds": 0.1892,
-    "weakest": 0.5947,
-    "by a bundle": -0.1588,
-    "by the ground": -0.1556,
-    "bodies": -0.6459,
+    "margin": 0.0423,
+    "root of margin": 0.1742,
+    "lines of the body": -0.7468,
+    "lines of the piece": -0.6290,
+    "lines of the other": -0.6028,
+    "weight": 2.2564,
+    "weight of all": 0.6294,
+    "kinds": 0.2221,
+    "weakest": 0.9509,
+    "by a bundle": 0.0735,
+    "by the ground": 0.0913,
+    "bodies": -0.2959,
 }
 # The same where a depth map was heard.
 WITH_MAP_AT_ONCE = 0.8300

@@ -24,11 +24,11 @@ RIGHT = 0.05  # log scale
 OFF = (0.06, 1.0)  # log scale, by which what does not hold is off, to either side
 LEAST_WEIGHT = 0.1  # log-odds of one crossing that agrees and one that does not, for lines with hardly any
 # Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -1.5505
+AT_ONCE = -3.0648
 LOG_ODDS: dict[str, float] = {
-    "together": 2.7766,
-    "agreement": 2.1823,
-    "contradictions": -0.5798,
+    "together": 4.6341,
+    "agreement": 2.8884,
+    "contradictions": 0.0167,
 }
 
 

@@ -45,25 +45,25 @@ OF_BUNDLE = (
     "plane beside",
 )
 # Logistic regression on cuts of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -2.3134
+AT_ONCE = -3.0900
 LOG_ODDS: dict[str, float] = {
-    "near": -1.1980,
-    "levels": 0.3316,
-    "level excess": 0.1476,
-    "level lead": 0.1937,
-    "same eaves": 0.0556,
-    "size excess": 0.1040,
-    "corners": -0.1772,
-    "pieces": 0.5242,
-    "from both": -0.2840,
-    "supported": 1.2617,
-    "connected": 0.0025,
-    "plane of it": 1.5335,
-    "plane beside": 1.5984,
-    "shade": 1.4729,
-    "overlap across": 0.7903,
-    "overlap down": -0.3403,
-    "stays": 1.4746,
+    "near": -1.3759,
+    "levels": 0.4042,
+    "level excess": 0.1969,
+    "level lead": 0.1916,
+    "same eaves": 0.4499,
+    "size excess": 0.0897,
+    "corners": -0.1324,
+    "pieces": 0.5265,
+    "from both": -0.3251,
+    "supported": 1.5321,
+    "connected": 0.3948,
+    "plane of it": 1.3830,
+    "plane beside": 1.8106,
+    "shade": 2.5943,
+    "overlap across": 0.5808,
+    "overlap down": -0.5445,
+    "stays": 1.5040,
 }
 
 
