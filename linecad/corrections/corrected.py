@@ -6,7 +6,8 @@ from typing import Literal
 import numpy as np
 
 from linecad.arrays import Int
-from linecad.corrections.edits import Cut, FaceEdit, Fact, Label, Point
+from linecad.corrections.edits import Cut, FaceEdit, Fact, Label, OnePlane, Point, WallByEdges
+from linecad.directions import UP, partner
 from linecad.line_graph import Segments
 
 Origin = Literal["found", "drawn", "split", "joined"]
@@ -28,6 +29,7 @@ class ToldFact:
 
     fact: Fact
     lines: tuple[int, ...]
+    is_implied: bool = False  # by what a person told of faces; it gives way to what was told of bodies
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +60,28 @@ class CorrectedLines:
     def cuts(self) -> frozenset[Fact]:
         """The facts on which it depends which lines are one body."""
         return frozenset(told.fact for told in self.facts if isinstance(told.fact, Cut))
+
+    @property
+    def implied(self) -> tuple[ToldFact, ...]:
+        """What walls by their edges say of bodies: all edges lie in one plane; by ids of lines."""
+        number = {(axis, ends.tobytes()): own for axis, ends, own in
+                  zip(self.segments.axis.tolist(), self.segments.ends, self.ids.tolist(), strict=True)}  # fmt: skip
+        found = []
+        for wall in self.faces:
+            if not isinstance(wall, WallByEdges):
+                continue
+            edges = [(line, number.get((line.axis, np.array(line.ends).tobytes()))) for line in wall.lines]
+            normal = next(int(partner(line.axis)) for line in wall.lines if line.axis != UP)
+            (first, own), *others = edges
+            for line, other in others:
+                if own is not None and other is not None:
+                    found.append(ToldFact(OnePlane((first, line), normal), (own, other), is_implied=True))
+        return tuple(found)
+
+    @property
+    def all_facts(self) -> tuple[ToldFact, ...]:
+        """The facts that were told and then those that are implied."""
+        return (*self.facts, *self.implied)
 
     def differs_in_places(self, other: "CorrectedLines") -> bool:
         """Whether nothing differs but facts that say where bodies stand."""

@@ -35,7 +35,7 @@ class ShownBodies:
     def of(cls, places: BodyPlaces, graph: LineGraph, corrected: CorrectedLines) -> "ShownBodies":
         """The bodies of a scene that was just built of a graph of corrected lines."""
         ids = corrected.ids[rows_of(graph.segments, corrected)]
-        return cls(places, places, None, corrected, corrected.facts, tuple(ids.tolist()))
+        return cls(places, places, None, corrected, corrected.all_facts, tuple(ids.tolist()))
 
     @cached_property
     def node(self) -> dict[int, int]:
@@ -71,7 +71,7 @@ class ShownBodies:
     def told(self, facts: Sequence[ToldFact]) -> tuple[ToldFact, ...]:
         """Facts by the nodes of the graph; those without lines in it are left out."""
         return tuple(
-            ToldFact(each.fact, tuple(self.node[line] for line in each.lines))
+            replace(each, lines=tuple(self.node[line] for line in each.lines))
             for each in facts
             if all(line in self.node for line in each.lines)
         )
@@ -88,8 +88,8 @@ class ShownBodies:
         """The bodies where the facts about corrected lines put them; ContradictionError where no places fit."""
         evidence = self.solved.evidence
         with told_in_the_photo(evidence.setting.graph, corrected):
-            now = place_bodies(evidence, options.solve, self.told(corrected.facts))
-        return replace(self, now=now, before=self.now.log_scale, facts=corrected.facts)
+            now = place_bodies(evidence, options.solve, self.told(corrected.all_facts))
+        return replace(self, now=now, before=self.now.log_scale, facts=corrected.all_facts)
 
     def preview(self, corrected: CorrectedLines, options: Options) -> dict[int, float]:
         """By which log factor each body would move from where it is shown, and the ground, whose number is `count`."""

@@ -17,6 +17,7 @@ from solver.bodies.contradiction import find_contradiction
 from solver.bodies.ties import Ties
 
 CERTAIN = 1e6  # weight of what a person said
+IMPLIED = 1e5  # of what follows from a wall by its edges
 TOLERANCE = 0.01  # log ratio by which what a person said may be missed: eaves of one height are built to a centimetre
 ONE_LINE = PhotoLength(20.0, floor=6.0)  # between two segments along one axis that are one line
 FLATTEST = 1e-3  # of a unit ray across a plane, or of two lines across each other, below which nothing is told
@@ -33,21 +34,25 @@ class FactTies:
 
     def notes(self, facts: Sequence[ToldFact]) -> tuple[str, ...]:
         """What a reader should know of facts that say nothing."""
-        return tuple(f'"{said(facts[number].fact)}" is left out: {why}' for number, why in self.idle.items())
+        return tuple(
+            f'"{said(facts[number].fact)}" is left out: {why}'
+            for number, why in self.idle.items()
+            if not facts[number].is_implied
+        )
 
     def check(self, facts: Sequence[ToldFact], sure: Ties, crossings: Int) -> None:
         """Raise ContradictionError unless some places fit all facts, and the crossings (S, 2) of the ties `sure`.
 
         It names facts and crossings none of which can be left out.
         """
-        both = self.ties.joined(sure)
+        firm = np.array([not facts[number].is_implied for number in self.number.tolist()], bool)
+        own, number = self.ties.subset(firm), self.number[firm]
+        both = own.joined(sure)
         around = find_contradiction(both.bodies, both.log_ratio, both.tolerance, int(both.bodies.max(initial=-1)) + 1)
         if not around:
             return
-        named = [
-            facts[number] for number in sorted({int(self.number[tie]) for tie in around if tie < len(self.number)})
-        ]
-        pairs = [tuple(crossings[tie - len(self.number)].tolist()) for tie in sorted(around) if tie >= len(self.number)]
+        named = [facts[number] for number in sorted({int(number[tie]) for tie in around if tie < len(number)})]
+        pairs = [tuple(crossings[tie - len(number)].tolist()) for tie in sorted(around) if tie >= len(number)]
         raise ContradictionError(
             "what was said cannot all hold",
             (*(line for told in named for line in told.lines), *(line for pair in pairs for line in pair)),
@@ -76,7 +81,7 @@ def ties_of_facts(setting: Setting, facts: Sequence[ToldFact]) -> FactTies:
     count = len(bodies)
     ties = Ties(
         np.array(bodies, np.int64).reshape(-1, 2), np.array(ratios), np.full(count, TOLERANCE),
-        np.full(count, CERTAIN), np.full(count, -1),
+        np.array([IMPLIED if facts[own].is_implied else CERTAIN for own in number]), np.full(count, -1),
     )  # fmt: skip
     return FactTies(ties, np.array(number, np.int64), frozenset(cuts), idle)
 

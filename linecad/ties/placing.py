@@ -16,7 +16,7 @@ from linecad.scene import DepthMapReport
 from linecad.ties.candidates import Candidate
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
 from linecad.ties.evidence import Evidence, find_evidence
-from linecad.ties.facts import CERTAIN, FactTies, ties_of_facts
+from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
 from linecad.ties.links import find_links, told_links
 from linecad.ties.pieces import with_stays
 from linecad.ties.probability import chances, main_lines, probabilities
@@ -80,7 +80,7 @@ class BodyPlaces:
         seams = with_stays(list(evidence.seams), pieces, log_scale)
         links = find_links(pieces, log_scale, self.placement.margin, evidence.reference, self.mapped)
         # What a person ties to the reference stands there.
-        certain = self.placement.counted & (self.ties.weight >= CERTAIN)
+        certain = self.placement.counted & (self.ties.weight >= IMPLIED)
         told = self.ties.parts(certain, len(self.placement.log_scale))
         links = told_links(links, pieces, evidence.reference, told == told[evidence.reference])
         length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)

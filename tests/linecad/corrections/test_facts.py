@@ -5,7 +5,19 @@ import pytest
 
 from linecad.corrections.annotations import facts_of
 from linecad.corrections.corrected import ToldFact
-from linecad.corrections.edits import Cut, Delete, Foot, Join, Meet, OnePlane, PlaceAt, SetFrame, Split, Withdraw
+from linecad.corrections.edits import (
+    Cut,
+    Delete,
+    Foot,
+    Join,
+    Meet,
+    OnePlane,
+    PlaceAt,
+    SetFrame,
+    Split,
+    WallByEdges,
+    Withdraw,
+)
 from linecad.corrections.words import said
 from linecad.graph.build import build_line_graph
 
@@ -102,3 +114,13 @@ def test_facts_in_words(anchor, meet):
     assert words == ["these meet", "same height", "one plane", "not connected"]
     assert said(Foot(anchor(0), (1.0, 2.0))).startswith("stands on the ground at (")
     assert said(PlaceAt(*pair, 0.1)).startswith("stands here at (")
+
+
+def test_a_wall_by_its_edges_implies_that_they_lie_in_one_plane(made, applied, anchor):
+    upright = np.flatnonzero(made.axis == 2)[:2].tolist()
+    level = np.flatnonzero(made.axis == 0)[:2].tolist()
+    lines = applied(WallByEdges(tuple(map(anchor, (*upright, *level)))))
+    assert lines.facts == ()
+    assert [told.lines for told in lines.implied] == [(upright[0], other) for other in (upright[1], *level)]
+    assert {told.fact.normal for told in lines.implied} == {1}
+    assert all(told.is_implied for told in lines.all_facts)

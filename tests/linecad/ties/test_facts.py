@@ -279,3 +279,18 @@ def one_body(count):
     from linecad.ties.bodies import RigidBodies
 
     return RigidBodies(np.zeros(count, int), 1)
+
+
+def test_what_is_implied_moves_bodies_and_gives_way_to_what_was_told(street, evidence):
+    """A wall by its edges says that these lie in one plane; nobody is told of it where that tells nothing."""
+    told = two(street, OnePlane, 12, 36, 1)
+    implied = ToldFact(told.fact, told.lines, is_implied=True)
+    moved = place_bodies(evidence, SolveOptions(), [implied])
+    assert log_ratio(street, moved) == pytest.approx(np.log(FAR / NEAR), abs=0.002), "the walls are in one plane then"
+    place = place_at(street, 0, 30, 1.0)
+    there = place_bodies(evidence, SolveOptions(), [implied, place])
+    assert there.log_depth[0] - there.log_depth[30] == pytest.approx(1.0, abs=0.002)
+    idle = ToldFact(two(street, OnePlane, 12, 13, 2).fact, (12, 13), is_implied=True)
+    found = ties_of_facts(evidence.setting, [idle])
+    assert found.idle
+    assert found.notes([idle]) == ()
