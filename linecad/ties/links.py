@@ -72,12 +72,11 @@ class Link:
     @property
     def probability(self) -> float:
         """That both pieces stand to each other as they were placed."""
-        if self.is_told:
-            return TOLD
         with_map = "off the map" in self.features
         at_once, slopes = (WITH_MAP_AT_ONCE, WITH_MAP_LOG_ODDS) if with_map else (AT_ONCE, LOG_ODDS)
         log_odds = at_once + sum(slopes[name] * value for name, value in self.features.items())
-        return float(1 / (1 + np.exp(-log_odds)))
+        found = float(1 / (1 + np.exp(-log_odds)))
+        return max(found, TOLD) if self.is_told else found
 
 
 @dataclass(frozen=True)

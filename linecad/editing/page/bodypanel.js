@@ -79,7 +79,7 @@ export class BodyPanel {
     const facts = this.said.factRows();
     panel.replaceChildren(
       element("div", { class: "gestures", role: "toolbar", "aria-label": "Say what you know" }, this.#gestureButtons()),
-      ...(facts.length > 0 ? [element("h3", {}, "You said"), element("ul", { class: "facts" }, facts)] : []),
+      ...(facts.length > 0 ? [element("h3", {}, "Your facts"), element("ul", { class: "facts" }, facts)] : []),
       ...(moved.length > 0 ? [element("h3", {}, "That moved"), element("ul", { class: "moved" }, moved)] : []),
       ...this.#selected(),
       element("h3", {}, "By share of the photo"),

@@ -73,8 +73,9 @@ export class Editing {
     this.tell = tell;
   }
 
-  /** Take over a state that the server sent. */
+  /** Take over a state that the server sent, unless the answer to a later edit has overtaken it. */
   accept(state) {
+    if (state.version < this.#answered?.version) return;
     this.#answered = keepingWhatIsSame(state, this.store.state);
     this.#show();
   }

@@ -340,32 +340,46 @@ def test_facts_that_cannot_all_hold_light_up_and_either_can_be_dropped(told):
     assert [fact["log_ratio"] for fact in kept] == [0.7]
 
 
-def test_what_moved_is_shown_and_what_was_not_asked_for_is_put_back(told):
-    before = farness(told.state)
+def test_what_moved_is_shown_for_a_moment_and_listed(told):
     told.press("b")
     far, near = (lines_of(told.state, body, "x", "y", "z")[0]["id"] for body in (FAR, NEAR))
     told.run("(edit) => linecad.editing.edit(edit)", {"op": "place", "line": far, "to": near, "log_ratio": 0.9})
     told.settle()
-    moved = told.state["moved"]
-    assert [move["body"] for move in moved] == [FAR]
+    assert [move["body"] for move in told.state["moved"]] == [FAR]
     assert told.run("linecad.bodies.view.flashing") == 1
-    assert "Body B" in told.page.locator("#bodies-panel .moved").inner_text()
-    assert told.run("linecad.bodies.said.distant") == 0
     told.wait("linecad.store.solve.state === 'idle'")
-    # The made scene has two bodies, so every move is asked for: say that this one was not.
-    told.run(
-        """(moved) => {
-          const { state } = linecad.store;
-          linecad.editing.accept({ ...state, moved: moved.map((move) => ({ ...move, asked: false })) });
-        }""",
-        moved,
-    )
-    assert told.run("linecad.bodies.said.distant") == 1
-    # That fact is to be withdrawn first, else the two cannot both hold.
-    told.run("(edit) => linecad.bodies.said.withdraw({ edit })", told.served.ask("state")["facts"][0]["edit"])
+    told.wait("linecad.bodies.view.flashing === 0")
+    assert "Body B" in told.page.locator("#bodies-panel .moved").inner_text(), "the list outlives the rebuild"
+    assert told.run("linecad.bodies.said.distant") == 0
+
+
+def test_what_moved_unasked_is_put_back(told):
+    told.press("b")
+    before = farness(told.state) / farness(told.state, NEAR)
+    wall = lines_of(told.state, NEAR, "z")[0]
+    lower = max(wall["segment"], key=lambda end: end[1])
+    foot = {"op": "foot", "line": wall["id"], "pixel": [lower[0], lower[1] + 60]}
+    told.run("(edit) => linecad.editing.edit(edit)", foot)
     told.settle()
-    ratio = np.log(before / farness(told.state, NEAR))
-    assert np.log(farness(told.state) / farness(told.state, NEAR)) == pytest.approx(ratio, abs=0.02)
+    moved = told.state["moved"]
+    assert FAR in [move["body"] for move in moved], "it stands on the ground that the foot has moved"
+    assert farness(told.state) / farness(told.state, NEAR) != pytest.approx(before, rel=0.02)
+    assert told.run("linecad.bodies.said.distant") == 0
+    # Whoever moves the ground asks for all that stands on it: say that the server thinks otherwise.
+    told.run(
+        """() => {
+          const { state } = linecad.store;
+          const moved = state.moved.map((move) => ({ ...move, asked: false }));
+          linecad.editing.accept({ ...state, moved });
+        }"""
+    )
+    assert told.run("linecad.bodies.said.distant") == len(moved)
+    row = told.page.locator("#bodies-panel .moved li", has_text="Body B")
+    row.get_by_role("button", name="Put back").click()
+    told.settle()
+    assert facts(told) == ["foot", "place"]
+    assert farness(told.state) / farness(told.state, NEAR) == pytest.approx(before, rel=0.01)
+    assert told.page.locator("#bodies-panel .moved li", has_text="Body B").count() == 0
 
 
 def test_the_rebuild_behind_a_fact_takes_nothing_away(told):
