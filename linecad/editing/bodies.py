@@ -16,8 +16,10 @@ from linecad.line_graph import LineGraph
 from linecad.options import Options
 from linecad.ties.facts import tie_of
 from linecad.ties.placing import BodyPlaces, place_bodies
+from solver.options import SolveOptions
 
 MOVED = 1e-3  # log factor from which a body counts as moved
+NODES = 100  # of the search that answers at once; the one behind it, which builds the scene, ends with a proof
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,10 +90,15 @@ class ShownBodies:
         """The bodies where the facts about corrected lines put them; ContradictionError where no places fit."""
         evidence = self.solved.evidence
         with told_in_the_photo(evidence.setting.graph, corrected):
-            now = place_bodies(evidence, options.solve, self.told(corrected.all_facts))
+            now = place_bodies(evidence, at_once(options.solve), self.told(corrected.all_facts))
         return replace(self, now=now, before=self.now.log_scale, facts=corrected.all_facts)
 
     def preview(self, corrected: CorrectedLines, options: Options) -> dict[int, float]:
         """By which log factor each body would move from where it is shown, and the ground, whose number is `count`."""
         moved = self.with_facts(corrected, options).moves - self.moves
         return {body: float(by) for body, by in enumerate(moved.tolist()) if abs(by) > MOVED}
+
+
+def at_once(options: SolveOptions) -> SolveOptions:
+    """The options of a search that ends soon: castle photos are proven in a few nodes, others take thousands."""
+    return replace(options, node_limit=min(options.node_limit or NODES, NODES))

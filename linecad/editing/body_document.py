@@ -12,8 +12,10 @@ from linecad.editing.state import Now
 from linecad.ties.alternatives import OtherPlace, other_places
 from linecad.ties.candidates import Candidate
 from linecad.ties.facts import TOLERANCE
+from linecad.ties.weights import TOLERANCE as TIE_TOLERANCE
 
 GUESS = 0.5  # probability below which a place is a guess
+FOLLOWS = TIE_TOLERANCE  # log factor within which a body goes along with another one
 
 
 def list_bodies(now: Now) -> list[dict[str, object]]:
@@ -165,7 +167,7 @@ def moved_by_last(now: Now) -> list[dict[str, object]]:
         {
             "body": body,
             "log_factor": float(by),
-            "asked": isinstance(last, Foot) or any(abs(by - other) <= MOVED for other in own),
+            "asked": isinstance(last, Foot) or any(abs(by - other) <= FOLLOWS for other in own),
         }
         for body, by in enumerate(moved.tolist())
         if abs(by) > MOVED

@@ -59,9 +59,27 @@ def other_places(places: BodyPlaces, body: int) -> list[OtherPlace]:
 def _sets(places: BodyPlaces, body: int) -> list[Bool]:
     """The sets of bodies that may move with a body while the reference stays."""
     count, reference = len(places.placement.log_scale), places.evidence.reference
-    every = sets_that_move(places.ties, places.placement.log_scale)
-    own = [moved for moved in every if moved[body] and not moved[reference]]
-    return own or [np.arange(count) == body]
+    every = [*sets_that_move(places.ties, places.placement.log_scale), *_clusters(places)]
+    own = {moved.tobytes(): moved for moved in every if moved[body] and not moved[reference]}
+    return list(own.values()) or [np.arange(count) == body]
+
+
+def _clusters(places: BodyPlaces) -> list[Bool]:
+    """Sets of bodies (B,) that hold together more than each does to the rest: single linkage by the ties that hold.
+
+    A block that several ties hold to the reference has no cut of one tie, and moves as a whole all the same.
+    """
+    ties, count = places.ties, len(places.placement.log_scale)
+    weight: dict[tuple[int, int], float] = {}
+    for tie in np.flatnonzero(ties.holds(places.placement.log_scale)).tolist():
+        one, other = sorted(ties.bodies[tie].tolist())
+        weight[one, other] = weight.get((one, other), 0.0) + float(ties.weight[tie])
+    cluster, found = np.arange(count), []
+    for one, other in sorted(weight, key=lambda pair: (-weight[pair], pair)):
+        if cluster[one] != cluster[other]:
+            cluster[cluster == cluster[other]] = cluster[one]
+            found.append(np.asarray(cluster == cluster[one]))
+    return found
 
 
 def _distinct(moves: np.ndarray, gain: np.ndarray) -> list[float]:

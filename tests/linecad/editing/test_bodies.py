@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from linecad.corrections.file import corrections_from_json, corrections_to_json
+from linecad.editing.bodies import NODES, at_once
 from linecad.options import Options
+from solver.options import SolveOptions
 
 
 @pytest.fixture
@@ -243,3 +245,9 @@ class TestPlaces:
     def test_the_reference_and_what_is_no_body_have_none(self, solved):
         assert solved.get("places/0").json() == []
         assert solved.get("places/77").json() == []
+
+
+def test_the_answer_at_once_ends_soon_whatever_the_limit():
+    assert at_once(SolveOptions()).node_limit == NODES
+    assert at_once(SolveOptions(node_limit=5)).node_limit == 5
+    assert at_once(SolveOptions(node_limit=10 * NODES)).node_limit == NODES

@@ -1,12 +1,15 @@
 """Other places of bodies: each is asked for by evidence, and worth what the program says of it."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from linecad.ties.alternatives import MOST, SAME_PLACE, other_places
+from linecad.ties.alternatives import MOST, SAME_PLACE, _clusters, other_places
 from linecad.ties.evidence import find_evidence
 from linecad.ties.placing import place_bodies
 from linecad.ties.weights import above_chance
+from solver.bodies.ties import Ties
 from solver.options import SolveOptions
 
 
@@ -73,3 +76,13 @@ def test_where_walls_would_be_in_one_plane_is_one_of_them(places, body, street):
 
 def test_the_reference_stays(places):
     assert other_places(places, places.evidence.reference) == []
+
+
+def test_a_block_that_two_ties_hold_to_the_reference_moves_as_a_whole():
+    """Bodies 1 and 2 belong together; each is tied to the reference too, and no single cut parts them from it."""
+    ties = Ties(
+        np.array([[0, 1], [0, 2], [1, 2]]), np.zeros(3), np.full(3, 0.02), np.array([2.0, 2.0, 9.0]), np.full(3, -1)
+    )
+    placed = SimpleNamespace(log_scale=np.zeros(3))
+    clusters = _clusters(SimpleNamespace(ties=ties, placement=placed))
+    assert [np.flatnonzero(cluster).tolist() for cluster in clusters] == [[1, 2], [0, 1, 2]]
