@@ -56,7 +56,8 @@ uniform mat3 pixel_from_world;
 uniform vec2 photo_size;
 uniform sampler2D photo;
 uniform bool textured;
-uniform vec3 paper;  // of the background, which guesses fade into
+uniform bool pales;  // whether guesses fade into the background; else an opacity is just that
+uniform vec3 paper;  // of the background
 out vec4 result;
 void main() {
   vec4 colour = shade;
@@ -65,7 +66,7 @@ void main() {
   vec3 texel = texture(photo, at).rgb;
   bool inside = seen.z > 0.0 && at == clamp(at, 0.0, 1.0);
   if (textured && inside) colour = vec4(gl_FrontFacing ? texel : mix(texel, shade.rgb, 0.35), 1.0);
-  if (shade.a < GUESS_BELOW) colour = vec4(mix(colour.rgb, paper, PALE), 1.0);
+  if (pales && shade.a < GUESS_BELOW) colour = vec4(mix(colour.rgb, paper, PALE), 1.0);
   result = vec4(colour.rgb * colour.a, colour.a);
 }`;
 
@@ -189,7 +190,8 @@ export class Graphics {
     gl.depthFunc(gl.LEQUAL);
   }
 
-  drawFaces(made, matrix, { pixelFromWorld, photoSize, textured, paper }) {
+  /** Faces; with `paper`, the colour of the background, those of guesses are pale. */
+  drawFaces(made, matrix, { pixelFromWorld, photoSize, textured, paper = null }) {
     if (made.count === 0) return;
     const gl = this.gl;
     gl.useProgram(this.faceProgram);
@@ -198,7 +200,8 @@ export class Graphics {
     gl.uniformMatrix3fv(at("pixel_from_world"), true, pixelFromWorld.flat());
     gl.uniform2f(at("photo_size"), ...photoSize);
     gl.uniform1i(at("textured"), textured && this.photo !== null);
-    gl.uniform3f(at("paper"), ...paper);
+    gl.uniform1i(at("pales"), paper !== null);
+    gl.uniform3f(at("paper"), ...(paper ?? [0, 0, 0]));
     gl.activeTexture(gl.TEXTURE0);
     gl.bindTexture(gl.TEXTURE_2D, this.photo ?? this.grey);
     gl.bindVertexArray(made.array);
