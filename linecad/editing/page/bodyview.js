@@ -3,6 +3,7 @@
 import { CASING, CHANGED, INK, channels } from "./colours.js";
 import { movedText, middleOf } from "./bodies.js";
 import { add, applied, product, subtract, times, unit } from "./matrices.js";
+import { themeColour } from "./theme.js";
 
 const GHOST = "#7a3be0"; // what a gesture chose, and where it would put bodies
 const FILL = { selected: 0.3, hovered: 0.16 }; // opacity of faces
@@ -229,16 +230,17 @@ export class BodyView {
     if (!graphics) return;
     const { selected, hovered } = this.bodies;
     const lit = [];
+    const ink = themeColour("--model-ink");
     const light = (body, colour, width, factor = 1) => {
       for (const { ends } of this.#linesOf(body)) {
         const [start, end] = ends.map((point) => times(point, factor));
-        lit.push({ start, end, colour: [...channels(colour), 1], width: width * devicePixelRatio });
+        lit.push({ start, end, colour: [...colour, 1], width: width * devicePixelRatio });
       }
     };
-    if (hovered !== null && hovered !== selected) light(hovered, INK, 2);
-    if (selected !== null) light(selected, INK, 2.2);
+    if (hovered !== null && hovered !== selected) light(hovered, ink, 2);
+    if (selected !== null) light(selected, ink, 2.2);
     for (const [body, log] of this.#flash)
-      (light(body, CHANGED, 4), lit.push(...this.#arrow(body, -log, CHANGED, true)));
+      (light(body, channels(CHANGED), 4), lit.push(...this.#arrow(body, -log, CHANGED, true)));
     for (const line of [this.gestures.now?.first, this.gestures.now?.second])
       if (line)
         lit.push({
@@ -250,7 +252,7 @@ export class BodyView {
     const corners = [];
     for (const [id, log] of Object.entries(this.gestures.moves)) {
       const [body, factor] = [Number(id), Math.exp(log)];
-      light(body, GHOST, 2, factor);
+      light(body, channels(GHOST), 2, factor);
       lit.push(...this.#arrow(body, log, GHOST, false));
       for (const face of this.bodies.facesOf(body)) {
         const points = [face.outline, ...(face.holes ?? [])].flat();
