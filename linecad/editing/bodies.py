@@ -90,7 +90,8 @@ class ShownBodies:
         """The bodies where the facts about corrected lines put them; ContradictionError where no places fit."""
         evidence = self.solved.evidence
         with told_in_the_photo(evidence.setting.graph, corrected):
-            now = place_bodies(evidence, at_once(options.solve), self.told(corrected.all_facts))
+            near = self.now.placement.log_scale
+            now = place_bodies(evidence, at_once(options.solve), self.told(corrected.all_facts), near=near)
         return replace(self, now=now, before=self.now.log_scale, facts=corrected.all_facts)
 
     def preview(self, corrected: CorrectedLines, options: Options) -> dict[int, float]:

@@ -28,7 +28,8 @@ def list_bodies(now: Now) -> list[dict[str, object]]:
     length = setting.graph.segments.length
     found: list[dict[str, object]] = []
     for body, lines in enumerate(setting.lines):
-        probability = float(np.median(places.probability[lines]))
+        # Until the scene is built anew a place is as sure as it was: to find that out takes longer than the place.
+        probability = float(np.median(bodies.solved.probability[lines]))
         found.append({
             "id": body,
             "lines": [bodies.ids[line] for line in lines.tolist()],

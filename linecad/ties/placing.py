@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -45,6 +45,7 @@ class BodyPlaces:
     ties: Ties
     placement: Placement
     mapped: MapPlaces | None  # what a depth map made of the places, where it was heard
+    known: Float | None = None  # (N,) probabilities of the lines, where these were asked for already
 
     @property
     def log_scale(self) -> Float:
@@ -70,7 +71,7 @@ class BodyPlaces:
     @cached_property
     def probability(self) -> Float:
         """(N,) that a line's depth relative to component 0 is right within 5 %."""
-        return self.probability_at(self.log_depth, self.connected)
+        return self.probability_at(self.log_depth, self.connected) if self.known is None else self.known
 
     def probability_at(self, log_depth: Float, connected: Bool) -> Float:
         """The same for lines at depths (N,) near these, where these crossings are `connected` (E,)."""
@@ -187,7 +188,8 @@ def place_on(
     )
     depth = evidence.setting.sight.depth
     told = None if depth is None else report_of(depth, evidence.heard, found.mapped)
-    return Placed(solution, found, found.probability_at(log_depth, connected), found.by_map, told)
+    probability = found.probability_at(log_depth, connected)
+    return Placed(solution, replace(found, known=probability), probability, found.by_map, told)
 
 
 def place_bodies(
@@ -196,10 +198,12 @@ def place_bodies(
     facts: Sequence[ToldFact] = (),
     on_progress: OnProgress = None,
     on_stage: StageReport = silent,
+    near: Float | None = None,
 ) -> BodyPlaces:
     """The bodies where the evidence of a photo and facts about the nodes of its graph put them.
 
-    Raises SolverError, or ContradictionError where facts and crossings called real cannot all hold.
+    The search begins at the log scales `near` (B,) of bodies, ground and map, if they are known. Raises SolverError, or
+    ContradictionError where facts and crossings called real cannot all hold.
     """
     setting, heard, reference = evidence.setting, evidence.heard, evidence.reference
     size, told = setting.bodies.size, ties_of_facts(setting, facts)
@@ -213,7 +217,7 @@ def place_bodies(
     on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
     # The ground is one more body, and the map another where it ties any.
     count = max(setting.bodies.count + 1, int(ties.bodies.max(initial=-1)) + 1)
-    placement = place(ties, count, reference, options, on_progress)
+    placement = place(ties, count, reference, options, on_progress, near)
     mapped = None
     if isinstance(heard, DepthWitness):
         mapped = follow_map(heard, ties, placement, reference, size)

@@ -8,7 +8,7 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.line_graph import Status
 from solver.backends.scip import Watch, run, version
-from solver.bodies.local_search import improve, margins
+from solver.bodies.local_search import climb, improve, margins
 from solver.bodies.program import build
 from solver.bodies.ties import Placement, Ties
 from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_gap
@@ -17,15 +17,25 @@ from solver.progress import Reporter, catch_interrupt
 MOST_NODES = 20_000  # where the options name no limit: about a minute; a photo takes up to some hundred
 
 
-def place(ties: Ties, count: int, reference: int, options: SolveOptions, on_progress: OnProgress = None) -> Placement:
+def place(
+    ties: Ties,
+    count: int,
+    reference: int,
+    options: SolveOptions,
+    on_progress: OnProgress = None,
+    near: Float | None = None,
+) -> Placement:
     """The log scales of `count` bodies at which ties of the most weight hold at once, 0 for the `reference`.
 
     Exact within `FARTHEST` of the reference, by SCIP; the same ties and seed give the same answer, since no clock
-    ends the search unless the options name a time. Bodies that no counted tie leads to keep their scale. Raises
+    ends the search unless the options name a time. Bodies that no counted tie leads to keep their scale. The search
+    begins by a climb from `near` (B,), where the best is likely, else by several from places of its own. Raises
     SolverError.
     """
     began = time.monotonic()
-    start = improve(ties, np.zeros(count), options.seed) if len(ties) else np.zeros(count)
+    start = np.zeros(count) if near is None else near
+    if len(ties):
+        start = improve(ties, start, options.seed) if near is None else climb(ties, start)[0]
     start = _about(ties, start, reference)
     objective = ties.value(start)
     log_scale, bound, nodes = start, objective, 0
