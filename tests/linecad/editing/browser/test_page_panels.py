@@ -6,6 +6,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.thorough  # every day the parts that decide are asked (test_groups.py, test_notes.py)
+
 READ = "import('/page/lengths.js').then(({ readLength }) => %s.map((text) => readLength(text)))"
 CONTRAST = """() => {
   const parse = (colour) => {
