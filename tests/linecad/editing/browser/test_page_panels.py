@@ -6,7 +6,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.thorough  # every day the parts that decide are asked (test_groups.py, test_notes.py)
+pytestmark = pytest.mark.thorough  # every day the parts that decide are asked (test_groups.py, test_telling.py)
 
 READ = "import('/page/lengths.js').then(({ readLength }) => %s.map((text) => readLength(text)))"
 CONTRAST = """() => {
