@@ -3,7 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import networkx as nx
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
@@ -121,6 +120,8 @@ def cut_bodies(bodies: RigidBodies, graph: LineGraph, log_depth: Float, cuts: Se
 
 def _side_of(line: int, other: int, edges: Int, weight: Float) -> Int:
     """The lines on the side of one line when the least weight of edges (E, 2) that part it from another one is cut."""
+    import networkx as nx
+
     flow = nx.Graph()
     flow.add_nodes_from([line, other])
     for (first, second), each in zip(edges.tolist(), weight.tolist(), strict=True):

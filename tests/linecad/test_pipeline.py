@@ -275,6 +275,7 @@ def test_stages_are_reported_in_order(drawn):
         "placing",
         "deciding",
         "lifting",
+        "building planes",
     ]
     assert [word for word, stage in zip(words, stages, strict=True) if stage.startswith(word)] == words
 

@@ -74,7 +74,7 @@ async function start() {
   startTheme(store);
   remember(store, photo, model);
   await guardTab(server, store, messages, editing);
-  globalThis.linecad = { store, editing, photo, model, draft, bodies }; // for the console, and for the tests
+  globalThis.linecad = { store, actions, editing, photo, model, draft, bodies }; // for the console, and for the tests
   document.body.dataset.ready = "yes";
   await model.loadPhoto(server);
   document.body.dataset.photo = "shown";

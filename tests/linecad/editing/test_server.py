@@ -599,7 +599,7 @@ class TestExport:
         first = page.solve()
         page.edit(op="label", crossing=crossings(first, real=True)[2]["id"], value="fake")
         page.edit(op="delete", line=first["lines"][7]["id"])
-        page.edit(op="draw", ends=[[300, 300], [305, 520]], axis=None)
+        page.edit(op="draw", ends=[[300, 300], [305, 520]], axis="z")
         line = next(one for one in page.solve()["lines"] if one["component"] == 0)
         page.edit(op="length", line=line["id"], metres=2.0)
         points = [{"pixel": end, "line": line["id"]} for end in line["segment"]]

@@ -465,6 +465,7 @@ def test_progress_names_the_stage_and_the_bar_does_not_claim_to_be_done(screen):
         """() => {
           const search = { objective: 5, bound: 5, gap: 0, seconds: 0.1 };
           const solve = { state: "running", stage: "building planes and faces", ...search };
+          linecad.actions.hasAsked = true; // by hand, and not behind a fact
           linecad.store.set({ solve });
         }"""
     )
