@@ -287,9 +287,12 @@ def screen(shared_screen) -> Iterator[Screen]:
           const { store, editing, photo, model, draft } = linecad;
           await editing.refresh();
           draft.clear();
+          linecad.bodies.gestures.leave();
+          linecad.bodies.panel.open(false);
           const { EVERYTHING } = await import("/page/store.js");
           const layers = Object.fromEntries(Object.keys(store.layers).map((name) => [name, name !== "cells"]));
           store.set({ layers, tool: "correct", labelling: false, selection: null, hover: null, texture: true });
+          store.set({ body: null, many: null });
           store.set({ choice: EVERYTHING, shown: null, colouring: "axis" });
           model.change((orbit) => orbit.throughCamera());
           photo.change((viewport) => viewport.fit());
