@@ -11,6 +11,9 @@ pytestmark = pytest.mark.thorough  # every day the server is asked what the page
 
 
 def corrections(screen):
+    """The edits in the file, once all are written."""
+    while not screen.served.ask("progress")["saved"]:
+        screen.page.wait_for_timeout(20)
     return read_corrections(screen.served.photo.with_name(screen.served.photo.name + SUFFIX)).edits
 
 
