@@ -8,6 +8,8 @@ import pytest
 
 from linecad.cli.main import main
 
+pytestmark = pytest.mark.thorough  # every day the server is asked (test_wanted.py, test_faces.py, test_cell_layer.py)
+
 
 def facade_of(state):
     """The facade with the most lines, and its largest face."""
@@ -59,7 +61,6 @@ def test_the_plan_looks_straight_down_without_perspective(screen):
     assert square == pytest.approx(square[0] + step * np.array([[0, 0], [1, 0], [1, -1], [0, -15]]), abs=0.01)
 
 
-@pytest.mark.thorough
 def test_a_drag_moves_the_plan_and_free_turns_again(screen):
     screen.press("Shift+P")
     box = screen.page.locator("#model-canvas").bounding_box()
@@ -218,7 +219,6 @@ def test_points_of_faces_are_measured_in_the_model(screen):
     assert len(screen.run("linecad.store.measure.points")) == 1
 
 
-@pytest.mark.thorough  # every day the server is asked (test_wanted.py, test_faces.py)
 def test_in_the_front_of_a_face_its_own_corners_are_measured(screen):
     plane, face = facade_of(screen.state)
     screen.run("(id) => linecad.store.set({ selection: { kind: 'face', id } })", face["id"])
@@ -340,7 +340,6 @@ def download(screen, name, path):
     return path.read_bytes()
 
 
-@pytest.mark.thorough  # every day the server is asked (test_wanted.py, test_faces.py)
 def test_exports_hold_what_is_shown_and_are_those_of_the_command(screen, tmp_path):
     download(screen, "json", tmp_path / "whole.json")
     photo = ["--photo", str(screen.served.photo), "--quiet"]
@@ -363,7 +362,6 @@ def test_exports_hold_what_is_shown_and_are_those_of_the_command(screen, tmp_pat
     screen.press("Escape")
 
 
-@pytest.mark.thorough  # every day the server is asked (test_wanted.py, test_faces.py)
 def test_the_group_of_the_selection_is_shown_and_exported_as_the_main_one(screen, tmp_path):
     download(screen, "json", tmp_path / "whole.json")
     own = next(each for each in screen.state["lines"] if each["ends"] and each["component"] == 1)
@@ -379,7 +377,6 @@ def test_the_group_of_the_selection_is_shown_and_exported_as_the_main_one(screen
     assert download(screen, "dxf", tmp_path / "page.dxf") == (tmp_path / "scene.dxf").read_bytes()
 
 
-@pytest.mark.thorough  # every day the server is asked (test_wanted.py, test_faces.py)
 def test_the_elevation_is_that_of_the_selected_facade(screen, tmp_path):
     download(screen, "json", tmp_path / "whole.json")
     facades = [plane for plane in screen.state["planes"] if plane["is_facade"]][:2]
