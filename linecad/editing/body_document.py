@@ -26,14 +26,16 @@ def list_bodies(now: Now) -> list[dict[str, object]]:
     places = bodies.now
     setting = places.evidence.setting
     length = setting.graph.segments.length
+    share = np.array([length[lines].sum() for lines in setting.lines]) / length.sum()
     found: list[dict[str, object]] = []
-    for body, lines in enumerate(setting.lines):
+    for body in np.argsort(-share, kind="stable").tolist():
+        lines = setting.lines[body]
         # Until the scene is built anew a place is as sure as it was: to find that out takes longer than the place.
         probability = float(np.median(bodies.solved.probability[lines]))
         found.append({
             "id": body,
             "lines": [bodies.ids[line] for line in lines.tolist()],
-            "share": float(length[lines].sum() / length.sum()),
+            "share": float(share[body]),
             "reference": body == places.evidence.reference,
             "log_scale": float(places.log_scale[body]),
             "probability": probability,
@@ -41,13 +43,7 @@ def list_bodies(now: Now) -> list[dict[str, object]]:
             "by_depth_map": bool(places.by_map[lines].any()),
             "ties": _ties(bodies, body),
         })  # fmt: skip
-    found.sort(key=_share_and_id)
     return found
-
-
-def _share_and_id(body: dict[str, object]) -> tuple[float, int]:
-    share, number = body["share"], body["id"]
-    return -float(str(share)), int(str(number))
 
 
 def _ties(bodies: ShownBodies, body: int) -> list[dict[str, object]]:

@@ -60,18 +60,18 @@ class BodyPlaces:
         moved = np.append(self.log_scale[: setting.bodies.count], 0.0)[body]
         return np.asarray(setting.log_depth + moved)
 
-    @cached_property
-    def connected(self) -> Bool:
-        """(E,) the crossings of the evidence's graph that agree there."""
+    def connected_at(self, graph: LineGraph, log_depth: Float) -> Bool:
+        """(E,) the crossings of a graph of these lines that agree at depths (N,), as far as a person lets them."""
         evidence = self.evidence
-        graph, body = evidence.setting.graph, evidence.setting.bodies.body
-        agree = agreeing_with(graph, self.log_depth) & ~evidence.fake & ~_across(body[graph.edges], self.told.cuts)
-        return np.asarray(agree | evidence.real)
+        cut = _across(evidence.setting.bodies.body[graph.edges], self.told.cuts)
+        return np.asarray((agreeing_with(graph, log_depth) & ~evidence.fake & ~cut) | evidence.real)
 
     @cached_property
     def probability(self) -> Float:
         """(N,) that a line's depth relative to component 0 is right within 5 %."""
-        return self.probability_at(self.log_depth, self.connected) if self.known is None else self.known
+        if self.known is not None:
+            return self.known
+        return self.probability_at(self.log_depth, self.connected_at(self.evidence.setting.graph, self.log_depth))
 
     def probability_at(self, log_depth: Float, connected: Bool) -> Float:
         """The same for lines at depths (N,) near these, where these crossings are `connected` (E,)."""
@@ -167,11 +167,10 @@ def place_on(
     Raises SolverError, or ContradictionError where facts and crossings called real cannot all hold.
     """
     began = time.monotonic()
-    real, fake = evidence.real, evidence.fake
     found = place_bodies(evidence, options, facts, on_progress, on_stage)
-    placement, body = found.placement, evidence.setting.bodies.body
-    log_depth = _kept_to(graph, found.log_depth, real)
-    connected = (agreeing_with(graph, log_depth) & ~fake & ~_across(body[graph.edges], found.told.cuts)) | real
+    placement = found.placement
+    log_depth = _kept_to(graph, found.log_depth, evidence.real)
+    connected = found.connected_at(graph, log_depth)
     solution = Solution(
         status=placement.status,
         solver=placement.solver,

@@ -7,9 +7,10 @@ pytestmark = pytest.mark.thorough  # every day the server is asked what it says 
 # A solve whose changes are far away, as the server tells it: no photo of a test has one for sure.
 FAR = """(ids) => {
   const { store } = linecad;
-  const crossings = store.state.crossings.map((each) => ({ ...each, ...(ids.includes(each.id) ? { changed: true, far: true } : {}) }));
+  const change = (each) => (ids.includes(each.id) ? { ...each, changed: true, far: true } : each);
+  const crossings = store.state.crossings.map(change);
   store.set({ state: { ...store.state, crossings } });
-}"""  # noqa: E501
+}"""
 
 
 def test_distant_changes_are_shown_and_refused_in_one_step(screen):
