@@ -70,17 +70,18 @@ def _outcome(photo: Judged, depth: DepthMap) -> Outcome:
     without = place_bodies(photo, photo.candidates)
     before, after = _exact(photo, without), _exact(photo, found)
     firm = _held(photo, without) & before
-    heard = found.heard if isinstance(found.heard, str) else ""
-    width = np.nan if isinstance(found.heard, str) else found.heard.width
-    kind = "" if isinstance(found.heard, str) else found.heard.reading.kind
-    return Outcome(photo.score(found.log_depth), heard, width, (int(firm.sum()), int((firm & after).sum())), kind)
+    kept = (int(firm.sum()), int((firm & after).sum()))
+    heard = found.evidence.heard
+    if isinstance(heard, str):
+        return Outcome(photo.score(found.log_depth), heard, np.nan, kept, "")
+    return Outcome(photo.score(found.log_depth), "", heard.width, kept, heard.reading.kind)
 
 
 def _exact(photo: Judged, places: BodyPlaces) -> Bool:
     """Mask of the points seen whose depth is right within EXACT relative to the reference body."""
     line = photo.on[photo.seen]
     error = places.log_depth[line] + photo.log_factor[photo.seen] - photo.log_true[photo.seen]
-    of_reference = error[photo.setting.bodies.body[line] == places.reference]
+    of_reference = error[photo.setting.bodies.body[line] == places.evidence.reference]
     middle = densest(of_reference if len(of_reference) else error)
     return np.asarray(np.abs(np.expm1(error - middle)) < EXACT)
 
@@ -88,7 +89,7 @@ def _exact(photo: Judged, places: BodyPlaces) -> Bool:
 def _held(photo: Judged, places: BodyPlaces) -> Bool:
     """Mask of the points seen on lines of bodies that ties which count hold to the reference, without a map."""
     part = places.ties.parts(places.placement.counted, len(places.placement.log_scale))
-    return np.asarray((part == part[places.reference])[photo.setting.bodies.body[photo.on[photo.seen]]])
+    return np.asarray((part == part[places.evidence.reference])[photo.setting.bodies.body[photo.on[photo.seen]]])
 
 
 def main() -> None:

@@ -101,7 +101,7 @@ def look(photo: Judged, one: Placed, suffix: str) -> Looked | None:
     setting, places, pieces = photo.setting, one.places, photo.pieces
     margin = places.placement.margin
     seams = with_stays([seam for seam, _ in photo.seams], pieces, places.log_scale)
-    links = find_links(pieces, places.log_scale, margin, places.reference, places.mapped)
+    links = find_links(pieces, places.log_scale, margin, places.evidence.reference, places.mapped)
     main = main_lines(setting, agreeing_with(setting.graph, places.log_depth))
     line = photo.on[photo.seen]
     error = places.log_depth[line] + photo.log_factor[photo.seen] - photo.log_true[photo.seen]

@@ -25,6 +25,8 @@ from linecad.arrays import Float, Int
 from linecad.depth.depth_map import DepthMap
 from linecad.evaluation.datasets import find_dataset
 from linecad.ties.candidates import KINDS, Candidate, Kind
+from linecad.ties.depth_ties import hear
+from linecad.ties.evidence import Evidence
 from linecad.ties.placing import BodyPlaces
 from solver.options import SolveOptions
 
@@ -135,9 +137,12 @@ def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
 def place_bodies(photo: Judged, candidates: list[Candidate], depth: DepthMap | None = None) -> BodyPlaces:
     """The placement by some candidates and a depth map."""
     setting = replace(photo.setting, sight=replace(photo.setting.sight, depth=depth))
-    nothing_told = np.zeros(len(setting.graph.edges), bool)
+    told = np.zeros(len(setting.graph.edges), bool)
+    seams = tuple(seam for seam, _ in photo.seams)
+    heard = hear(setting, candidates, depth)
+    evidence = Evidence(setting, tuple(candidates), seams, photo.pieces, heard, real=told, fake=told)
     options = SolveOptions(node_limit=FEW_NODES if photo.is_part else None)
-    return linecad.ties.placing.place_bodies(setting, candidates, nothing_told, options)
+    return linecad.ties.placing.place_bodies(evidence, options)
 
 
 @dataclass(frozen=True, eq=False)

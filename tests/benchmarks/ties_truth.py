@@ -20,8 +20,8 @@ from linecad.options import LONG_REACH, Options
 from linecad.scene import Camera
 from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.evidence import FITS
 from linecad.ties.pieces import Pieces, find_pieces
-from linecad.ties.placing import FITS
 from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
 from solver.robust import RobustFit

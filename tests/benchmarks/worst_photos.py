@@ -13,7 +13,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from numpy.typing import NDArray
-from ties import RIGHT_DEPTH, at_true_scales, place_bodies
+from ties import at_true_scales, place_bodies
 from ties_truth import Judged, densest, judge
 
 from linecad.arrays import Float
@@ -21,6 +21,7 @@ from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.references import open_case
 
 WIDTH = 800  # px
+RIGHT_DEPTH = 0.05
 COLOURS = {"right": (64, 140, 13), "wrong": (26, 26, 217), "unknown": (160, 97, 18)}  # BGR
 
 
@@ -40,7 +41,7 @@ def see(folder: Path, case: Case) -> Seen | None:
     if photo is None:
         return None
     places = place_bodies(photo, photo.candidates)
-    reference, log_depth = places.reference, places.log_depth
+    reference, log_depth = places.evidence.reference, places.log_depth
     true = photo.score(at_true_scales(photo))
     return Seen(case.name, photo.score(log_depth), true, _picture(case, photo, log_depth, reference))
 
