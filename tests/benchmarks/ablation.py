@@ -13,7 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from dense import hull
+from dense import with_hulls
 
 import linecad.model.build
 from linecad.camera.photo import Photo
@@ -123,12 +123,11 @@ def patched(module: object, name: str, instead: object) -> Row:
 
 
 def hulls(photo: Photo, _limit: float) -> Scene:
-    scene = finished(photo, find_lines(photo), FIT)
-    return replace(scene, planes=tuple(replace(plane, faces=hull(scene, plane)) for plane in scene.planes))
+    return with_hulls(finished(photo, find_lines(photo), FIT))
 
 
 ROWS: dict[str, Row] = {
-    "exact search": with_options(Options()),
+    "exact search": with_options(Options(over_bodies=False)),
     "exact search without planarity": with_options(Options(solve=SolveOptions(without=frozenset({"planarity"})))),
     "robust fit (`--fast`); all below change one thing of it": with_options(FIT),
     "short reach, as in the paper": with_options(replace(FIT, reach=SHORT_REACH)),

@@ -1,9 +1,9 @@
 """What is right and wrong on photos of known depth, to look at: python tests/benchmarks/gallery.py DATASET... --out DIR
 
 Pictures without the photo's own pixels, so that they may be shown where the photo may not. DATASET-NAME.png: on the
-left the lines and faces that were found (weak ones pale), on the right the points of known depth: right within 5 %,
-wrong, or without a depth in component 0. DATASET-NAME.svg: the lines from above and from the side, beside their true
-places, as `linecad evaluate --report` shows them. Prints a line a photo.
+left the lines and faces that were found (unsure ones dashed and pale), on the right the points of known depth: right
+within 5 %, wrong, or without a depth in component 0. DATASET-NAME.svg: the lines from above and from the side, beside
+their true places, as `linecad evaluate --report` shows them. Prints a line a photo.
 """
 
 import argparse
@@ -13,7 +13,7 @@ import numpy as np
 
 from exporters.colours import line_colour
 from exporters.picture.canvas import Canvas
-from exporters.picture.faces import draw_dashed, draw_faces
+from exporters.picture.faces import draw_faces, draw_line, words_of
 from linecad.arrays import Float
 from linecad.errors import DatasetError, LinecadError
 from linecad.evaluation.datasets import Case, find_dataset
@@ -89,11 +89,11 @@ def draw_model(panel: Canvas, scene: Scene) -> None:
     """Faces and lines as found."""
     scale = np.array([panel.width / scene.camera.width, panel.height / scene.camera.height])
     draw_faces(panel, scene, scale)
+    words = words_of(scene.lines)[0]
     shown = (scene.lines.segment + 0.5) * scale - 0.5
     for number in range(len(scene.lines)):
-        draw = draw_dashed if scene.lines.confidence[number] == "weak" else Canvas.line
         colour = line_colour(int(scene.lines.axis[number]), bool(scene.lines.is_boundary[number]))
-        draw(panel, shown[number, 0].tolist(), shown[number, 1].tolist(), colour, LINE_WIDTH)
+        draw_line(panel, shown[number].tolist(), words[number], colour, LINE_WIDTH)
     panel.frame(MISSING)
 
 

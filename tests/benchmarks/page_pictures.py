@@ -1,13 +1,14 @@
 """The pictures of docs/guide/page.md, of the sample street: python tests/benchmarks/page_pictures.py [FOLDER]"""
 
+import argparse
 import io
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 
 from driven import ROOT, opened, served, settle
 from PIL import Image
+from playwright.sync_api import Page
 
 LARGE = (1920, 1080)  # px, of the window
 SMALL = (1280, 800)
@@ -15,7 +16,7 @@ WIDTH = 1280  # px, of the pictures
 QUALITY = 82  # of JPEG
 
 
-def picture(page, path):
+def picture(page: Page, path: Path) -> None:
     """Save what the window shows."""
     settle(page)
     image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
@@ -24,12 +25,12 @@ def picture(page, path):
     print(f"{path.name}: {path.stat().st_size // 1024} kB")
 
 
-def overview(page, folder):
+def overview(page: Page, folder: Path) -> None:
     """All of the photo, and the model from the side."""
     picture(page, folder / "page.jpg")
 
 
-def correcting(page, folder):
+def correcting(page: Page, folder: Path) -> None:
     """A crossing that a person called fake, near, with its two lines on both sides."""
     chosen = page.evaluate(
         """() => {
@@ -45,6 +46,7 @@ def correcting(page, folder):
     page.evaluate("(pixel) => linecad.photo.change((viewport) => viewport.centre(pixel, 3))", chosen["pixel"])
     settle(page)
     box = page.locator("#overlay-canvas").bounding_box()
+    assert box is not None
     page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
     page.mouse.move(box["x"] + box["width"] / 2 + 60, box["y"] + box["height"] - 30)
     picture(page, folder / "page-correct.jpg")
@@ -53,7 +55,7 @@ def correcting(page, folder):
     page.keyboard.press("0")
 
 
-def bodies(page, folder):
+def bodies(page: Page, folder: Path) -> None:
     """The largest guess, and the most likely of its other places as a ghost."""
     page.evaluate("linecad.model.fit()")
     page.keyboard.press("b")
@@ -74,7 +76,7 @@ def bodies(page, folder):
     page.evaluate("linecad.bodies.panel.open(false)")
 
 
-def labelling(page, folder):
+def labelling(page: Page, folder: Path) -> None:
     """A question of the labelling mode, with the model through the camera."""
     page.keyboard.press("l")
     page.wait_for_timeout(500)
@@ -87,8 +89,10 @@ def labelling(page, folder):
     picture(page, folder / "page-label.jpg")
 
 
-def main():
-    target = Path(sys.argv[1]) if len(sys.argv) > 1 else ROOT / "docs" / "guide"
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path, nargs="?", default=ROOT / "docs" / "guide", help="of the pictures")
+    target = parser.parse_args().folder
     with tempfile.TemporaryDirectory() as folder:
         for name in ("street.jpg", "street.json"):
             shutil.copy(ROOT / "samples" / name, folder)

@@ -25,14 +25,18 @@ def same(one: Any, other: Any, tolerance: float) -> bool:
     return bool(one == other)
 
 
+def without_seconds(solve: Any) -> Any:
+    return {name: value for name, value in solve.items() if name != "seconds"} if isinstance(solve, dict) else solve
+
+
 def compare(before: dict[str, Any], after: dict[str, Any], tolerance: float) -> Counter[str]:
     """How many records differ, by the place of the key."""
     found: Counter[str] = Counter()
     for key in sorted(before.keys() | after.keys()):
         one, other = before.get(key), after.get(key)
         if key == "solve":
-            one, other = ({name: value for name, value in solve.items() if name != "seconds"} for solve in (one, other))
-        if key in RECORDS and len(one) == len(other):
+            one, other = (without_seconds(solve) for solve in (one, other))
+        if key in RECORDS and one is not None and other is not None and len(one) == len(other):
             for a, b in zip(one, other, strict=True):
                 for name in sorted(a.keys() | b.keys()):
                     if name not in a or name not in b:
@@ -56,7 +60,8 @@ def main() -> None:
     files = [path for path in sorted(chosen.before.glob("*.json")) if (chosen.after / path.name).is_file()]
     for path in files:
         texts = [folder.joinpath(path.name).read_text(encoding="utf-8") for folder in (chosen.before, chosen.after)]
-        found = compare(*map(json.loads, texts), chosen.tolerance)
+        before, after = map(json.loads, texts)
+        found = compare(before, after, chosen.tolerance)
         total.update(found)
         photos.update(found.keys())
         if chosen.each:
