@@ -23,6 +23,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import cv2
 
@@ -43,6 +44,7 @@ def make_photos(folder: Path, count: int) -> list[Path]:
     for number in range(count):
         name = ("room", "street", "courtyard")[number % 3]
         photo = cv2.imread(str(ROOT / "samples" / f"{name}.jpg"))
+        assert photo is not None
         width = WIDTH + 2 * number
         small = cv2.resize(photo, (width, width * photo.shape[0] // photo.shape[1]), interpolation=cv2.INTER_AREA)
         photos.append(folder / f"{name}{number:02d}.png")
@@ -96,7 +98,7 @@ def children(process: int) -> list[int]:
         return []
 
 
-def rows(output: Path) -> list[dict]:
+def rows(output: Path) -> list[dict[str, Any]]:
     """The lines of the record that are JSON."""
     found = []
     path = output / "batch.jsonl"

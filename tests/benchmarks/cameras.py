@@ -244,7 +244,7 @@ def _directions_off(verdict: Verdict, reference: Reference) -> Float:
         return np.full(3, np.inf)
     found, true = verdict.found.frame.rotation, reference.rotation
     cosines = np.abs((found * true[:, true_axes(found, true)]).sum(axis=0))
-    return np.degrees(np.arccos(np.clip(cosines, 0, 1)))
+    return np.asarray(np.degrees(np.arccos(np.clip(cosines, 0, 1))))
 
 
 def _label_share(verdict: Verdict, reference: Reference) -> float:

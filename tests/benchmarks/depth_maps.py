@@ -7,16 +7,18 @@ maps that are of no use are left out; and whether the kind is told where the fil
 """
 
 import argparse
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import Future, ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import get_args
 
 import numpy as np
 from ties import place_bodies
 from ties_truth import Judged, densest, judge
 
 from linecad.arrays import Bool
-from linecad.depth.depth_map import DepthMap
+from linecad.dataset.depth_maps import MapKind
+from linecad.depth.depth_map import DepthMap, Single
 from linecad.errors import DepthMapError
 from linecad.evaluation.datasets import find_dataset
 from linecad.ties.placing import BodyPlaces
@@ -37,7 +39,7 @@ class Outcome:
     kind: str
 
 
-def with_map(photo: Judged, width: float, seed: int, kind: str, is_told: bool, other: Judged | None) -> Outcome:
+def with_map(photo: Judged, width: float, seed: int, kind: MapKind, is_told: bool, other: Judged | None) -> Outcome:
     """The photo with a simulated map; of the `other` photo where one is given."""
     source = photo if other is None else other
     drawn = source.true_depth.simulated(width, seed, kind, is_told)
@@ -55,7 +57,7 @@ def of_no_use(photo: Judged, seed: int, is_constant: bool) -> Outcome:
     return _outcome(photo, true.of_values(values, "z"))
 
 
-def _stretched(drawn: DepthMap, photo: Judged) -> np.ndarray:
+def _stretched(drawn: DepthMap, photo: Judged) -> Single:
     width, height = photo.true_depth.size
     rows = (np.arange(height) * drawn.height) // height
     columns = (np.arange(width) * drawn.width) // width
@@ -114,7 +116,8 @@ def _print_dataset(name: str, photos: list[Judged], seeds: int, pool: ProcessPoo
         _print_row(f"{width:.1%}", [
             pool.submit(with_map, photo, width, seed, "z", True, None) for seed in range(seeds) for photo in photos
         ])  # fmt: skip
-    for kind in ("z", "affine-inverse"):
+    kinds: tuple[MapKind, ...] = get_args(MapKind)
+    for kind in kinds:
         found = _print_row(f"1.2%, {kind}, untold", [
             pool.submit(with_map, photo, 0.012, 0, kind, False, None) for photo in photos
         ])  # fmt: skip
@@ -129,8 +132,8 @@ def _print_dataset(name: str, photos: list[Judged], seeds: int, pool: ProcessPoo
         _print_row(label, [pool.submit(of_no_use, photo, 0, is_constant) for photo in photos])
 
 
-def _print_row(label: str, jobs: list) -> list[Outcome]:
-    found: list[Outcome] = [job.result() for job in jobs]
+def _print_row(label: str, jobs: list[Future[Outcome]]) -> list[Outcome]:
+    found = [job.result() for job in jobs]
     known = [one for one in found if np.isfinite(one.score[0])]
     recall, precision = np.mean([one.score for one in known], axis=0) if known else (np.nan, np.nan)
     heard = [one for one in found if not one.heard]

@@ -41,7 +41,7 @@ class TrueDepth:
 
     def of_values(self, values: NDArray[np.float32], kind: MapKind | None) -> DepthMap:
         """Any values (h, w) as a map of the photo."""
-        large = cv2.resize(values, self.size, interpolation=cv2.INTER_NEAREST)
+        large = np.asarray(cv2.resize(values, self.size, interpolation=cv2.INTER_NEAREST), np.float32)
         return DepthMap("simulated", large, large > 0, kind)
 
 

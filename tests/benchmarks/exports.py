@@ -12,15 +12,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from bare_scene import scene_of_lines
 from PIL import Image
 
 from exporters.format_options import TEXTURES
 from exporters.formats import FORMATS
 from linecad.io.scene_file import write_scene
-from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.scene import Camera, Face, Lines, Plane, Scene
 
 ROOT = Path(__file__).resolve().parents[2]
 WIDTH, HEIGHT, FOCAL = 3072, 2048, 2760.0  # px, as the photos of castle
@@ -46,24 +48,18 @@ def made_scene(lines: int, faces: int) -> Scene:
     start = rng.uniform([-40, DEPTH, -2], [40, DEPTH + 40, 18], (lines, 3))
     ends = np.stack([start, start + np.eye(3)[axis] * rng.uniform(0.3, 4, lines)[:, None]], axis=1)
     image = ends @ rotation.T @ matrix.T
-    return Scene(
-        photo="made.jpg",
-        camera=Camera(WIDTH, HEIGHT, matrix, "file"),
-        rotation=rotation,
-        lines=Lines(
-            id=np.arange(lines),
-            axis=axis,
-            segment=image[..., :2] / image[..., 2:],
-            ends=ends,
-            is_boundary=rng.random(lines) < 0.4,
-            component=np.zeros(lines, int),
-            confidence=["proven"] * lines,
-        ),
-        intersections=Intersections(lines=[], kind=[], pixel=[], real=[], in_tree=[], weight=[]),
-        planes=tuple(Plane(number, 1, y, (), tuple(held)) for number, (y, held) in enumerate(planes.items())),
-        solve=SolveReport("none", "gain", "optimal", 0, 0, 0),
-        metres_per_unit=1.0,
+    found = Lines(
+        id=np.arange(lines),
+        axis=axis,
+        segment=image[..., :2] / image[..., 2:],
+        ends=ends,
+        is_boundary=rng.random(lines) < 0.4,
+        component=np.zeros(lines, int),
+        confidence=np.full(lines, "proven"),
     )
+    walls = tuple(Plane(number, 1, y, (), tuple(held)) for number, (y, held) in enumerate(planes.items()))
+    scene = scene_of_lines(Camera(WIDTH, HEIGHT, matrix, "file"), rotation, found)
+    return replace(scene, planes=walls, metres_per_unit=1.0)
 
 
 def measured(command: list[str]) -> tuple[float, float, float]:

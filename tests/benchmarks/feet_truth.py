@@ -57,7 +57,7 @@ class GroundTruth:
     def foot(self, strip: Strip, drawer: StripDrawer, scale: float) -> tuple[float, float]:
         """The lowest row at which a share of the columns shows the wall above and the ground below, and that share."""
         rows = np.arange(ROWS)
-        log_height = strip.log_height(0) + ROW * rows
+        log_height = np.asarray(strip.log_height(0) + ROW * rows, np.float64)
         shown = self._shown(strip, drawer, log_height)
         above, below = np.roll(shown, ASIDE, axis=0), np.roll(shown, -ASIDE, axis=0)
         meets = self._is_wall(above, strip, scale) & self._is_ground[below] & (below != NOTHING)

@@ -84,7 +84,8 @@ def train(strips: Strips, row: Float, epochs: int, seed: int = 0, report: Callab
             pace.step()
             total += loss.item() * len(feet)
         report(f"epoch {epoch + 1} of {epochs}: loss {total / len(strips):.3f}")
-    return network.eval()
+    network.eval()
+    return network
 
 
 def write_network(network: FootNetwork, path: Path) -> None:
@@ -126,8 +127,8 @@ def changed_example(strip: Strips, row: float, random: np.random.Generator) -> t
     """A strip (LAYERS, ROWS, COLUMNS) as another photo might show it, and its row: other light, ground and things."""
     strip = strip[:, :, ::-1].copy() if random.random() < 0.5 else strip.copy()
     if random.random() < 0.5:  # a part of the wall
-        first = random.integers(0, 12)
-        last = random.integers(max(first + 12, 20), COLUMNS + 1)
+        first = int(random.integers(0, 12))
+        last = int(random.integers(max(first + 12, 20), COLUMNS + 1))
         strip = strip[:, :, np.linspace(first, last - 1, COLUMNS).round().astype(np.int64)]
     colour = strip[:3]
     if row >= 0:
@@ -151,7 +152,8 @@ def changed_example(strip: Strips, row: float, random: np.random.Generator) -> t
     if random.random() < 0.25:
         colour[1:] = 0
     if random.random() < 0.25:  # light that changes down the wall
-        colour[:1] += np.linspace(*random.normal(0, 0.6, 2), ROWS)[:, None]
+        above, below = random.normal(0, 0.6, 2).tolist()
+        colour[:1] += np.linspace(above, below, ROWS)[:, None]
     colour *= random.uniform(0.6, 1.5, (3, 1, 1))
     colour += random.normal(0, 0.25, (3, 1, 1))
     if random.random() < 0.35:

@@ -16,6 +16,7 @@ import time
 import warnings
 from pathlib import Path
 from types import FrameType
+from typing import Any
 
 import atheris
 
@@ -23,7 +24,7 @@ sys.path[:0] = [str(Path(__file__).resolve().parents[2]), str(Path(__file__).res
 with atheris.instrument_imports(include=["linecad", "PIL"]):
     from targets import TARGETS, Target, folder_in_memory
 
-HOSTILE = [
+HOSTILE: list[Any] = [
     0, -0.0, -1, 1, 2, 3.0, 1e308, -1e308, 5e-324, 1e12, 1.0000001e12, 2**31, 2**53, 2**64, -(2**63), 10**30, 0.5,
     None, True, False, "", "x", "\ud800", "../../x", [], [[]], {}, [0], {"a": 0},
 ]  # fmt: skip
@@ -51,10 +52,10 @@ def mutate_values(data: bytes, largest: int, seed: int) -> bytes:
     return text.encode("utf-8", "surrogatepass")[:largest]
 
 
-def places(value: object) -> "list[tuple[list | dict, int | str]]":
-    """Every (container, key) in nested lists and objects."""
-    found = []
-    waiting = [value]
+def places(value: object) -> list[tuple[Any, Any]]:
+    """Every list or object in nested ones, with each of its indices or keys."""
+    found: list[tuple[Any, Any]] = []
+    waiting: list[Any] = [value]
     while waiting:
         at = waiting.pop()
         keys = range(len(at)) if isinstance(at, list) else list(at) if isinstance(at, dict) else []
@@ -64,8 +65,8 @@ def places(value: object) -> "list[tuple[list | dict, int | str]]":
     return found
 
 
-def change(place: "list | dict", key: "int | str", dice: random.Random) -> None:
-    """One value replaced, removed, doubled or exchanged."""
+def change(place: Any, key: Any, dice: random.Random) -> None:
+    """One value, that of a key in a list or object, replaced, removed, doubled or exchanged."""
     how = dice.randrange(5)
     if how == 0 and len(place) > 1:
         del place[key]
@@ -85,7 +86,7 @@ def keep_few(target: Target, corpus: Path, kept: Path, folder: Path) -> None:
     reached: set[tuple[str, int, int]] = set()
     last: dict[object, int] = {}
 
-    def trace(frame: FrameType, event: str, _argument: object) -> object:
+    def trace(frame: FrameType, event: str, _argument: object) -> Any:
         name = frame.f_code.co_filename
         if "linecad" not in name and "PIL" not in name:
             return None

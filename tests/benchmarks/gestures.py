@@ -60,9 +60,13 @@ def steps(session: Session, solver: TaskSolver, points: Points, most: int) -> li
         if gesture is None:
             break
         word, fact = gesture
-        session.edit(session.now().version, lambda _, fact=fact: fact)
+        put(session, fact)
         told.append(f"{word} {scored(session, solver, points)}")
     return told
+
+
+def put(session: Session, fact: PlaceAt) -> None:
+    session.edit(session.now().version, lambda _: fact)
 
 
 def scored(session: Session, solver: TaskSolver, points: Points) -> str:

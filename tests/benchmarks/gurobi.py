@@ -41,7 +41,7 @@ def solve_by_gurobi(graph: LineGraph, options: SolveOptions) -> tuple[str, float
             environment = gurobi.Env(params={"OutputFlag": 0, "Threads": 1, "MIPGap": 0.0})
             environment.setParam("FeasibilityTol", FEASIBILITY_TOLERANCE)
             environment.setParam("IntFeasTol", FEASIBILITY_TOLERANCE)
-            environment.setParam("TimeLimit", options.time_limit_s - (time.monotonic() - began))
+            environment.setParam("TimeLimit", options.seconds - (time.monotonic() - began))
             read = gurobi.read(file, env=environment)
             read.optimize()
         except gurobi.GurobiError as error:

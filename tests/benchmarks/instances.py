@@ -43,6 +43,8 @@ class Size:
     extension: float  # px, of each end, to find crossings
 
 
+Ends = tuple[Float, Float]  # (3,) each, of one line, m
+
 PAPER_SIZE = Size(lines=215, buildings=6, bay=0.55, span=15, shortest=20, extension=27)
 SMALL_SIZE = Size(lines=26, buildings=4, bay=2.5, span=15, shortest=20, extension=27)
 LADDER = {
@@ -117,7 +119,7 @@ def _camera(rng: np.random.Generator) -> Float:
     base = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
     turn = np.array([[np.cos(yaw), np.sin(yaw), 0], [-np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]])
     nod = np.array([[1, 0, 0], [0, np.cos(pitch), -np.sin(pitch)], [0, np.sin(pitch), np.cos(pitch)]])
-    return nod @ base @ turn
+    return np.asarray(nod @ base @ turn)
 
 
 def _buildings(rng: np.random.Generator, count: int) -> tuple[Float, Float]:
@@ -166,13 +168,13 @@ def _facade_lines(rng: np.random.Generator, low: Float, high: Float, bay: float,
     return np.array(lines)
 
 
-def _pieces(rng: np.random.Generator, start: Float, axis: int, joints: Float, span: int) -> list:
+def _pieces(rng: np.random.Generator, start: Float, axis: int, joints: Float, span: int) -> list[Ends]:
     """A line along `axis` through all joints, in pieces of at most `span` of them, as blinds and pipes break it."""
     cuts = [0, *range(int(rng.integers(1, span + 1)), len(joints) - 1, span), len(joints) - 1]
     return [(_at(start, axis, joints[first]), _at(start, axis, joints[last])) for first, last in pairwise(cuts)]
 
 
-def _rectangle(corner: Float, along: int, left: float, right: float, bottom: float, top: float) -> list:
+def _rectangle(corner: Float, along: int, left: float, right: float, bottom: float, top: float) -> list[Ends]:
     """The four sides of an upright rectangle in the facade of `corner`."""
     points = [_at(_at(corner, along, u), 2, v) for u, v in ((left, bottom), (right, bottom), (right, top), (left, top))]
     return [(points[0], points[1]), (points[1], points[2]), (points[3], points[2]), (points[0], points[3])]
@@ -218,9 +220,9 @@ def _photograph(
 def _may_show(lines: Float, rotation: Float, shortest: float) -> Bool:
     """(L,) False where a look at both ends already says that no piece of `shortest` px is in the photo; saves time."""
     pixels = _project(lines.reshape(-1, 3), rotation).reshape(-1, 2, 2)
-    beyond = ((pixels < 0).all(axis=1) | (pixels >= [WIDTH, HEIGHT]).all(axis=1)).any(axis=1)
+    beyond = np.asarray((pixels < 0).all(axis=1) | (pixels >= [WIDTH, HEIGHT]).all(axis=1)).any(axis=1)
     # An end behind the camera is not a number, and no comparison with it holds.
-    return ~(beyond | (np.linalg.norm(pixels[:, 1] - pixels[:, 0], axis=1) < shortest))
+    return np.asarray(~(beyond | (np.linalg.norm(pixels[:, 1] - pixels[:, 0], axis=1) < shortest)))
 
 
 def _project(points: Float, rotation: Float) -> Float:
@@ -236,7 +238,7 @@ def _visible(points: Float, low: Float, high: Float) -> Bool:
         one, other = low / points[:, None], high / points[:, None]
     enter = np.minimum(one, other).max(axis=2)
     leave = np.maximum(one, other).min(axis=2)
-    return ~((enter < leave) & (enter > 0) & (enter < 1 - 2e-3)).any(axis=1)
+    return np.asarray(~((enter < leave) & (enter > 0) & (enter < 1 - 2e-3)).any(axis=1))
 
 
 def _through_vanishing_points(ends: Float, axis: Int, rotation: Float) -> Float:
@@ -253,7 +255,7 @@ def _towards_vanishing_point(middle: Float, axis: Int, rotation: Float) -> Float
     """(N, 2) unit direction in the photo of a line of this axis through this pixel."""
     x, y, z = rotation[:, axis]
     towards = np.stack([FOCAL * x, FOCAL * y], axis=1) - (middle - [WIDTH / 2, HEIGHT / 2]) * z[:, None]
-    return towards / np.linalg.norm(towards, axis=1, keepdims=True)
+    return np.asarray(towards / np.linalg.norm(towards, axis=1, keepdims=True))
 
 
 def _crossings(ends: Float, axis: Int, extension: float) -> tuple[Int, Float, Float]:

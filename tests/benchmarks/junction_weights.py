@@ -13,6 +13,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from real_photos import add_data_option, surveyed_points
@@ -136,7 +137,7 @@ def read_surveyed(photo_file: Path, camera_file: Path, truth_file: Path) -> Surv
     )
 
 
-def _truth_points(truth: dict, rotation: Float) -> tuple[Float, Int]:
+def _truth_points(truth: dict[str, Any], rotation: Float) -> tuple[Float, Int]:
     """Rows u, v, X, Y, Z in the camera frame, and the axis of the line that each lies on, -1 where not told."""
     if "lines" not in truth:
         points = surveyed_points(truth)
@@ -388,8 +389,8 @@ def main() -> None:
         solved = [judged(photo, chosen.extension) for photo in photos if photo.name in SEARCHED]
         search(solved, candidates, chosen.time_limit)
     if chosen.part == "check":
-        candidates = {"all ones": ONES, "linecad": (*(WEIGHT[kind] for kind in KINDS), CORNER_FACTOR)}
-        candidates |= {f"given {number + 1}": tuple(table) for number, table in enumerate(chosen.table)}
+        candidates = {"all ones": ONES, "linecad": (WEIGHT["L"], WEIGHT["T"], WEIGHT["X"], CORNER_FACTOR)}
+        candidates |= {f"given {place}": (L, T, X, corner) for place, (L, T, X, corner) in enumerate(chosen.table, 1)}
         check([judged(photo, chosen.extension) for photo in photos], candidates, chosen.time_limit)
     print(f"{time.perf_counter() - began:.0f} s")
 

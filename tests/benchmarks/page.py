@@ -15,6 +15,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from driven import ROOT, opened, served, settle
+from playwright.sync_api import Page
 
 SCALE = 3.75  # 1600 to 6000 px of width
 WIDTH, HEIGHT = 1920, 1080  # px, of the window
@@ -38,6 +39,7 @@ WATCH = """() => {
 def large_street(folder: Path) -> Path:
     """The sample street with 24 megapixels, and its calibration."""
     photo = cv2.imread(str(ROOT / "samples" / "street.jpg"))
+    assert photo is not None
     size = (round(photo.shape[1] * SCALE), round(photo.shape[0] * SCALE))
     cv2.imwrite(str(folder / "street.jpg"), cv2.resize(photo, size, interpolation=cv2.INTER_CUBIC))
     camera = json.loads((ROOT / "samples" / "street.json").read_text(encoding="utf-8"))
@@ -50,9 +52,9 @@ def large_street(folder: Path) -> Path:
     return folder / "street.jpg"
 
 
-def places(page, count):
+def places(page: Page, count: int) -> list[list[float]]:
     """Where on the screen to click: crossings that are drawn, and that no other one is near."""
-    at = page.evaluate(
+    drawn = page.evaluate(
         """() => {
           const { left, top } = document.querySelector("#overlay-canvas").getBoundingClientRect();
           const { store, photo } = linecad;
@@ -61,7 +63,7 @@ def places(page, count):
             .map(([x, y]) => [x + left, y + top]);
         }"""
     )
-    at = np.array(at)
+    at = np.array(drawn)
     chosen = [
         place
         for place in at
@@ -70,14 +72,14 @@ def places(page, count):
     return [chosen[number % len(chosen)].tolist() for number in range(count)]
 
 
-def told(what, times):
+def told(what: str, times: list[float]) -> str:
     if not times:
         return f"{what}: faster than can be told"
     ordered = sorted(times)
     return f"{what}: median {statistics.median(times):.1f} ms, worst of {len(times)} {ordered[-1]:.1f} ms"
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--clicks", type=int, default=40)
     parser.add_argument("--extension", default="180")
@@ -92,9 +94,10 @@ def main():
             developer = page.context.new_cdp_session(page)
             developer.send("Performance.enable", {"timeDomain": "threadTicks"})
 
-            def busy():
+            def busy() -> float:
+                """Seconds of the page's thread so far."""
                 metrics = developer.send("Performance.getMetrics")["metrics"]
-                return {each["name"]: each["value"] for each in metrics}["TaskDuration"]
+                return float({each["name"]: each["value"] for each in metrics}["TaskDuration"])
 
             work = []
             for x, y in places(page, parsed.clicks):

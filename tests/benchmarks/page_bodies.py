@@ -13,6 +13,7 @@ import tempfile
 from pathlib import Path
 
 from driven import opened, served, settle
+from playwright.sync_api import Page
 
 WIDTH, HEIGHT = 1920, 1080  # px, of the window
 ASIDE_MS = 400  # after a word, so that the next one does not come while the scene is built of the one before
@@ -73,7 +74,7 @@ def main() -> None:
             measure(page, chosen.words, chosen.output)
 
 
-def measure(page, words: int, output: Path | None) -> None:
+def measure(page: Page, words: int, output: Path | None) -> None:
     state = page.evaluate(
         "[linecad.store.state.lines.length, linecad.store.state.crossings.length, linecad.store.state.bodies.length]"
     )
@@ -109,7 +110,7 @@ def measure(page, words: int, output: Path | None) -> None:
     print(told("of these the server", page.evaluate("took.answered")))
 
 
-def picture(page, output: Path | None, name: str) -> None:
+def picture(page: Page, output: Path | None, name: str) -> None:
     if output is not None:
         output.mkdir(parents=True, exist_ok=True)
         page.screenshot(path=output / f"{name}.png")

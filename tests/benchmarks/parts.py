@@ -35,7 +35,7 @@ def part_of(photo: Photo, reference: Reference, name: str) -> tuple[Photo, Refer
     matrix = photo.camera.matrix.copy()
     matrix[:2, 2] -= left, upper
     camera = Camera(*size, resized_camera(matrix, np.full(2, PARTS[name][4])), photo.camera.source)
-    pixels = cv2.resize(cut, size, interpolation=cv2.INTER_AREA)
+    pixels = np.asarray(cv2.resize(cut, size, interpolation=cv2.INTER_AREA), np.uint8)
 
     def shown(points: Points | None) -> Points | None:
         if points is None:

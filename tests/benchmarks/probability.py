@@ -14,17 +14,18 @@ import re
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from types import ModuleType
 
 import logistic
 import numpy as np
-from ties import WIDTHS, Placed, placed
+from ties import WIDTHS, Placed, Table, placed
 from ties_truth import Judged, judge
 
 import linecad.ties.links
 import linecad.ties.probability
 import linecad.ties.seams
 import linecad.ties.table
-from linecad.arrays import Bool, Float
+from linecad.arrays import Bool, Float, Int, Text
 from linecad.evaluation.datasets import find_dataset
 from linecad.geometry import lengths
 from linecad.ties.links import Link, find_links
@@ -38,7 +39,7 @@ RIGHT_PART = {"seams": 0.045, "links": RIGHT}  # log ratio of the scales of both
 RIDGE_OF_SEAMS, RIDGE_OF_LINKS, RIDGE = 10.0, 5.0, 30.0
 SURE = 0.9
 FOLDS = 10  # of made scenes
-TABLE = {"AT_ONCE": linecad.ties.table.AT_ONCE, "LOG_ODDS": linecad.ties.table.LOG_ODDS}
+TABLE: Table = {"AT_ONCE": linecad.ties.table.AT_ONCE, "LOG_ODDS": linecad.ties.table.LOG_ODDS}
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +53,7 @@ class Looked:
     links: list[Link]
     length: Float  # (N,) of the lines of component 0, 0 for others
     features: Float  # (P, F) of lines, at the points that are judged
-    piece: np.ndarray  # (P,) in which that line is
+    piece: Int  # (P,) in which that line is
     right: Float  # (P,) 0 or 1
     log_scale: Float  # (B + 1,) of the bodies and the ground
 
@@ -70,13 +71,13 @@ class Rows:
     features: Float  # (M, F)
     right: Float  # (M,) 0 or 1
     weight: Float  # (M,) real and made scenes weigh alike
-    fold: np.ndarray  # (M,) names
-    dataset: np.ndarray  # (M,) names
+    fold: Text  # (M,) names
+    dataset: Text  # (M,) names
     is_unseen: Bool  # (M,)
 
     def others(self, fold: str) -> Bool:
         """The rows (M,) that judge a fold."""
-        return ~self.is_unseen & (self.fold != fold)
+        return np.asarray(~self.is_unseen & (self.fold != fold))
 
     def fit(self, chosen: Bool, ridge: float, held: Float | None = None) -> logistic.Logistic:
         held = None if held is None else held[chosen]
@@ -203,8 +204,9 @@ def print_lines(rows: Rows, held: Float) -> None:
         print(f"| {name} | " + " | ".join([*cells, f"{precision:.3f}", f"{share:.2f}"]) + " |", flush=True)
 
 
-def write(module: object, prefix: str, fitted: logistic.Logistic) -> None:
+def write(module: ModuleType, prefix: str, fitted: logistic.Logistic) -> None:
     """Put a fit into its module in place of the table there."""
+    assert module.__file__ is not None
     path = Path(module.__file__)
     names = list(getattr(module, f"{prefix}LOG_ODDS"))
     slopes = "".join(f'    "{name}": {value:.4f},\n' for name, value in zip(names, fitted.slope.tolist(), strict=True))

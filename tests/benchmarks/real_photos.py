@@ -8,9 +8,11 @@ import json
 import os
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+from linecad.arrays import Float
 from linecad.camera.intrinsics import undistort_points
 from linecad.camera.photo import read_photo
 from linecad.camera.vanishing_points import find_frame
@@ -48,7 +50,7 @@ def measure_depth(truth_file: Path, options: Options) -> tuple[float, ...]:
     return tuple(float(figure) for figure in figures)
 
 
-def surveyed_points(truth: dict) -> np.ndarray:
+def surveyed_points(truth: dict[str, Any]) -> Float:
     """Rows u, v, X, Y, Z of points on Manhattan segments: surveyed, or sampled on reconstructed lines."""
     if "points" in truth:
         return np.array(truth["points"], float)[truth["on_line"], :5]

@@ -73,7 +73,8 @@ def true_roofs(truth: Truth) -> list[TrueRoof]:
 def make(folder: Path, count: int) -> None:
     """Make the towns."""
     options = DatasetOptions(count, SEED, *SIZE, SAMPLES)
-    shown, index = [], 0
+    shown: list[int] = []
+    index = 0
     while len(shown) < count:
         draft = draw_draft(SEED, index, "town")
         if true_roofs(measure(draft, *JUDGED_SIZE)):

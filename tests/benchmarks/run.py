@@ -16,7 +16,7 @@ import statistics
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,12 +33,13 @@ from linecad.options import SHORT_REACH
 from solver.options import SolveOptions
 from solver.solve import solve
 
+GUROBI = "gurobi"  # the column that none of the backends solves
 COLUMNS = {
-    "gain": {"formulation": "gain", "backend": "scip"},
-    "gain-highs": {"formulation": "gain", "backend": "highs"},
-    "paper": {"formulation": "paper", "backend": "scip"},
-    "paper-highs": {"formulation": "paper", "backend": "highs"},
-    "gurobi": {"formulation": "paper"},
+    "gain": SolveOptions(formulation="gain", backend="scip"),
+    "gain-highs": SolveOptions(formulation="gain", backend="highs"),
+    "paper": SolveOptions(formulation="paper", backend="scip"),
+    "paper-highs": SolveOptions(formulation="paper", backend="highs"),
+    GUROBI: SolveOptions(formulation="paper"),
 }
 
 
@@ -87,10 +88,9 @@ def main() -> None:
         what = f"{size} | {name} | {len(graph.segments)} | {len(graph.edges)} | {fake}"
         for mu in arguments.mu_boundary:
             for column in arguments.columns:
+                options = replace(COLUMNS[column], time_limit_s=arguments.limit, mu_boundary=mu)
                 try:
-                    found = _apart(
-                        column, graph, SolveOptions(time_limit_s=arguments.limit, mu_boundary=mu, **COLUMNS[column])
-                    )
+                    found = _apart(column, graph, options)
                 except (SolverError, SkippedError) as error:
                     print(f"| {what} | {mu:g} | {column} | skipped: {error} |", flush=True)
                     continue
@@ -124,7 +124,7 @@ def _apart(column: str, graph: LineGraph, options: SolveOptions) -> Measured:
 
 
 def _measure(column: str, graph: LineGraph, options: SolveOptions) -> Measured:
-    if column == "gurobi":
+    if column == GUROBI:
         status, objective, gap, nodes, seconds = solve_by_gurobi(graph, options)
         cuts = 0
     else:

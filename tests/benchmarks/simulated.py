@@ -241,7 +241,7 @@ def _tones(
     scale = np.ldexp(dense, -level)
     column = np.floor(first * scale).astype(np.int32) & (count - 1)
     line = np.floor(second * scale).astype(np.int32) & (count - 1)
-    tone = row[start[ids, level] + line * count + column]
+    tone: NDArray[np.float32] = row[start[ids, level] + line * count + column]
     tone[ids == NOTHING] = 1
     return tone
 
@@ -316,7 +316,7 @@ def finished(canvas: Canvas, rng: Generator) -> tuple[bytes, Float]:
     height, width = canvas.pixels.shape[0] // SUPER, canvas.pixels.shape[1] // SUPER
     even = np.ascontiguousarray(canvas.pixels[: SUPER * height, : SUPER * width])
     small = cv2.resize(even, (width, height), interpolation=cv2.INTER_AREA).astype(np.float32)
-    small = cv2.GaussianBlur(small, (0, 0), rng.uniform(*BLUR))
+    small = np.asarray(cv2.GaussianBlur(small, (0, 0), rng.uniform(*BLUR)), np.float32)
     deviation = rng.uniform(*NOISE)
     stained = small + 2.0 * cv2.resize(clouds(rng, 256, 1.0).astype(np.float32), (width, height))[..., None]
     noisy = stained + deviation * rng.standard_normal(small.shape, np.float32)

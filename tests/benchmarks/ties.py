@@ -11,6 +11,7 @@ import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import logistic
@@ -47,6 +48,7 @@ WITHOUT: dict[str, tuple[tuple[Kind, ...], tuple[str, ...]]] = {
     "without resampling": ((), ("supported", "connected")),
 }
 Fits = dict[Kind, logistic.Logistic]
+Table = dict[str, Any]  # AT_ONCE and LOG_ODDS, as in linecad.ties.table
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +128,7 @@ def fits_without(photos: list[Judged], rows: dict[Kind, Rows], left_out: str, wi
     return {kind: of_kind.fit(of_kind.scene != number, without) for kind, of_kind in rows.items()}
 
 
-def tables(fits: Fits, rows: dict[Kind, Rows]) -> dict[str, dict]:
+def tables(fits: Fits, rows: dict[Kind, Rows]) -> Table:
     """The same in the form of linecad.ties.table."""
     slopes = {
         kind: dict(zip(rows[kind].names, fitted.slope.tolist(), strict=True)) for kind, fitted in fits.items()
@@ -155,9 +157,7 @@ class Placed:
     places: BodyPlaces
 
 
-def placed(
-    photo: Judged, kinds: tuple[Kind, ...], table: dict[str, dict], depth: tuple[float, int] | None = None
-) -> Placed:
+def placed(photo: Judged, kinds: tuple[Kind, ...], table: Table, depth: tuple[float, int] | None = None) -> Placed:
     """The photo placed by a table, without the candidates of some kinds, and with a map of that width and seed."""
     candidates = [candidate for candidate in photo.candidates if candidate.kind not in kinds]
     with mock.patch.multiple(linecad.ties.weights, **table):
@@ -233,7 +233,7 @@ def main() -> None:
         print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
 
 
-def write_table(table: dict[str, dict]) -> None:
+def write_table(table: Table) -> None:
     path = Path(linecad.ties.table.__file__)
     head = path.read_text(encoding="utf-8").partition("AT_ONCE")[0]
     lines = ["AT_ONCE: dict[Kind, float] = {"]

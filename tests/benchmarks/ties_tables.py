@@ -11,7 +11,7 @@ from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
 
 import numpy as np
-from ties import Rows, judge_all, placed, rows_of, tables, write_table
+from ties import Rows, Table, judge_all, placed, rows_of, tables, write_table
 from ties_truth import Judged
 
 from linecad.arrays import Int
@@ -20,12 +20,12 @@ from linecad.ties.candidates import KINDS, Kind
 KEPT = 0.7  # of the made scenes, in each draw
 
 
-def table_without(rows: dict[Kind, Rows], left_out: Int) -> dict[str, dict]:
+def table_without(rows: dict[Kind, Rows], left_out: Int) -> Table:
     """The fit to all scenes but those numbers."""
     return tables({kind: of_kind.fit(~np.isin(of_kind.scene, left_out)) for kind, of_kind in rows.items()}, rows)
 
 
-def mean_table(several: list[dict[str, dict]]) -> dict[str, dict]:
+def mean_table(several: list[Table]) -> Table:
     """The table whose log-odds are the mean of those of several."""
     kinds = {kind: list(slopes) for kind, slopes in several[0]["LOG_ODDS"].items()}
     return {

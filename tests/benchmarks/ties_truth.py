@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import SimpleNamespace
 
 import numpy as np
+from bare_scene import scene_of_lines
 from depth_truth import TrueDepth, true_depth
 from feet_truth import examples_of
 from parts import part_of
@@ -17,7 +17,7 @@ from linecad.evaluation.depth import NO_LINE, depths_of, nearest_lines, score
 from linecad.evaluation.references import Reference, open_case
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.options import LONG_REACH, Options
-from linecad.scene import Camera
+from linecad.scene import Camera, Lines
 from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.evidence import FITS
@@ -167,12 +167,18 @@ def _scales_of(seen: Seen, part: Int, count: int) -> Float:
 def lines_at(setting: Setting, found: FoundLines, pixels: Float) -> tuple[Int, Float]:
     """The line (P,) nearest to each pixel, and the log depth (P,) of its ray where that line has log depth 0."""
     graph = setting.graph
-    ends = np.repeat(graph.rays[:, None], 2, axis=1)
-    lines = SimpleNamespace(axis=graph.axis, ends=ends, segments_of=lambda line: graph.segments.ends[line : line + 1])
-    scene = SimpleNamespace(
-        camera=found.camera, rotation=found.frame.rotation, turns=found.frame.turns, lines=lines
-    )  # fmt: skip
-    on = nearest_lines(scene, pixels, np.ones(len(graph.axis), bool))
+    count = len(graph.axis)
+    lines = Lines(
+        id=np.arange(count),
+        axis=graph.axis,
+        segment=graph.segments.ends,
+        ends=np.repeat(graph.rays[:, None], 2, axis=1),
+        is_boundary=np.zeros(count, bool),
+        component=np.zeros(count, np.int64),
+        confidence=np.full(count, "supported"),
+    )
+    scene = scene_of_lines(found.camera, found.frame.rotation, lines, found.frame.turns)
+    on = nearest_lines(scene, pixels, np.ones(count, bool))
     factor = depths_of(scene, pixels, on)
     before = np.isfinite(factor) & (factor > 0)
     return np.where(before, on, NO_LINE), np.log(np.where(before, factor, 1.0))

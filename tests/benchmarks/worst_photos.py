@@ -49,7 +49,8 @@ def see(folder: Path, case: Case) -> Seen | None:
 def _picture(case: Case, photo: Judged, log_depth: Float, reference: int) -> NDArray[np.uint8]:
     pixels = cv2.cvtColor(open_case(case)[0].pixels, cv2.COLOR_RGB2BGR)
     shrunk = WIDTH / pixels.shape[1]
-    picture = cv2.resize(pixels, None, fx=shrunk, fy=shrunk, interpolation=cv2.INTER_AREA) // 2 + 110
+    smaller = cv2.resize(pixels, None, fx=shrunk, fy=shrunk, interpolation=cv2.INTER_AREA)
+    picture = np.asarray(smaller, np.uint8) // 2 + 110
     seen = photo.seen
     line = photo.on[seen]
     error = log_depth[line] + photo.log_factor[seen] - photo.log_true[seen]
