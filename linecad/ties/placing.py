@@ -52,6 +52,12 @@ class BodyPlaces:
         """(B,) of each body; behind these of the ground, where no map was heard."""
         return self.placement.log_scale if self.mapped is None else self.mapped.log_scale
 
+    @property
+    def scale_with_ground(self) -> Float:
+        """(B + 1,) log scale of each body and, last, of the ground, also where a map was heard."""
+        count = self.evidence.setting.bodies.count
+        return np.append(self.log_scale[:count], self.placement.log_scale[count])
+
     @cached_property
     def log_depth(self) -> Float:
         """(N,) of all lines there."""
@@ -76,10 +82,8 @@ class BodyPlaces:
     def probability_at(self, log_depth: Float, connected: Bool) -> Float:
         """The same for lines at depths (N,) near these, where these crossings are `connected` (E,)."""
         evidence, setting, pieces = self.evidence, self.evidence.setting, self.evidence.pieces
-        ground = self.placement.log_scale[setting.bodies.count]
-        log_scale = np.append(self.log_scale[: setting.bodies.count], ground)
-        seams = with_stays(list(evidence.seams), pieces, log_scale)
-        links = find_links(pieces, log_scale, self.placement.margin, evidence.reference, self.mapped)
+        seams = with_stays(list(evidence.seams), pieces, self.scale_with_ground)
+        links = find_links(pieces, self.scale_with_ground, self.placement.margin, evidence.reference, self.mapped)
         # What a person ties to the reference stands there.
         certain = self.placement.counted & (self.ties.weight >= IMPLIED)
         told = self.ties.parts(certain, len(self.placement.log_scale))

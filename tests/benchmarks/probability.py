@@ -101,8 +101,8 @@ def look(photo: Judged, one: Placed, suffix: str) -> Looked | None:
     """None where no line of component 0 shows a point of known depth."""
     setting, places, pieces = photo.setting, one.places, photo.pieces
     margin = places.placement.margin
-    seams = with_stays([seam for seam, _ in photo.seams], pieces, places.log_scale)
-    links = find_links(pieces, places.log_scale, margin, places.evidence.reference, places.mapped)
+    seams = with_stays([seam for seam, _ in photo.seams], pieces, places.scale_with_ground)
+    links = find_links(pieces, places.scale_with_ground, margin, places.evidence.reference, places.mapped)
     main = main_lines(setting, agreeing_with(setting.graph, places.log_depth))
     line = photo.on[photo.seen]
     error = places.log_depth[line] + photo.log_factor[photo.seen] - photo.log_true[photo.seen]
@@ -113,7 +113,7 @@ def look(photo: Judged, one: Placed, suffix: str) -> Looked | None:
     return Looked(
         photo, photo.dataset + suffix, fold_of(photo), seams, links,
         lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main,
-        features[line], pieces.piece[line], right.astype(np.float64), places.log_scale,
+        features[line], pieces.piece[line], right.astype(np.float64), places.scale_with_ground,
     )  # fmt: skip
 
 

@@ -315,6 +315,15 @@ def test_the_program_hears_a_map(avenue_walls, build_depth_map):
 
 
 @pytest.mark.usefixtures("heard_by_the_program")
+def test_the_ground_stands_behind_the_bodies_also_where_a_map_is_heard(avenue_walls, build_depth_map):
+    seen, surfaces = avenue_walls
+    found = with_map(seen, build_depth_map(seen.sight, surfaces))
+    bodies = found.setting.bodies.count
+    assert found.places.scale_with_ground[:bodies].tolist() == found.places.log_scale[:bodies].tolist()
+    assert found.places.scale_with_ground[bodies:].tolist() == [found.placement.log_scale[bodies]]
+
+
+@pytest.mark.usefixtures("heard_by_the_program")
 @pytest.mark.parametrize("by", [0.99, 1.0, 1.01, 1.015])
 def test_a_map_does_not_move_what_a_bundle_holds(terrace, build_depth_map, by):
     """Not even by less than the bundle's tolerance."""
