@@ -17,6 +17,7 @@ from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.colours import find_colours, likeness
 from linecad.ties.feet import MOST_LOG_ODDS, Foot, find_feet
 from linecad.ties.levels import LEAST_MATCHES, MOST, LevelPair, Match, find_levels
+from linecad.ties.looks import Looks
 from linecad.ties.planes import SharedPlane, find_shared_planes, is_induced
 from linecad.ties.setting import Setting
 from linecad.ties.sizes import SizePair, find_sizes
@@ -121,16 +122,19 @@ class Pair:
         return self._candidate("level", peak.log_ratio, own)
 
 
-def find_candidates(setting: Setting) -> list[Candidate]:
-    """All candidates: first between a body and the ground, whose number is the count of bodies, then pair by pair."""
+def find_candidates(setting: Setting, looks: Looks) -> list[Candidate]:
+    """All candidates: first between a body and the ground, whose number is the count of bodies, then pair by pair.
+
+    `looks` are those at the photo, of this setting or of one with other bodies.
+    """
     bundles: dict[tuple[int, int], list[Bundle]] = {}
     planes: dict[tuple[int, int], list[SharedPlane]] = {}
     for bundle in find_bundles(setting):
         bundles.setdefault(bundle.bodies, []).append(bundle)
     for plane in find_shared_planes(setting):
         planes.setdefault(plane.bodies, []).append(plane)
-    levels, sizes, colours = find_levels(setting), find_sizes(setting), find_colours(setting)
-    found = [_of_foot(setting, foot) for foot in find_feet(setting)]
+    levels, sizes, colours = find_levels(setting), find_sizes(setting), find_colours(setting, looks.beside)
+    found = [_of_foot(setting, foot) for foot in find_feet(setting, looks.feet)]
     for first in range(setting.bodies.count):
         for second in range(first + 1, setting.bodies.count):
             bodies = (first, second)

@@ -20,12 +20,11 @@ MOST_CHROMA = 32  # of a and b, in steps of 8 bits
 Seen = NDArray[np.uint8]
 
 
-def find_colours(setting: Setting) -> list[Float] | None:
+def find_colours(setting: Setting, beside: Seen | None) -> list[Float] | None:
     """How often each colour (BINS, BINS; a and b of CIE Lab) stands beside the lines of each body; sums are 1.
 
-    None without pixels.
+    By what is seen beside each line (`seen_beside`); None where nothing is.
     """
-    beside = seen_beside(setting)
     if beside is None:
         return None
     found = []

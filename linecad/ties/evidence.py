@@ -15,6 +15,7 @@ from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.depth_ties import DepthWitness, hear
 from linecad.ties.facts import CERTAIN
+from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces, find_pieces
 from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
@@ -69,9 +70,10 @@ def find_evidence(
     on_stage("fitting depths, with and without some of the lines")
     setting = _setting(graph, sight, options, real, fake, facts)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
-    candidates = find_candidates(setting)
-    seams = find_seams(setting)
-    pieces = find_pieces(setting, seams)
+    looks = Looks(setting)
+    candidates = find_candidates(setting, looks)
+    seams = find_seams(setting, looks)
+    pieces = find_pieces(setting, seams, looks)
     heard = hear(setting, candidates, sight.depth)
     return Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake)
 

@@ -16,7 +16,7 @@ from scipy.special import softmax
 
 from linecad.arrays import Float
 from linecad.ties.setting import Setting
-from linecad.ties.walls import ROWS, StripDrawer, Strips, Wall, find_walls
+from linecad.ties.walls import ROWS, StripDrawer, Strips, Wall, WallKey, find_walls
 
 NETWORK = Path(__file__).with_name("foot.onnx")
 AT_ONCE = 64  # strips
@@ -41,19 +41,45 @@ class Foot:
     unseen: float  # probability that this wall does not show its foot
 
 
-def find_feet(setting: Setting) -> list[Foot]:
-    """The feet of each body, its most probable one first; none without pixels."""
-    if setting.sight.pixels is None:
-        return []
-    drawer = StripDrawer(setting)
-    strips = [strip for wall in find_walls(setting) if (strip := drawer.draw(wall)) is not None]
-    if not strips:
-        return []
-    probability = foot_probabilities(np.stack([strip.layers for strip in strips]))
+@dataclass(frozen=True, eq=False)
+class Reading:
+    """What the network says of a wall."""
+
+    peaks: tuple[tuple[float, float], ...]  # log height at the body's own scale and probability of its clearest feet
+    unseen: float  # probability that the foot is not seen
+
+
+class FootReader:
+    """Reads the feet of one photo's walls, those of each wall once, whatever body it is a wall of."""
+
+    def __init__(self, setting: Setting) -> None:
+        self._drawer = None if setting.sight.pixels is None else StripDrawer(setting)
+        self._known: dict[WallKey, Reading | None] = {}
+
+    def read(self, walls: list[Wall]) -> list[Reading | None]:
+        """What the network says of each wall; None of those that cannot be drawn, and of all without pixels."""
+        if self._drawer is None:
+            return [None] * len(walls)
+        new = {wall.key: wall for wall in walls if wall.key not in self._known}
+        drawn = [(key, self._drawer.draw(wall)) for key, wall in new.items()]
+        self._known.update(dict.fromkeys(new))
+        strips = [(key, strip) for key, strip in drawn if strip is not None]
+        if strips:
+            probability = foot_probabilities(np.stack([strip.layers for _, strip in strips]))
+            for (key, strip), rows in zip(strips, probability, strict=True):
+                found = tuple((strip.log_height(row), share) for row, share in peaks(rows[:ROWS]))
+                self._known[key] = Reading(found, float(rows[ROWS]))
+        return [self._known[wall.key] for wall in walls]
+
+
+def find_feet(setting: Setting, reader: FootReader) -> list[Foot]:
+    """The feet of each body, its most probable one first, as the photo's `reader` sees them; none without pixels."""
+    walls = find_walls(setting)
     seen: dict[int, list[tuple[float, float, float, Wall]]] = {}
-    for strip, rows in zip(strips, probability, strict=True):
-        own = seen.setdefault(strip.wall.body, [])
-        own += [(p, strip.log_height(row), float(rows[ROWS]), strip.wall) for row, p in peaks(rows[:ROWS])]
+    for wall, reading in zip(walls, reader.read(walls), strict=True):
+        if reading is not None:
+            own = seen.setdefault(wall.body, [])
+            own += [(share, log_height, reading.unseen, wall) for log_height, share in reading.peaks]
     return [foot for body in sorted(seen) for foot in _feet(body, seen[body])]
 
 

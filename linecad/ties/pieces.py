@@ -12,6 +12,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.looks import Looks
 from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting
 from linecad.ties.weights import weigh_candidates
@@ -55,10 +56,10 @@ def part_bodies(bodies: RigidBodies, seams: list[Seam]) -> tuple[Int, Int]:
     return piece, sides[:, 0]
 
 
-def find_pieces(setting: Setting, seams: list[Seam]) -> Pieces:
-    """The pieces of all bodies, and what ties them."""
+def find_pieces(setting: Setting, seams: list[Seam], looks: Looks) -> Pieces:
+    """The pieces of all bodies, and what ties them; `looks` are those at the photo."""
     piece, body = part_bodies(setting.bodies, seams)
-    return Pieces(piece, body, find_candidates(replace(setting, bodies=RigidBodies(piece, len(body)))))
+    return Pieces(piece, body, find_candidates(replace(setting, bodies=RigidBodies(piece, len(body))), looks))
 
 
 def with_stays(seams: list[Seam], pieces: Pieces, log_scale: Float) -> list[Seam]:

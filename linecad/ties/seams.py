@@ -18,8 +18,9 @@ from linecad.graph.weakest_cut import weakest_cut
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.candidates import SAME_RATIO, Features, Pair
-from linecad.ties.colours import TYPICAL, Seen, in_common, seen_beside, shades
+from linecad.ties.colours import TYPICAL, Seen, in_common, shades
 from linecad.ties.levels import LevelPair, find_levels
+from linecad.ties.looks import Looks
 from linecad.ties.planes import find_shared_planes
 from linecad.ties.setting import Setting
 from linecad.ties.sizes import SizePair, find_sizes
@@ -82,8 +83,11 @@ class Seam:
         return float(1 / (1 + np.exp(-log_odds)))
 
 
-def find_seams(setting: Setting) -> list[Seam]:
-    """The seams of all bodies: of each the weakest cut, and of either side the weakest again, while they are weak."""
+def find_seams(setting: Setting, looks: Looks) -> list[Seam]:
+    """The seams of all bodies: of each the weakest cut, and of either side the weakest again, while they are weak.
+
+    `looks` are those at the photo.
+    """
     graph, body = setting.graph, setting.bodies.body
     agrees = graph.informative & (graph.misfit(setting.log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
     agrees &= (body[graph.edges[:, 0]] == body[graph.edges[:, 1]]) & (body[graph.edges[:, 0]] >= 0)
@@ -91,8 +95,7 @@ def find_seams(setting: Setting) -> list[Seam]:
     cuts = [cut for lines in setting.lines for cut in _cuts(lines, edges, weight)]
     if not cuts:
         return []
-    beside = seen_beside(setting)
-    seams = [_seam(setting, beside, one, other) for one, other in cuts]
+    seams = [_seam(setting, looks.beside, one, other) for one, other in cuts]
     return [seam for seam in seams if seam is not None]
 
 

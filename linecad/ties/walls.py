@@ -32,6 +32,7 @@ BRIGHTEST = 3.0  # Lab, added to the spread of colours, so that a plain wall's n
 FINEST, COARSEST, UNIT = 5.0, 1e-3, 3.0  # of the layer of resolution: log px, px, log px
 
 Strips = NDArray[np.float32]
+WallKey = tuple[int, float, bytes]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +43,11 @@ class Wall:
     plane: BodyPlane
     offset: float  # signed, at the body's own scale
     along: tuple[float, float]  # from where to where its lines reach along its horizontal axis
+
+    @property
+    def key(self) -> "WallKey":
+        """What tells it from the other walls of a photo, whatever bodies the lines are parted into."""
+        return self.plane.normal, self.offset, self.plane.lines.tobytes()
 
 
 @dataclass(frozen=True, eq=False)

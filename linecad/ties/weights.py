@@ -11,6 +11,7 @@ from linecad.ties.table import AT_ONCE, LOG_ODDS
 from solver.bodies.ties import Ties
 
 BY_CHANCE = 0.05  # that a ratio which nothing asks for is right within TOLERANCE
+CHANCE = float(np.log(BY_CHANCE / (1 - BY_CHANCE)))  # the same as log-odds
 TOLERANCE = 0.02  # log ratio within which a tie holds
 LEAST_WEIGHT = 2.0  # of a tie: weaker ones are so many that some always agree with a wrong place
 REPEATING: tuple[Kind, ...] = ("plane", "level")
@@ -26,7 +27,7 @@ def log_odds_of(candidate: Candidate) -> float:
 
 def above_chance(candidate: Candidate) -> float:
     """By how much the log-odds of a candidate are above those of a ratio that nothing asks for."""
-    return log_odds_of(candidate) - float(np.log(BY_CHANCE / (1 - BY_CHANCE)))
+    return log_odds_of(candidate) - CHANCE
 
 
 def worth_a_tie(candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from linecad.arrays import Bool, Float
+from linecad.arrays import Bool, Float, Int
 from solver.bodies.ties import Ties
 
 RESTARTS = 3
@@ -98,9 +98,46 @@ def sets_that_move(ties: Ties, log_scale: Float) -> list[Bool]:
     group = ties.parts(holds, count)
     sets = [np.arange(count) == body for body in range(count)]
     sets += [group == number for number in np.unique(group) if 1 < (group == number).sum() < count]
-    first, second = np.sort(ties.bodies, axis=1).T
-    for one, other in sorted(set(zip(first[holds].tolist(), second[holds].tolist(), strict=True))):
-        cut = ties.parts(holds & ~((first == one) & (second == other)), count)
-        if cut[one] != cut[other]:
-            sets += [cut == cut[one], cut == cut[other]]
+    for one, other, beyond in _bridges(np.unique(np.sort(ties.bodies[holds], axis=1), axis=0), count):
+        here = group == group[one]
+        sets += [here & (beyond == beyond[one]), here & (beyond == beyond[other])]
     return sets
+
+
+def _bridges(pairs: Int, count: int) -> list[tuple[int, int, Bool]]:
+    """Those of the pairs (P, 2) of `count` bodies without which a part falls apart, in their order.
+
+    Each with the bodies (B,) on one side of it; the other side is the rest of the part.
+    """
+    beside: list[list[int]] = [[] for _ in range(count)]
+    for one, other in pairs.tolist():
+        beside[one].append(other)
+        beside[other].append(one)
+    # Depth first: `place` is when a body was reached, `back` the first place that what was reached from it leads to.
+    place, back, parent = [-1] * count, [0] * count, [-1] * count
+    reached: list[int] = []
+    cut: dict[tuple[int, int], Bool] = {}
+    for start in range(count):
+        waiting = [(start, iter(beside[start]))] if place[start] < 0 else []
+        while waiting:
+            body, others = waiting[-1]
+            if place[body] < 0:
+                place[body] = back[body] = len(reached)
+                reached.append(body)
+            for other in others:
+                if place[other] < 0:
+                    parent[other] = body
+                    waiting.append((other, iter(beside[other])))
+                    break
+                if other != parent[body]:
+                    back[body] = min(back[body], place[other])
+            else:
+                waiting.pop()
+                if parent[body] < 0:
+                    continue
+                back[parent[body]] = min(back[parent[body]], back[body])
+                if back[body] == place[body]:
+                    beyond = np.zeros(count, bool)
+                    beyond[reached[place[body] :]] = True
+                    cut[min(body, parent[body]), max(body, parent[body])] = beyond
+    return [(one, other, beyond) for (one, other), beyond in sorted(cut.items(), key=lambda each: each[0])]

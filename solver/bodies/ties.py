@@ -70,11 +70,18 @@ class Ties:
     def parts(self, used: Bool, count: int) -> Int:
         """Number (B,) of the part that each of `count` bodies is in by the used ties (T,), in order of first bodies."""
         # Without SciPy, whose calls take far longer than these few ties.
-        root: dict[int, int] = {}
+        root = list(range(count))
         for first, second in self.bodies[used].tolist():
             one, other = _find(root, first), _find(root, second)
             root[max(one, other)] = min(one, other)
-        return np.unique([_find(root, body) for body in range(count)], return_inverse=True)[1]
+        # A root is the first body of its part, and stands before all that lead to it.
+        number, parts = [0] * count, 0
+        for body in range(count):
+            if root[body] == body:
+                number[body], parts = parts, parts + 1
+            else:
+                number[body] = number[root[body]]
+        return np.array(number, np.int64)
 
     def misfit(self, log_scale: Float) -> Float:
         """(T,) by how much log scales (B,) miss the ratios."""
@@ -102,9 +109,8 @@ class Ties:
         return float(self.weight[self.counted(log_scale)].sum())
 
 
-def _find(root: dict[int, int], node: int) -> int:
+def _find(root: list[int], node: int) -> int:
     """The root of the part that a node is in, with shorter ways to it for the next time (union-find)."""
-    root.setdefault(node, node)
     while root[node] != node:
         root[node] = root[root[node]]
         node = root[node]
@@ -113,18 +119,22 @@ def _find(root: dict[int, int], node: int) -> int:
 
 def pseudoforest(edges: Int) -> Bool:
     """Mask (E,) of the edges that are taken, first come first served, while no part has more edges than nodes."""
-    root: dict[int, int] = {}
-    is_full: dict[int, bool] = {}  # the part has as many edges as nodes
-    taken = np.zeros(len(edges), bool)
-    for number, (first, second) in enumerate(edges.tolist()):
-        one, other = _find(root, first), _find(root, second)
-        full, other_full = is_full.get(one, False), is_full.get(other, False)
-        if full and other_full:
+    count = int(edges.max(initial=-1)) + 1
+    root = list(range(count))
+    is_full = [False] * count  # the part has as many edges as nodes
+    taken = [False] * len(edges)
+    for number, (one, other) in enumerate(edges.tolist()):
+        # As `_find`, the calls of which would take most of the time of a local search.
+        while root[one] != one:
+            root[one] = one = root[root[one]]
+        while root[other] != other:
+            root[other] = other = root[root[other]]
+        if is_full[one] and is_full[other]:
             continue
         taken[number] = True
         root[one] = other
-        is_full[other] = full or other_full or one == other
-    return taken
+        is_full[other] = is_full[one] or is_full[other] or one == other
+    return np.array(taken, bool)
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,7 @@ from linecad.scene import Camera, Lines
 from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.evidence import FITS
+from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces, find_pieces
 from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
@@ -127,9 +128,10 @@ def judge(dataset: str, case: Case, part: str | None = None) -> Judged | None:
     if seen is None:
         return None
     setting, scene = seen.setting, scene_of(dataset, case)
-    seams = find_seams(setting)
-    pieces = find_pieces(setting, seams)
-    candidates = find_candidates(setting)
+    looks = Looks(setting)
+    seams = find_seams(setting, looks)
+    pieces = find_pieces(setting, seams, looks)
+    candidates = find_candidates(setting, looks)
     if seen.reference.truth is not None:
         examples = examples_of(scene, setting, seen.true_scale, seen.reference.truth)
         feet = [example.log_height for example in examples if np.isfinite(example.log_height)]

@@ -19,6 +19,7 @@ from linecad.ties.candidates import (
 from linecad.ties.colours import TYPICAL
 from linecad.ties.feet import MOST_LOG_ODDS, Foot
 from linecad.ties.levels import MOST
+from linecad.ties.looks import Looks
 from linecad.ties.planes import INDUCED, SharedPlane
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from linecad.ties.walls import find_walls, reach_below
@@ -47,6 +48,10 @@ def connected(setting):
     return replace(setting, fits=replace(setting.fits, group=np.zeros_like(setting.fits.group)))
 
 
+def candidates_of(setting):
+    return find_candidates(setting, Looks(setting))
+
+
 def of_kind(candidates, kind):
     return [candidate for candidate in candidates if candidate.kind == kind]
 
@@ -70,7 +75,7 @@ def scenes(row, stepped, grounded, build_setting):
 
 
 def test_what_crossings_ask_for_is_a_bundle_and_its_plane_a_feature(row, build_setting):
-    found = find_candidates(build_setting(row(2), moved=(0.3, -0.2)))
+    found = candidates_of(build_setting(row(2), moved=(0.3, -0.2)))
     (bundle,) = of_kind(found, "bundle")
     assert (bundle.bodies, bundle.normal) == ((0, 1), -1)
     assert bundle.log_ratio == pytest.approx(-0.5)
@@ -82,7 +87,7 @@ def test_what_crossings_ask_for_is_a_bundle_and_its_plane_a_feature(row, build_s
 def test_a_plane_that_no_crossing_implies_stands_beside_the_bundle(row, build_setting):
     setting = build_setting(row(2))
     graph = replace(setting.graph, coordinate=np.zeros_like(setting.graph.coordinate))
-    (bundle,) = of_kind(find_candidates(replace(setting, graph=graph)), "bundle")
+    (bundle,) = of_kind(candidates_of(replace(setting, graph=graph)), "bundle")
     assert (bundle.features["plane of it"], bundle.features["plane beside"]) == (0.0, 1.0)
 
 
@@ -90,7 +95,7 @@ def test_a_plane_elsewhere_is_a_candidate_beside_the_bundle(row, build_setting):
     seen = row(3, at=(10.0, 11.0))  # a bar before the farther wall asks for one depth, where both walls are one plane
     setting = build_setting(seen, body=seen.part)
     odd = replace(setting.graph, log_ratio=setting.graph.log_ratio + 0.3 * (np.diff(seen.part[seen.graph.edges])[:, 0]))
-    found = find_candidates(replace(setting, graph=odd))
+    found = candidates_of(replace(setting, graph=odd))
     (bundle,), (plane,) = of_kind(found, "bundle"), of_kind(found, "plane")
     assert bundle.log_ratio == pytest.approx(np.log(1.1) + 0.3)
     assert (bundle.features["plane of it"], bundle.features["plane beside"]) == (0.0, 0.0)
@@ -98,7 +103,7 @@ def test_a_plane_elsewhere_is_a_candidate_beside_the_bundle(row, build_setting):
 
 
 def test_walls_that_nothing_joins_are_tied_by_their_plane(row, build_setting):
-    (plane,) = of_kind(find_candidates(build_setting(row(0), moved=(0.3, -0.2))), "plane")
+    (plane,) = of_kind(candidates_of(build_setting(row(0), moved=(0.3, -0.2))), "plane")
     assert (plane.bodies, plane.normal) == ((0, 1), 1)
     assert plane.log_ratio == pytest.approx(-0.5)
 
@@ -106,12 +111,12 @@ def test_walls_that_nothing_joins_are_tied_by_their_plane(row, build_setting):
 @pytest.mark.parametrize(("by", "planes"), [(0.9 * INDUCED, 0), (1.1 * INDUCED, 1)])
 def test_a_plane_that_the_fit_made_is_no_candidate(row, build_setting, by, planes):
     setting = build_setting(row(0), moved=(by,))
-    assert len(of_kind(find_candidates(connected(setting)), "plane")) == planes
-    assert len(of_kind(find_candidates(setting), "plane")) == 1
+    assert len(of_kind(candidates_of(connected(setting)), "plane")) == planes
+    assert len(of_kind(candidates_of(setting), "plane")) == 1
 
 
 def test_levels_tie_what_stands_apart(stepped, build_setting):
-    found = of_kind(find_candidates(build_setting(stepped, moved=(0.1, 0.0))), "level")
+    found = of_kind(candidates_of(build_setting(stepped, moved=(0.1, 0.0))), "level")
     assert found[0].log_ratio == pytest.approx(-0.1, abs=0.005)
     assert found[0].normal == -1
     assert found[0].features["matches"] == pytest.approx(np.log(11))  # of twelve courses one is at eye level
@@ -121,7 +126,7 @@ def test_levels_tie_what_stands_apart(stepped, build_setting):
 
 
 def test_levels_at_the_ratio_of_a_plane_are_its_feature(row, build_setting):
-    (plane,) = of_kind(found := find_candidates(build_setting(row(0, level=True), moved=(0.3,))), "bundle")
+    (plane,) = of_kind(found := candidates_of(build_setting(row(0, level=True), moved=(0.3,))), "bundle")
     assert all(abs(other.log_ratio - plane.log_ratio) >= SAME_RATIO for other in of_kind(found, "level"))
     assert plane.features["same eaves"] == 1.0
     assert plane.features["level excess"] == MOST_EXCESS
@@ -130,7 +135,7 @@ def test_levels_at_the_ratio_of_a_plane_are_its_feature(row, build_setting):
 def test_kinds_give_way_to_those_before_them(row, stepped, grounded, build_setting):
     """A plane or a level at the ratio of a bundle, and a level at that of a plane, are no candidates of their own."""
     for setting in scenes(row, stepped, grounded, build_setting):
-        found = find_candidates(setting)
+        found = candidates_of(setting)
         for one in found:
             for other in found:
                 if (
@@ -142,7 +147,7 @@ def test_kinds_give_way_to_those_before_them(row, stepped, grounded, build_setti
 
 
 def test_every_feature_has_log_odds_and_is_finite(row, stepped, grounded, build_setting):
-    found = [one for setting in scenes(row, stepped, grounded, build_setting) for one in find_candidates(setting)]
+    found = [one for setting in scenes(row, stepped, grounded, build_setting) for one in candidates_of(setting)]
     assert {candidate.kind for candidate in found} == set(KINDS) == set(AT_ONCE) == set(LOG_ODDS)
     for candidate in found:
         assert list(candidate.features) == list(LOG_ODDS[candidate.kind])
@@ -151,7 +156,7 @@ def test_every_feature_has_log_odds_and_is_finite(row, stepped, grounded, build_
 
 def test_features_of_two_bodies(build_town, build_row, build_setting):
     first, second = build_row(0)
-    (plane,) = of_kind(find_candidates(build_setting(build_town(first, second[:18]))), "plane")
+    (plane,) = of_kind(candidates_of(build_setting(build_town(first, second[:18]))), "plane")
     known = plane.features
     assert known["near"] == pytest.approx(np.exp(-GAP / 100), rel=0.05)
     assert known["not far"] == pytest.approx(np.exp(-GAP / 800), rel=0.01)
@@ -172,7 +177,7 @@ def test_features_of_a_bundle(row, build_setting, monkeypatch):
         bundle, log_odds=6.0, of_all=8.0, matched=5, fewest=7, corners=3, pieces=1, gap=4 * GAP_UNIT, from_both=True
     )
     monkeypatch.setattr(linecad.ties.candidates, "find_bundles", lambda _: [counted])
-    (found,) = of_kind(find_candidates(setting), "bundle")
+    (found,) = of_kind(candidates_of(setting), "bundle")
     expected = {
         "log-odds": np.log(6.0),
         "of all": 0.75,
@@ -198,32 +203,32 @@ def test_the_planes_at_the_ratio_of_a_bundle_count_by_their_larger_share(row, bu
     ]
     planes = [SharedPlane((0, 1), ratio, normal, 1.0, share, (5, 5), 0) for normal, ratio, share in shares]
     monkeypatch.setattr(linecad.ties.candidates, "find_shared_planes", lambda _: planes)
-    (bundle,) = of_kind(find_candidates(setting), "bundle")
+    (bundle,) = of_kind(candidates_of(setting), "bundle")
     assert (bundle.features["plane of it"], bundle.features["plane beside"]) == (0.5, 0.3)
 
 
 @pytest.mark.parametrize(("by", "apart"), [(0.4, 0.4), (-0.4, 0.4), (1.7, FARTHEST)])
 def test_apart_has_no_sign_and_an_end(row, build_setting, by, apart):
-    (bundle,) = of_kind(find_candidates(build_setting(row(2), moved=(0.0, by))), "bundle")
+    (bundle,) = of_kind(candidates_of(build_setting(row(2), moved=(0.0, by))), "bundle")
     assert bundle.features["apart"] == pytest.approx(apart)
 
 
 def test_support_comes_from_the_fits(row, build_setting):
     setting = connected(build_setting(row(2), moved=(0.2,)))
-    (bundle,) = of_kind(find_candidates(setting), "bundle")
+    (bundle,) = of_kind(candidates_of(setting), "bundle")
     assert (bundle.features["supported"], bundle.features["connected"]) == (0.0, 1.0)
     setting.fits.depth[0, setting.lines[0]] -= 0.2  # one of four fits has it as the crossings ask
-    (bundle,) = of_kind(find_candidates(replace(setting)), "bundle")
+    (bundle,) = of_kind(candidates_of(replace(setting)), "bundle")
     assert (bundle.features["supported"], bundle.features["connected"]) == (0.25, 1.0)
 
 
 def test_one_body_has_no_candidates(row, build_setting):
     seen = row(0)
-    assert find_candidates(build_setting(seen, body=np.zeros_like(seen.part))) == []
+    assert candidates_of(build_setting(seen, body=np.zeros_like(seen.part))) == []
 
 
 def test_feet_tie_bodies_to_the_ground_which_is_one_more_body(grounded, brick_lane):
-    found = of_kind(find_candidates(grounded), "ground")
+    found = of_kind(candidates_of(grounded), "ground")
     first = [next(one for one in found if one.bodies[0] == body) for body in range(2)]
     below = np.log(brick_lane[1])
     assert [one.bodies for one in first] == [(0, 2), (1, 2)]
@@ -235,19 +240,19 @@ def test_feet_tie_bodies_to_the_ground_which_is_one_more_body(grounded, brick_la
 def test_ties_to_the_ground_come_first(row, build_setting, monkeypatch):
     setting = build_setting(row(2))
     feet = [Foot(wall.body, 0.5, 0.9, wall, 0.0, 0.0, 0.0) for wall in find_walls(setting)]
-    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: feet)
-    found = find_candidates(setting)
+    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda *_: feet)
+    found = candidates_of(setting)
     assert [(one.kind, one.bodies) for one in found] == [("ground", (0, 2)), ("ground", (1, 2)), ("bundle", (0, 1))]
 
 
 def test_without_pixels_nothing_stands_on_the_ground(grounded):
     blind = replace(grounded, sight=replace(grounded.sight, pixels=None))
-    assert of_kind(find_candidates(blind), "ground") == []
+    assert of_kind(candidates_of(blind), "ground") == []
 
 
 def test_one_body_may_stand_on_the_ground(grounded):
     alone = replace(grounded, bodies=replace(grounded.bodies, body=np.zeros_like(grounded.bodies.body), count=1))
-    assert {one.bodies for one in find_candidates(alone)} == {(0, 1)}
+    assert {one.bodies for one in candidates_of(alone)} == {(0, 1)}
 
 
 @pytest.fixture
@@ -259,8 +264,8 @@ def features_of_foot(grounded, monkeypatch):
         wall = replace(wall, plane=replace(wall.plane, rank=rank, share=0.75))
         usual = {"body": 0, "log_height": 0.5, "probability": 0.5, "others": 0.0, "against": 0.1, "unseen": 0.2}
         foot = Foot(wall=wall, **{**usual, **known})
-        monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
-        (found,) = of_kind(find_candidates(grounded), "ground")
+        monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda *_: [foot])
+        (found,) = of_kind(candidates_of(grounded), "ground")
         assert (found.bodies, found.log_ratio) == ((0, 2), -0.5)
         return found.features
 
@@ -288,8 +293,8 @@ def test_features_of_a_foot(features_of_foot):
 def test_a_foot_above_the_lower_ends_of_its_wall_is_told(grounded, monkeypatch, times, below):
     wall = next(wall for wall in find_walls(grounded) if wall.body == 0)
     foot = Foot(0, float(np.log(times * reach_below(grounded, wall).max())), 0.5, wall, 0.0, 0.1, 0.2)
-    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda _: [foot])
-    (found,) = of_kind(find_candidates(grounded), "ground")
+    monkeypatch.setattr(linecad.ties.candidates, "find_feet", lambda *_: [foot])
+    (found,) = of_kind(candidates_of(grounded), "ground")
     assert found.features["lines below"] == below
     assert (
         log_odds_of(found) == log_odds_of(replace(found, features=found.features | {"lines below": 0.0})) - 0.95 * below

@@ -5,9 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.ties.colours import BESIDE, BINS, TYPICAL, find_colours, likeness
+from linecad.ties.colours import BESIDE, BINS, TYPICAL, find_colours, likeness, seen_beside
 
 RED, BLUE, GREY = (170, 60, 50), (50, 70, 170), (128, 128, 128)
+
+
+def colours_of(setting):
+    return find_colours(setting, seen_beside(setting))
 
 
 @pytest.fixture(scope="module")
@@ -28,7 +32,7 @@ def looking_at(setting, pixels, **more):
 
 
 def like(setting, left, right):
-    colours = find_colours(looking_at(setting, painted(left, right)))
+    colours = colours_of(looking_at(setting, painted(left, right)))
     return likeness(colours, 0, 1)
 
 
@@ -51,7 +55,7 @@ def test_walls_of_one_grey_in_sun_and_shade_are_alike(walls):
 
 
 def test_shares_of_colours_sum_to_one(walls):
-    for colours in find_colours(looking_at(walls, painted(RED, BLUE))):
+    for colours in colours_of(looking_at(walls, painted(RED, BLUE))):
         assert colours.shape == (BINS, BINS)
         assert colours.sum() == pytest.approx(1)
         assert colours.min() >= 0
@@ -64,7 +68,7 @@ def test_likeness_is_what_both_have():
 
 
 def test_without_pixels_walls_are_as_alike_as_walls_are(walls):
-    assert find_colours(walls) is None
+    assert colours_of(walls) is None
     assert likeness(None, 0, 1) == TYPICAL == 0.87
 
 
@@ -81,5 +85,5 @@ def test_walls_are_looked_at_beside_their_lines(walls, row, width):
         pixels[v : w + 1, int(left) - 4 : int(right) + 5] = RED
     alone = replace(walls.bodies, body=np.where(np.arange(len(row.part)) == 0, 0, 1))
     seen = looking_at(replace(walls, sight=replace(walls.sight, width=width)), pixels, bodies=alone)
-    (found, _), (red, _) = find_colours(seen), find_colours(looking_at(seen, painted(RED, RED)))
+    (found, _), (red, _) = colours_of(seen), colours_of(looking_at(seen, painted(RED, RED)))
     assert np.minimum(found, red).sum() > 0.9

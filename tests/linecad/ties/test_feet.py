@@ -17,6 +17,7 @@ from linecad.ties.feet import (
     NETWORK,
     PEAKS,
     SAME,
+    FootReader,
     find_feet,
     foot_probabilities,
     peaks,
@@ -25,6 +26,10 @@ from linecad.ties.walls import COLUMNS, ROW, ROWS, Strip, StripDrawer, find_wall
 
 MOST_BYTES = 1_000_000  # of the network
 FOUND = 0.03  # log height
+
+
+def feet_of(setting):
+    return find_feet(setting, FootReader(setting))
 
 
 def noise(count, seed=0):
@@ -172,7 +177,7 @@ def below(brick_lane):
 
 @pytest.mark.parametrize("moved", [(0.0, 0.0), (0.7, -0.4)])
 def test_the_feet_of_two_walls_are_found_at_the_scales_of_their_bodies(house, below, moved):
-    found = find_feet(house(moved))
+    found = feet_of(house(moved))
     first = [next(foot for foot in found if foot.body == body) for body in range(2)]
     for foot, by in zip(first, moved, strict=True):
         assert foot.log_height == pytest.approx(below + by, abs=FOUND)
@@ -183,7 +188,7 @@ def test_the_feet_of_two_walls_are_found_at_the_scales_of_their_bodies(house, be
 
 
 def test_walls_of_one_body_that_agree_have_one_foot(house, below):
-    found = find_feet(house((0.3,), is_one=True))
+    found = feet_of(house((0.3,), is_one=True))
     assert found[0].log_height == pytest.approx(below + 0.3, abs=FOUND)
     assert found[0].others > 0.3
     assert [foot.body for foot in found] == [0] * len(found)
@@ -192,12 +197,12 @@ def test_walls_of_one_body_that_agree_have_one_foot(house, below):
 
 def test_without_pixels_there_are_no_feet(house):
     setting = house()
-    assert find_feet(replace(setting, sight=replace(setting.sight, pixels=None))) == []
+    assert feet_of(replace(setting, sight=replace(setting.sight, pixels=None))) == []
 
 
 def test_without_walls_there_are_no_feet(build_town, build_wall, build_setting):
     seen = build_town(build_wall(1, 10.0, np.array([-4.0, -1.0]), np.array([-2.0, 2.5]))[:2])
-    assert find_feet(build_setting(seen, pixels=np.zeros((2880, 3840, 3), np.uint8))) == []
+    assert feet_of(build_setting(seen, pixels=np.zeros((2880, 3840, 3), np.uint8))) == []
 
 
 @pytest.fixture
@@ -219,7 +224,7 @@ def told(house, monkeypatch):
                 probability[number, int(row) : int(row) + 2] = share * (1 - between), share * between
         probability[:, ROWS] = unseen
         monkeypatch.setattr(linecad.ties.feet, "foot_probabilities", lambda _: probability)
-        return find_feet(setting)
+        return feet_of(setting)
 
     return tell
 
@@ -265,4 +270,25 @@ def test_a_wall_that_is_not_drawn_has_no_foot(house, monkeypatch):
         return drawn(drawer, wall) if wall.body == 1 else None
 
     monkeypatch.setattr(StripDrawer, "draw", draw)
-    assert {foot.body for foot in find_feet(setting)} == {1}
+    assert {foot.body for foot in feet_of(setting)} == {1}
+
+
+def test_a_wall_is_looked_at_once_whatever_bodies_it_is_of(house, monkeypatch):
+    """Pieces of bodies ask for walls that whole bodies asked for before."""
+    parted, whole = house(), house(is_one=True)
+    looked = []
+    monkeypatch.setattr(
+        linecad.ties.feet,
+        "foot_probabilities",
+        lambda strips: [looked.append(len(strips)), foot_probabilities(strips)][1],
+    )
+    alone = [feet_of(setting) for setting in (parted, whole)]
+    looked.clear()
+    reader = FootReader(parted)
+    shared = [find_feet(setting, reader) for setting in (parted, whole, parted)]
+    keys = {wall.key for setting in (parted, whole) for wall in find_walls(setting)}
+    assert sum(looked) == len(keys)
+    for one, other in zip(shared, [*alone, alone[0]], strict=True):
+        assert [(each.body, each.log_height, each.probability) for each in one] == [
+            (each.body, each.log_height, each.probability) for each in other
+        ]

@@ -7,6 +7,7 @@ import pytest
 
 from linecad.ties import pieces as module
 from linecad.ties.bodies import RigidBodies
+from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces, find_pieces, part_bodies, with_stays
 from linecad.ties.seams import Seam, find_seams
 from solver.bodies.ties import Ties
@@ -42,8 +43,8 @@ def test_no_bodies_have_no_pieces():
 
 
 def test_what_ties_the_sides_of_a_seam_is_found_at_the_ratio_that_they_have(one_body):
-    seams = find_seams(one_body)
-    found = find_pieces(one_body, seams)
+    seams = find_seams(one_body, Looks(one_body))
+    found = find_pieces(one_body, seams, Looks(one_body))
     assert found.size.sum() == len(one_body.log_depth)
     assert found.of(seams[0].larger).tolist() != found.of(seams[0].smaller).tolist()
     bundles = [each for each in found.candidates if each.kind == "bundle"]
@@ -83,7 +84,7 @@ def test_a_side_that_the_ground_calls_elsewhere_does_not_stay(monkeypatch):
 
 
 def test_the_seams_of_a_setting_stay_as_they_are_in_a_sound_body(one_body):
-    seams = find_seams(one_body)
-    found = with_stays(seams, find_pieces(one_body, seams), np.zeros(2))
+    seams = find_seams(one_body, Looks(one_body))
+    found = with_stays(seams, find_pieces(one_body, seams, Looks(one_body)), np.zeros(2))
     assert [seam.features["stays"] for seam in found] == [1.0] * len(seams)
     assert [replace(seam, features={}).larger.tolist() for seam in found] == [seam.larger.tolist() for seam in seams]

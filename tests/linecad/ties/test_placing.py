@@ -13,6 +13,7 @@ import linecad.ties.weights
 from linecad.errors import ContradictionError, SolverError
 from linecad.ties.candidates import find_candidates
 from linecad.ties.evidence import FITS
+from linecad.ties.looks import Looks
 from linecad.ties.placing import place_lines
 from solver.options import SolveOptions
 
@@ -121,7 +122,7 @@ def test_crossings_called_fake_are_not_taken(facade):
     assert placed(facade).solution.connected[edges].all()
     found = placed(facade, fake=tuple(edges.tolist()))
     assert not found.solution.connected[edges].any()
-    kinds = {candidate.kind for candidate in find_candidates(found.setting)}
+    kinds = {candidate.kind for candidate in find_candidates(found.setting, Looks(found.setting))}
     assert "bundle" not in kinds, "what is fake is no evidence"
 
 

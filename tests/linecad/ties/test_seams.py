@@ -5,9 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linecad.ties.looks import Looks
 from linecad.ties.seams import LOG_ODDS, TYPICAL_SHADE, find_seams
 
 RED, BLUE = (170, 60, 50), (50, 70, 170)
+
+
+def seams_of(setting):
+    return find_seams(setting, Looks(setting))
 
 
 @pytest.fixture(scope="module")
@@ -31,7 +36,7 @@ def seen(setting, pixels):
 
 
 def test_two_walls_part_where_few_courses_join_them(one_body, row):
-    seam = find_seams(one_body)[0]
+    seam = seams_of(one_body)[0]
     sides = [set(np.flatnonzero(row.part == part).tolist()) for part in range(2)]
     assert set(seam.larger.tolist()) in sides
     assert set(seam.smaller.tolist()) in sides
@@ -40,21 +45,21 @@ def test_two_walls_part_where_few_courses_join_them(one_body, row):
 
 def test_what_no_crossing_joins_has_no_seam(build_town, build_row, build_setting):
     apart = build_town(*build_row(0))
-    assert find_seams(build_setting(apart, body=np.zeros(len(apart.part), int))) == []
+    assert seams_of(build_setting(apart, body=np.zeros(len(apart.part), int))) == []
 
 
 def test_two_bodies_have_no_seam_between_them(row, build_setting):
-    assert find_seams(build_setting(row)) == []
+    assert seams_of(build_setting(row)) == []
 
 
 def test_a_wall_is_no_seam(build_town, build_row, build_setting):
     first, _ = build_row(0)
     alone = build_town(first)
-    assert find_seams(build_setting(alone)) == []
+    assert seams_of(build_setting(alone)) == []
 
 
 def test_walls_of_one_paint_hold_better_than_those_of_two(one_body):
-    same, other = (find_seams(seen(one_body, painted(RED, right)))[0] for right in (RED, BLUE))
+    same, other = (seams_of(seen(one_body, painted(RED, right)))[0] for right in (RED, BLUE))
     assert same.features["shade"] > 0.95
     assert other.features["shade"] < 0.2
     same, other = (replace(each, features={**each.features, "stays": 1.0}) for each in (same, other))
@@ -62,28 +67,28 @@ def test_walls_of_one_paint_hold_better_than_those_of_two(one_body):
 
 
 def test_light_counts_too(one_body):
-    dark = find_seams(seen(one_body, painted((200, 200, 200), (90, 90, 90))))[0]
+    dark = seams_of(seen(one_body, painted((200, 200, 200), (90, 90, 90))))[0]
     assert dark.features["shade"] < 0.2
 
 
 def test_without_a_photo_the_shade_is_the_usual_one(one_body):
-    assert find_seams(one_body)[0].features["shade"] == TYPICAL_SHADE
+    assert seams_of(one_body)[0].features["shade"] == TYPICAL_SHADE
 
 
 def test_sides_beside_each_other_overlap_down_and_not_across(build_town, build_row, build_setting):
     touching = build_town(*build_row(3, end=0.9))
-    found = find_seams(build_setting(touching, body=np.zeros(len(touching.part), int)))[0].features
+    found = seams_of(build_setting(touching, body=np.zeros(len(touching.part), int)))[0].features
     assert found["overlap across"] < 0.2
     assert found["overlap down"] > 0.8
 
 
 def test_a_seam_is_doubtful_where_the_search_moves_its_sides_apart(one_body):
-    seam = find_seams(one_body)[0]
+    seam = seams_of(one_body)[0]
     moved, stays = (replace(seam, features={**seam.features, "stays": share}).probability for share in (0.0, 1.0))
     assert 0 < moved < stays < 1
 
 
 def test_the_same_setting_has_the_same_seams(one_body):
-    one, other = (find_seams(seen(one_body, painted(RED, BLUE))) for _ in range(2))
+    one, other = (seams_of(seen(one_body, painted(RED, BLUE))) for _ in range(2))
     assert [seam.features for seam in one] == [seam.features for seam in other]
     assert all((a.smaller == b.smaller).all() for a, b in zip(one, other, strict=True))
