@@ -1,5 +1,6 @@
 // Edits: each is shown at once, sent to the server one after the other, and replaced by what the server answers.
 
+import { keepingWhatIsSame, stateOf } from "./answers.js";
 import { RequestError } from "./server.js";
 
 /** The state that an edit most likely leads to; the server's answer, a moment later, decides. */
@@ -53,13 +54,6 @@ function replaced(list, id, change) {
   return list.map((each) => (each.id === id ? change(each) : each));
 }
 
-/** A new state, with the very lists of what is shown where they say the same: who draws them sees it at once. */
-function keepingWhatIsSame(state, shown) {
-  const lists = ["lines", "crossings", "planes", "bodies", "areas", "K", "R_cam_from_world"];
-  const kept = lists.filter((name) => shown && JSON.stringify(state[name]) === JSON.stringify(shown[name]));
-  return { ...state, ...Object.fromEntries(kept.map((name) => [name, shown[name]])) };
-}
-
 /** The queue of what is to be sent. Nothing is sent before the answer to what went before it. */
 export class Editing {
   #queue = []; // {path, edit, tried}
@@ -104,7 +98,13 @@ export class Editing {
   }
 
   async refresh() {
-    this.accept(await this.server.get("state"));
+    this.accept(await this.#read());
+  }
+
+  /** The state as it is now, of which the server sends what the page does not have. */
+  async #read() {
+    const known = this.#answered;
+    return stateOf(await this.server.get(known ? `state?has=${known.answer}` : "state"), known);
   }
 
   #push(path, edit) {
@@ -147,14 +147,15 @@ export class Editing {
 
   /** Whether the server took an entry; undefined where it must be sent again, on top of a newer state. */
   async #sendFirst(entry) {
-    const body = { base_version: this.#answered.version, ...(entry.edit && { edit: entry.edit }) };
+    const known = this.#answered;
+    const body = { base_version: known.version, has: known.answer, ...(entry.edit && { edit: entry.edit }) };
     try {
       const answer = await this.server.post(entry.path, body);
       // A search may be over before anyone asks for it: it counts as running until its end has been heard of.
       this.#answered =
         entry.path === "solve"
           ? { ...this.#answered, solve: { state: "running" } }
-          : keepingWhatIsSame(answer, this.store.state);
+          : keepingWhatIsSame(stateOf(answer, known), this.store.state);
       return true;
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
@@ -175,7 +176,7 @@ export class Editing {
 
   async #readAgain() {
     try {
-      this.#answered = keepingWhatIsSame(await this.server.get("state"), this.store.state);
+      this.#answered = keepingWhatIsSame(await this.#read(), this.store.state);
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
       this.tell(error.message, "error");
