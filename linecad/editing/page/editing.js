@@ -58,6 +58,7 @@ function replaced(list, id, change) {
 export class Editing {
   #queue = []; // {path, edit, tried}
   #answered = null; // the last state that the server sent
+  #hasAsked = false; // a search may be over before anyone asks for it: it runs until its end has been heard of
   #sending = false;
   #idle = [];
 
@@ -70,8 +71,14 @@ export class Editing {
   /** Take over a state that the server sent, unless the answer to a later edit has overtaken it. */
   accept(state) {
     if (state.version < this.#answered?.version) return;
-    this.#answered = keepingWhatIsSame(state, this.store.state);
+    this.#take(state);
     this.#show();
+  }
+
+  /** The next answer may tell how it differs from this one, so nothing in it is changed. */
+  #take(state) {
+    this.#answered = keepingWhatIsSame(state, this.store.state);
+    this.#hasAsked = false;
   }
 
   /** Make an edit as in the list of `/api/edit`; a promise of whether the server took it. */
@@ -126,7 +133,8 @@ export class Editing {
   }
 
   #show() {
-    const state = this.#queue.reduce((shown, { edit }) => (edit ? expected(shown, edit) : shown), this.#answered);
+    const known = this.#hasAsked ? { ...this.#answered, solve: { state: "running" } } : this.#answered;
+    const state = this.#queue.reduce((shown, { edit }) => (edit ? expected(shown, edit) : shown), known);
     this.store.set({ state, busy: this.#queue.length, saved: state.saved, solve: state.solve });
   }
 
@@ -151,11 +159,8 @@ export class Editing {
     const body = { base_version: known.version, has: known.answer, ...(entry.edit && { edit: entry.edit }) };
     try {
       const answer = await this.server.post(entry.path, body);
-      // A search may be over before anyone asks for it: it counts as running until its end has been heard of.
-      this.#answered =
-        entry.path === "solve"
-          ? { ...this.#answered, solve: { state: "running" } }
-          : keepingWhatIsSame(stateOf(answer, known), this.store.state);
+      if (entry.path === "solve") this.#hasAsked = true;
+      else this.#take(stateOf(answer, known));
       return true;
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
@@ -176,7 +181,7 @@ export class Editing {
 
   async #readAgain() {
     try {
-      this.#answered = keepingWhatIsSame(await this.#read(), this.store.state);
+      this.#take(await this.#read());
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
       this.tell(error.message, "error");

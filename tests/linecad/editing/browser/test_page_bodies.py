@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from linecad.io.scene_file import read_scene
+
 pytestmark = pytest.mark.thorough  # every day the server is asked what the page asks it (test_bodies.py)
 
 NEAR, FAR = 0, 1  # the bodies of the made scene, the larger first
@@ -404,3 +406,29 @@ def test_the_rebuild_behind_a_fact_takes_nothing_away(told):
     assert told.run("[linecad.photo.viewport.x, linecad.photo.viewport.scale, linecad.model.orbit.distance]") == view
     assert told.run("document.activeElement.dataset.gesture") == "move"
     assert told.page.locator("#messages .message").count() == 0
+
+
+def test_an_export_waits_for_the_scene_behind_a_fact(told, tmp_path):
+    """It held the scene before, and nobody was told."""
+    state = told.state
+    line, to = (lines_of(state, body, "x", "y")[0] for body in (FAR, NEAR))
+    told.press("e")
+    edit = {"op": "place", "line": line["id"], "to": to["id"], "log_ratio": 0.25}
+    with told.page.expect_download() as download:
+        told.run(
+            """async (edit) => {
+              await linecad.editing.edit(edit);
+              document.querySelector("[data-format=json]").click();
+            }""",
+            edit,
+        )
+        told.page.get_by_text("JSON is written when the model holds your corrections").wait_for()
+    download.value.save_as(tmp_path / "now.json")
+    told.page.get_by_text("Saved boxes.json.", exact=True).wait_for()
+    told.wait("linecad.store.solve.state === 'idle'")
+    scene, now = read_scene(tmp_path / "now.json"), told.served.ask("state")
+    assert now["solve"]["fresh"]
+    moved = scene.lines.row_by_look["xyz".index(line["axis"]), np.array(line["segment"]).tobytes()]
+    np.testing.assert_allclose(scene.lines.ends[moved], line_now(now, line)["ends"])
+    assert not np.allclose(scene.lines.ends[moved], line["ends"], rtol=0.01)
+    told.press("Control+z")
