@@ -47,6 +47,20 @@ def test_a_lasso_that_crosses_itself_means_the_largest_part_that_it_goes_around(
     assert answer.json()["areas"] == [{"is": "sky", "polygon": [list(corner) for corner in found.polygon]}]
 
 
+def test_ground_above_the_horizon_is_refused(page):
+    """It did nothing, and nobody was told."""
+    horizon = page.state()["photo"]["height"] / 2  # the made camera looks nearly level
+    above = [[100, 0], [400, 0], [400, horizon - 250]]
+    answer = edit(page, op="region", polygon=above, **{"is": "ground"})
+    assert answer.status_code == 422
+    assert "above the horizon" in answer.json()["error"]
+    assert edits(page) == ()
+    assert edit(page, op="region", polygon=above, **{"is": "sky"}).status_code == 200
+    page.state()
+    reaching_down = [*above[:2], [400, horizon + 250]]
+    assert edit(page, op="region", polygon=reaching_down, **{"is": "ground"}).status_code == 200
+
+
 def test_a_window_names_its_wall_by_a_level_line_in_it_and_is_a_hole_after_the_solve(solved):
     page, state = solved
     plane, shape = wall_of(state)
