@@ -8,7 +8,6 @@ import numpy as np
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.camera.text import summary
 from linecad.corrections.annotations import Annotations
-from linecad.corrections.edits import Region
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.bodies import ShownBodies
@@ -21,6 +20,7 @@ from linecad.editing.in_model import is_guess
 from linecad.editing.notes import notes_of
 from linecad.editing.state import Decisions, Model, Now
 from linecad.editing.tiles import TILE
+from linecad.editing.told_faces import told_faces
 from linecad.line_graph import LineGraph
 from linecad.model.known_lengths import measurable
 from linecad.scene import Face, Plane, Scene
@@ -54,9 +54,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "bodies": list_bodies(now),
         "facts": facts_of_page(now),
         "moved": moved_by_last(now),
-        "areas": [
-            {"is": edit.shows, "polygon": edit.polygon} for edit in now.corrections.edits if isinstance(edit, Region)
-        ],
+        "areas": told_faces(now),
         "groups": [_group(group) for group in groups],
         "notes": list(notes_of(now, groups)),
         "details": list(now.found.notes if scene is None else scene.notes),
