@@ -180,6 +180,18 @@ def test_two_level_lines_are_at_the_same_height(told):
     assert first == pytest.approx(second, rel=0.02)
 
 
+def test_what_holds_already_is_said_to_move_nothing(told):
+    """It moved nothing and said nothing."""
+    told.press("b")
+    click_line(told, lines_of(told.state, FAR, "z")[0])
+    told.press("Shift+D")
+    told.wait("linecad.bodies.gestures.now?.places")
+    told.run("linecad.bodies.gestures.moveTo(1e-8)")
+    told.press("Enter")
+    told.page.get_by_text("That holds already").wait_for()
+    assert facts(told) == ["place"]
+
+
 def test_two_upright_lines_are_in_one_plane_and_a_key_turns_it(told):
     state = told.state
     far = lines_of(state, FAR, "z")[0]
