@@ -13,8 +13,8 @@ def keep_probable(scene: Scene, least: float) -> Scene:
     """The scene of the lines whose probability is at least `least` (0 to 1), everything else by its id as before.
 
     With a line go its crossings and its place in planes. A plane goes, with its faces, where none of its lines stays;
-    where one stays, all its faces do. Openings go, with their panes and reveals, with the planes of their walls, and so
-    do roofs.
+    where one stays, all its faces do. The ground stays, since all stand on it: heights are told from there. Openings
+    go, with their panes and reveals, with the planes of their walls, and so do roofs.
     A note counts what was left out; where that is nothing, the scene comes back as it is. Raises ConfidenceError where
     the scene tells no probabilities, or no line is left.
     """
@@ -34,8 +34,8 @@ def keep_probable(scene: Scene, least: float) -> Scene:
             f"{probability.max():.3g}; choose a smaller --confidence"
         )
     rest = with_lines(scene, kept)
-    bare = {plane.id for plane in scene.planes if not plane.lines}  # a ground and reveals have no lines
-    staying = {plane.id for plane in rest.planes if plane.lines or plane.id in bare}
+    bare = {plane.id for plane in scene.planes if not plane.lines}  # as reveals are
+    staying = {plane.id for plane in rest.planes if plane.lines or plane.id in bare or plane.shows_ground}
     staying -= {roof for roof, wall in scene.walls_of_roofs.items() if wall not in staying}
     openings = tuple(each for each in scene.openings if each.plane in staying)
     planes = _with_parts_of(openings, rest.planes, staying)

@@ -132,10 +132,13 @@ def _line(told: dict[str, Any], metres: float) -> Line:
 
 
 def _faces(top: dict[str, Any], lines: Mapping[int, Line]) -> dict[int, Face]:
-    """A face is as sure as the surest line of its plane; parts of an opening and roofs are as sure as their wall."""
+    """A face is as sure as the surest line of its plane; parts of an opening and roofs are as sure as their wall.
+
+    The ground always stays.
+    """
     surest: dict[int, float | None] = {}
     for plane in top["planes"]:
-        told = [lines[line].probability for line in plane["lines"]]
+        told = [] if _shows_ground(plane) else [lines[line].probability for line in plane["lines"]]
         surest[plane["id"]] = max((each for each in told if each is not None), default=None)
     surest |= {plane["id"]: surest[_carrier(plane, top)] for plane in top["planes"] if plane.get("tilt")}
     wall = {opening["id"]: opening["plane"] for opening in top.get("openings", ())}
@@ -144,6 +147,11 @@ def _faces(top: dict[str, Any], lines: Mapping[int, Line]) -> dict[int, Face]:
         for plane in top["planes"]
         for face in plane["faces"]
     }
+
+
+def _shows_ground(plane: dict[str, Any]) -> bool:
+    faces = plane["faces"]
+    return plane["axis"] == "z" and plane["offset"] < 0 and any(face.get("kind") == "ground" for face in faces)
 
 
 def _carrier(roof: dict[str, Any], top: dict[str, Any]) -> int:

@@ -7,7 +7,7 @@ import numpy as np
 
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.camera.text import summary
-from linecad.corrections.edits import Region
+from linecad.corrections.annotations import Annotations
 from linecad.depth.depth_map import DepthMap
 from linecad.directions import axis_name
 from linecad.editing.bodies import ShownBodies
@@ -18,8 +18,10 @@ from linecad.editing.faces import facades_in, triangles_of
 from linecad.editing.groups import Group, groups_of
 from linecad.editing.in_model import is_guess
 from linecad.editing.notes import notes_of
-from linecad.editing.state import Model, Now
+from linecad.editing.state import Decisions, Model, Now
 from linecad.editing.tiles import TILE
+from linecad.editing.told_faces import told_faces
+from linecad.line_graph import LineGraph
 from linecad.model.known_lengths import measurable
 from linecad.scene import Face, Plane, Scene
 
@@ -27,6 +29,7 @@ NOT_IN_SPACE: dict[str, object] = {
     "ends": None, "boundary": False, "component": -1, "confidence": None, "probability": None, "guess": False,
     "by_depth_map": False, "sets_scale": False,
 }  # fmt: skip
+NOTHING_DECIDED = Decisions({})
 
 
 def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = None) -> dict[str, object]:
@@ -51,9 +54,7 @@ def document_of(now: Now, levels: int, is_saved: bool, depth: DepthMap | None = 
         "bodies": list_bodies(now),
         "facts": facts_of_page(now),
         "moved": moved_by_last(now),
-        "areas": [
-            {"is": edit.shows, "polygon": edit.polygon} for edit in now.corrections.edits if isinstance(edit, Region)
-        ],
+        "areas": told_faces(now),
         "groups": [_group(group) for group in groups],
         "notes": list(notes_of(now, groups)),
         "details": list(now.found.notes if scene is None else scene.notes),
@@ -170,16 +171,18 @@ def _group(group: Group) -> dict[str, object]:
 
 
 def _crossings(now: Now) -> list[dict[str, object]]:
-    graph, annotations, ids = now.lines.graph, now.lines.annotations, now.lines.ids
-    decided = {} if now.model is None else now.model.decided
-    changed, far = (frozenset(), frozenset()) if now.model is None else (now.model.changed, now.model.far)
+    lines, decisions = now.lines, NOTHING_DECIDED if now.model is None else now.model.decisions
+    return _crossings_of(lines.graph, lines.annotations, lines.ids, lines.crossings, decisions)
+
+
+@lru_cache(maxsize=2)
+def _crossings_of(
+    graph: LineGraph, annotations: Annotations, ids: tuple[int, ...], crossings: tuple[int, ...], decisions: Decisions
+) -> list[dict[str, object]]:
+    """The crossings of a graph: the very list of before while what is known of them stays, for there are thousands."""
+    decided, changed, far = decisions.decided, decisions.changed, decisions.far
     rows = zip(
-        now.lines.crossings,
-        graph.edges.tolist(),
-        graph.kind.tolist(),
-        graph.crossing.tolist(),
-        annotations.label,
-        strict=True,
+        crossings, graph.edges.tolist(), graph.kind.tolist(), graph.crossing.tolist(), annotations.label, strict=True
     )
     return [
         {

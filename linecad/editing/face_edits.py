@@ -10,6 +10,7 @@ from linecad.directions import UP
 from linecad.editing.session import Session
 from linecad.errors import CorrectionError
 from linecad.io.strict_json import Node
+from linecad.model.regions.telling import IN_THE_SKY, is_above_horizon
 from linecad.scene import Plane
 
 LEAST_LASSO = 4.0  # px^2
@@ -20,7 +21,7 @@ def read_face_edit(node: Node, session: Session) -> FaceEdit:
     """The correction that an edit about faces means; JsonError or CorrectionError where it means none."""
     match node["op"].text():
         case "region":
-            return Region(_lasso(points(node["polygon"]), session), shown(node))
+            return _region(Region(_lasso(points(node["polygon"]), session), shown(node)), session)
         case "window":
             return window(node, _wall(node["plane"].integer(), session))
         case "no-window":
@@ -31,6 +32,14 @@ def read_face_edit(node: Node, session: Session) -> FaceEdit:
                 raise node["lines"].wrong(f"a list of {EDGES}")
             one, two, three, four = (session.editing.anchor(item.integer()) for item in items)
             return WallByEdges((one, two, three, four))
+
+
+def _region(told: Region, session: Session) -> Region:
+    """The same; CorrectionError for ground that cannot be any."""
+    found = session.now().found
+    if told.shows == "ground" and is_above_horizon(told.polygon, found.camera.matrix, found.frame.rotation):
+        raise CorrectionError(IN_THE_SKY)
+    return told
 
 
 def _lasso(drawn: tuple[Point, ...], session: Session) -> tuple[Point, ...]:

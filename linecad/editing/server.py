@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import uvicorn
 from starlette.applications import Starlette
+from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 from starlette.responses import JSONResponse, Response
@@ -16,6 +17,7 @@ from starlette.routing import Route
 
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.depth.depth_map import DepthMap
+from linecad.editing.answers import Answers
 from linecad.editing.body_document import places_of
 from linecad.editing.cell_layer import picture_of_cells
 from linecad.editing.depth_layers import layer_of
@@ -42,6 +44,7 @@ MEDIA_TYPES = {
     ".svg": "image/svg+xml",
 }
 LABELS = "labels"  # beside the formats of scenes
+LONGEST_NUMBER = 16  # digits of an answer
 LONGEST_TAB = 100  # characters of a tab's name
 STOP_S = 3  # that open requests get when the server ends
 
@@ -73,7 +76,7 @@ class Editor:
         """
         self.session, self.solving, self.saver, self.camera, self.depth = session, solving, saver, camera, depth
         self.pyramid = Pyramid(session.photo.pixels)
-        self.tabs = Tabs(time.monotonic)
+        self.tabs, self.answers = Tabs(time.monotonic), Answers()
         self.files = page_files()
 
     def app(self, token: str, port: int) -> Guard:
@@ -114,12 +117,15 @@ class Editor:
             return _error(404, "there is no such file")
         return Response(self.files[name], media_type=MEDIA_TYPES[Path(name).suffix])
 
-    def state(self, _request: Request) -> Response:
-        """GET /api/state."""
-        return self._state()
+    def state(self, request: Request) -> Response:
+        """GET /api/state?has=ANSWER."""
+        has = request.query_params.get("has", "")
+        return self._state(int(has) if has.isdecimal() and len(has) < LONGEST_NUMBER else None)
 
-    def _state(self) -> Response:
-        return JSONResponse(document_of(self.session.now(), self.pyramid.levels, self.saver.is_saved, self.depth))
+    def _state(self, known: int | None, then: BackgroundTask | None = None) -> Response:
+        """The state, or how it differs from the `known` answer; `then` is done when it has been sent."""
+        state = document_of(self.session.now(), self.pyramid.levels, self.saver.is_saved, self.depth)
+        return JSONResponse(self.answers.answer(state, known), background=then)
 
     def progress(self, _request: Request) -> Response:
         """GET /api/progress: small, asked for several times a second."""
@@ -147,23 +153,26 @@ class Editor:
     def edit(self, body: Node) -> Response:
         """POST /api/edit."""
         self.session.edit(_base(body), lambda session: read_edit(body["edit"], session))
-        return self._changed()
+        return self._changed(body)
 
     def undo(self, body: Node) -> Response:
         """POST /api/undo."""
         self.session.undo(_base(body))
-        return self._changed()
+        return self._changed(body)
 
     def redo(self, body: Node) -> Response:
         """POST /api/redo."""
         self.session.redo(_base(body))
-        return self._changed()
+        return self._changed(body)
 
-    def _changed(self) -> Response:
+    def _changed(self, body: Node) -> Response:
         """The state after a change; where that was about bodies, the scene is built anew behind it."""
+        task, has = None, body.get("has")
         if self.session.wants_solve:
-            self.solving.start(self.session.task(self.session.now().version))
-        return self._state()
+            task = self.session.task(self.session.now().version)
+        # What is behind the answer is not to take the processor from who draws it.
+        then = None if task is None else BackgroundTask(self.solving.start, task)
+        return self._state(None if has is None else has.integer(), then)
 
     def preview(self, body: Node) -> Response:
         """POST /api/preview: by which log factors a fact would move bodies, and the ground, and what it contradicts."""

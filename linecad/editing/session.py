@@ -11,7 +11,7 @@ from dataclasses import replace
 from linecad.camera.photo import Photo
 from linecad.corrections.annotations import annotations_of, rows_of
 from linecad.corrections.apply import Correcting, correcting_of
-from linecad.corrections.corrected import CorrectedLines, ToldFact
+from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import (
     Corrections,
     Edit,
@@ -28,6 +28,7 @@ from linecad.editing.distant import between, distant
 from linecad.editing.solving import Answer, Step, Task
 from linecad.editing.state import (
     Contradiction,
+    Decisions,
     Lines,
     Model,
     Now,
@@ -245,7 +246,6 @@ class Session:
 
     def _change(self, corrections: Corrections, added: Edit | None = None) -> None:
         """Make these the corrections; the last one was `added` to those before, or they are others."""
-        before = self._lines.corrected
         if added is not None and not isinstance(added, SetFrame):
             self._editing.apply(added)
         else:
@@ -253,7 +253,7 @@ class Session:
         self._corrections = corrections
         self._version += 1
         self._changed = self._version
-        self._lines = self._connect(before)
+        self._lines = self._connect(self._lines)
         self._contradiction = None
         known = self._models.get(self._content())
         if known is not None:
@@ -306,11 +306,13 @@ class Session:
     def _found_now(self) -> FoundLines:
         return self._found[self._corrections.frame]
 
-    def _connect(self, before: CorrectedLines | None = None) -> Lines:
-        """The lines and crossings now; the graph is that of `before` where no line has changed."""
+    def _connect(self, before: Lines | None = None) -> Lines:
+        """The lines and crossings now; what `before` had stays as it is where no line or no label has changed."""
         corrected = self._editing.result(self._notes)
-        if before is not None and corrected.is_like(before):
-            graph = self._lines.graph
+        if before is not None and corrected.differs_in_facts(before.corrected):
+            return replace(before, corrected=corrected)
+        if before is not None and corrected.is_like(before.corrected):
+            graph = before.graph
         else:
             graph = connect_all(replace(self._found_now(), segments=corrected.segments), self.options)
         ids = corrected.ids[rows_of(graph.segments, corrected)]
@@ -319,7 +321,7 @@ class Session:
 
     def _order(self) -> tuple[int, ...]:
         model, lines = self._solved, self._lines
-        scene, decided = (None, {}) if model is None else (model.scene, model.decided)
+        scene, decided = (None, {}) if model is None else (model.scene, model.decisions.decided)
         return self._orders.of(lines.graph, lines.crossings, scene, decided)
 
     def _content(self) -> Content:
@@ -334,7 +336,7 @@ class Session:
 
     def _model_of(self, made: Reconstruction, seconds: float) -> Model:
         now = decisions(made, self._lines, self.options.largest_component)
-        before = {} if self._model is None else self._model.decided
+        before = {} if self._model is None else self._model.decisions.decided
         changed = frozenset(
             crossing for crossing, found in now.items() if before.get(crossing, found).real != found.real
         )
@@ -345,4 +347,4 @@ class Session:
         edited = () if shown is None else between(shown, self._content())
         pixel = {crossing: self._lines.graph.crossing[self._lines.edge[crossing]] for crossing in changed}
         far = distant(changed, pixel, edited, self.photo.width)
-        return Model(made.scene, self._version, now, changed, seconds, far, bodies)
+        return Model(made.scene, self._version, Decisions(now, changed, far), seconds, bodies)

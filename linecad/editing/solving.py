@@ -31,6 +31,7 @@ from solver.options import Progress
 if TYPE_CHECKING:
     from multiprocessing.sharedctypes import Synchronized
 
+BEHIND = 5  # niceness: the page answers before what is solved behind it
 PATIENCE_S = 5.0  # that a process gets to end by itself
 NO_TASK = -1
 LOADED_LATE = (
@@ -96,8 +97,13 @@ class SolvingProcess:
         self._process, self._pipe = self._launch()
 
     def start(self, task: Task) -> None:
-        """Solve this next; what is being solved is stopped, and its answer is still delivered."""
+        """Solve this next; what is being solved is stopped, and its answer is still delivered.
+
+        A task that comes later than one with a larger number is over.
+        """
         with self._lock:
+            if any(known is not None and known.number > task.number for known in (self._running, self._waiting)):
+                return
             self._waiting = task
             if self._running is None:
                 self._next()
@@ -178,6 +184,8 @@ def work(pipe: Connection, asked: "Synchronized[int]") -> None:
     # A Ctrl-C in the terminal goes to all its processes; the server alone decides.
     if hasattr(os, "setsid"):
         os.setsid()
+    if hasattr(os, "nice"):
+        os.nice(BEHIND)
     signal.signal(signal.SIGINT, _pass)  # between searches; a search has a handler of its own
     with contextlib.suppress(EOFError, OSError):
         photo, options, depth = pipe.recv()

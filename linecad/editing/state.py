@@ -55,15 +55,22 @@ class Decided:
 
 
 @dataclass(frozen=True, eq=False)
+class Decisions:
+    """What a model has of the crossings, by their ids."""
+
+    decided: dict[int, Decided]
+    changed: frozenset[int] = frozenset()  # whose decision differs from that of the model before
+    far: frozenset[int] = frozenset()  # of `changed`, those far from all that was edited (`linecad.editing.distant`)
+
+
+@dataclass(frozen=True, eq=False)
 class Model:
     """A solved scene."""
 
     scene: Scene
     version: int  # of the state that it was solved for
-    decided: dict[int, Decided]  # by the id of the crossing
-    changed: frozenset[int]  # crossings whose decision differs from that of the model before
+    decisions: Decisions
     seconds: float  # from the lines to the scene
-    far: frozenset[int] = frozenset()  # of `changed`, those far from all that was edited (`linecad.editing.distant`)
     bodies: ShownBodies | None = None  # None for programs without them
 
 

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from exporters.model import ON_GROUND, ON_THE_GROUND, build_model
 from linecad.confidence import keep_probable
 from linecad.errors import ConfidenceError
 from linecad.io.scene_file import read_scene, write_scene
-from linecad.scene import Camera, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport
+from linecad.scene import Camera, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport, ground_of
 
 RING = np.array([[0, 4, 0], [1, 4, 0], [0, 4, 1]])
 
@@ -72,6 +73,16 @@ def test_a_ground_without_lines_stays(scene):
     kept = keep_probable(replace(scene, planes=(*scene.planes, ground)), 0.9)
     assert [each.id for each in kept.planes] == [0, 1, 7]
     assert "2 of 5 planes" in kept.notes[-1]
+
+
+def test_a_ground_stays_whose_lines_go(scene):
+    """Its heights were told from the camera then, no longer from the ground."""
+    ground = Plane(7, 2, -2.0, (2,), (Face(9, [[0, 0, -2], [1, 0, -2], [0, 1, -2]], kind="ground"),))
+    scene = replace(scene, planes=(*scene.planes, ground), metres_per_unit=1.0, scale_source="known length")
+    for least in (0.1, 0.9):
+        kept = keep_probable(scene, least)
+        assert ground_of(kept.planes).offset == -2.0
+        assert ON_GROUND in build_model(kept, origin=ON_THE_GROUND).unit_note
 
 
 def test_a_note_counts_what_was_left_out(scene):

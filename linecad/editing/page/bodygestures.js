@@ -8,6 +8,8 @@ const PARTNERS = 60; // lines that the arrow keys go through
 const FOOT_STEP = 6; // px of the photo an arrow key
 const MOVE_STEP = 0.01; // log factor an arrow key
 const EVEN = 1.2; // odds below which two places are equally likely
+const MOVES_BODIES = ["meet", "plane", "place"]; // a foot may move the ground alone, a cut nothing for now
+const HOLDS_ALREADY = "That holds already, so nothing moves. It is among your facts now.";
 const FINELY = 0.1; // of a step, with Shift
 
 /** The gesture under way, `now`: null or `{kind, body, first, second, normal, pixel, fixed, places, index, log, preview}`. */
@@ -107,7 +109,14 @@ export class BodyGestures {
       return false;
     }
     this.leave();
-    return this.actions.editing.edit(edit);
+    const isTaken = await this.actions.editing.edit(edit);
+    if (isTaken && MOVES_BODIES.includes(edit.op) && this.#nothingMoved()) this.actions.messages.tell(HOLDS_ALREADY);
+    return isTaken;
+  }
+
+  #nothingMoved() {
+    const { moved, contradiction, facts } = this.store.state;
+    return moved.length === 0 && contradiction === null && facts.at(-1)?.holds === true;
   }
 
   // --- what is chosen ---

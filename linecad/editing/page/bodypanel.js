@@ -6,6 +6,7 @@ import { movedText } from "./bodies.js";
 
 const MOST_TIES = 8; // shown of the selected body
 const SMALLEST = 0.001; // share of the photo of a body that the list names; smaller ones are counted
+const SURE = 0.9; // from this probability on a place is called sure, as in exports
 const KEYS = { shift: "⇧" };
 
 export class BodyPanel {
@@ -137,7 +138,7 @@ export class BodyPanel {
     );
     const small = list.length - named.length;
     return [
-      element("ul", { class: "list" }, rows),
+      element("ul", { class: "shares" }, rows),
       ...(small > 0 ? [element("p", { class: "quiet" }, `and ${small} below 0.1 %`)] : []),
     ];
   }
@@ -219,7 +220,7 @@ export class BodyPanel {
 }
 
 function sureText({ probability, guess }) {
-  return `${guess ? "a guess" : "sure"}, ${percent(probability)}`;
+  return `${guess ? "a guess" : probability < SURE ? "likely" : "sure"}, ${percent(probability)}`;
 }
 
 function percent(share) {

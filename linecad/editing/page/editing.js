@@ -1,5 +1,6 @@
 // Edits: each is shown at once, sent to the server one after the other, and replaced by what the server answers.
 
+import { keepingWhatIsSame, stateOf } from "./answers.js";
 import { RequestError } from "./server.js";
 
 /** The state that an edit most likely leads to; the server's answer, a moment later, decides. */
@@ -53,17 +54,11 @@ function replaced(list, id, change) {
   return list.map((each) => (each.id === id ? change(each) : each));
 }
 
-/** A new state, with the very lists of what is shown where they say the same: who draws them sees it at once. */
-function keepingWhatIsSame(state, shown) {
-  const lists = ["lines", "crossings", "planes", "bodies", "areas", "K", "R_cam_from_world"];
-  const kept = lists.filter((name) => shown && JSON.stringify(state[name]) === JSON.stringify(shown[name]));
-  return { ...state, ...Object.fromEntries(kept.map((name) => [name, shown[name]])) };
-}
-
 /** The queue of what is to be sent. Nothing is sent before the answer to what went before it. */
 export class Editing {
   #queue = []; // {path, edit, tried}
   #answered = null; // the last state that the server sent
+  #hasAsked = false; // a search may be over before anyone asks for it: it runs until its end has been heard of
   #sending = false;
   #idle = [];
 
@@ -76,8 +71,14 @@ export class Editing {
   /** Take over a state that the server sent, unless the answer to a later edit has overtaken it. */
   accept(state) {
     if (state.version < this.#answered?.version) return;
-    this.#answered = keepingWhatIsSame(state, this.store.state);
+    this.#take(state);
     this.#show();
+  }
+
+  /** The next answer may tell how it differs from this one, so nothing in it is changed. */
+  #take(state) {
+    this.#answered = keepingWhatIsSame(state, this.store.state);
+    this.#hasAsked = false;
   }
 
   /** Make an edit as in the list of `/api/edit`; a promise of whether the server took it. */
@@ -104,7 +105,13 @@ export class Editing {
   }
 
   async refresh() {
-    this.accept(await this.server.get("state"));
+    this.accept(await this.#read());
+  }
+
+  /** The state as it is now, of which the server sends what the page does not have. */
+  async #read() {
+    const known = this.#answered;
+    return stateOf(await this.server.get(known ? `state?has=${known.answer}` : "state"), known);
   }
 
   #push(path, edit) {
@@ -126,7 +133,8 @@ export class Editing {
   }
 
   #show() {
-    const state = this.#queue.reduce((shown, { edit }) => (edit ? expected(shown, edit) : shown), this.#answered);
+    const known = this.#hasAsked ? { ...this.#answered, solve: { state: "running" } } : this.#answered;
+    const state = this.#queue.reduce((shown, { edit }) => (edit ? expected(shown, edit) : shown), known);
     this.store.set({ state, busy: this.#queue.length, saved: state.saved, solve: state.solve });
   }
 
@@ -147,14 +155,12 @@ export class Editing {
 
   /** Whether the server took an entry; undefined where it must be sent again, on top of a newer state. */
   async #sendFirst(entry) {
-    const body = { base_version: this.#answered.version, ...(entry.edit && { edit: entry.edit }) };
+    const known = this.#answered;
+    const body = { base_version: known.version, has: known.answer, ...(entry.edit && { edit: entry.edit }) };
     try {
       const answer = await this.server.post(entry.path, body);
-      // A search may be over before anyone asks for it: it counts as running until its end has been heard of.
-      this.#answered =
-        entry.path === "solve"
-          ? { ...this.#answered, solve: { state: "running" } }
-          : keepingWhatIsSame(answer, this.store.state);
+      if (entry.path === "solve") this.#hasAsked = true;
+      else this.#take(stateOf(answer, known));
       return true;
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
@@ -175,7 +181,7 @@ export class Editing {
 
   async #readAgain() {
     try {
-      this.#answered = keepingWhatIsSame(await this.server.get("state"), this.store.state);
+      this.#take(await this.#read());
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
       this.tell(error.message, "error");

@@ -6,12 +6,14 @@ import { AREAS, OPENINGS } from "./facetools.js";
 import { grid } from "./rectangles.js";
 
 const COLOURS = { ground: "#4f8a3c", sky: "#2f7fc1", clutter: "#a05f2c" };
+const UNFILLED = ["window", "door", "wall"]; // what is said of them is their edges
 const FILL = 0.22;
-const DASHES = [7, 4]; // CSS px, of areas that were told
+const DASHES = [7, 4]; // CSS px, of what was told
 
-/** The areas that were told, and what is being drawn. */
+/** What was told of faces, and what is being drawn. */
 export function drawFaceTools(context, viewport, store, faces) {
-  for (const { is, polygon } of store.state.areas) trace(context, viewport, polygon, COLOURS[is], { dashes: DASHES });
+  for (const { is, polygon } of store.state.areas)
+    trace(context, viewport, polygon, COLOURS[is] ?? INK, { dashes: DASHES, filled: !UNFILLED.includes(is) });
   if (faces.outline.length > 0) {
     trace(context, viewport, faces.outline, COLOURS[faces.area], { open: faces.outline.length < 3 });
     const [x, y] = viewport.toScreen(faces.outline[0]);

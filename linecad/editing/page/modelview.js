@@ -151,9 +151,10 @@ export class ModelView {
     this.orbit.K = this.store.state.K;
     this.orbit.rotation = this.store.state.R_cam_from_world;
     const { points } = this;
-    if (this.#isEmpty)
+    if (this.#isEmpty) {
       this.orbit.fit(points); // the first model
-    else this.orbit.measure(points);
+      this.onView(); // no longer through the camera
+    } else this.orbit.measure(points);
     this.#isEmpty = points.length === 0;
     this.#lines = this.graphics.lines(this.#modelLines(), this.#lines);
     this.#camera = this.graphics.lines(this.#cameraLines(), this.#camera);

@@ -1,10 +1,11 @@
 // The bars, menus and dialogs around the two views.
 
 import { element, icon } from "./dom.js";
+import { exportModel, LABELS } from "./exporting.js";
 import { isReal } from "./store.js";
 import { TOOLS } from "./tools.js";
 
-const LABELS = { name: "labels", label: "crossings as a person labelled them, for linecad evaluate" };
+const LABELS_ITEM = { name: LABELS, label: "crossings as a person labelled them, for linecad evaluate" };
 const LABELLING_HINT = "R real, F fake, U unsure; a click chooses another crossing";
 const NARROWEST = 20; // per cent of the width that either view keeps
 const WIDEST = 85;
@@ -124,7 +125,7 @@ export class Panels {
   #makeExport() {
     const button = document.querySelector("#export");
     const list = document.querySelector("#export-list");
-    const items = [...this.store.state.formats, LABELS].map(({ name, label }) =>
+    const items = [...this.store.state.formats, LABELS_ITEM].map(({ name, label }) =>
       element(
         "li",
         { role: "none" },
@@ -156,16 +157,9 @@ export class Panels {
     this.closeExport = () => open(false);
   }
 
-  async #export(format) {
+  #export(format) {
     this.closeExport();
-    try {
-      this.actions.messages.tell(`Writing ${format.toUpperCase()}…`);
-      await this.actions.editing.settled();
-      const wanted = this.actions.choosing.wanted(format);
-      this.actions.messages.tell(`Saved ${await this.actions.server.download(format, wanted)}.`);
-    } catch (error) {
-      this.actions.messages.tell(error.message, "error");
-    }
+    exportModel(format, this.actions);
   }
 
   // --- the two views ---

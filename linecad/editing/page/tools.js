@@ -23,7 +23,7 @@ export const TOOLS = [
     hint: "Click a line, a crossing or a face, or drag a rectangle around many",
   },
   { name: "draw", label: "Draw", key: "d", hint: "Click both ends of a line, or drag; x, y or z fixes its axis" },
-  { name: "body", label: "Body", key: "b", hint: "Click a line or a face, in either view, to select the body that it is of" },
+  { name: "body", label: "Body", key: "b", hint: "Click a line or a face in either view: it selects its body" },
   { name: "split", label: "Split", key: "k", hint: "Click where a line is to be cut in two" },
   { name: "join", label: "Join", key: "j", hint: "Click two lines that are one" },
   {

@@ -18,6 +18,7 @@ from linecad.model.openings.choice import not_overlapping
 from linecad.model.openings.corners import rectangle_in_space
 from linecad.scene import Camera, Lines, Opening, Plane
 
+EQUAL = 0.1  # log of a side by which windows of one size differ that a hand has drawn
 TOUCHING = 1e-9  # of a window, by which equal ones may overlap that stand side by side
 
 
@@ -45,7 +46,8 @@ class ToldOpenings:
     def among(self, found: tuple[Opening, ...]) -> tuple[tuple[Opening, ...], tuple[str, ...]]:
         """The openings found and told, with ids and shapes numbered anew, and notes on what could not be taken.
 
-        A told one takes the place of those that it overlaps in the photo; how deep its pane is it has of these.
+        A told one takes the place of those that it overlaps in the photo; how deep its pane is it has of these, else of
+        an equal one in its wall.
         """
         if not any(isinstance(edit, Window | NoWindow) for edit in self.faces):
             return found, ()
@@ -64,7 +66,7 @@ class ToldOpenings:
                     free = not_overlapping([each.shape for each in placed], [each.shape for each in grid])
                     taken = [each for each, is_free in zip(placed, free.tolist(), strict=True) if not is_free]
                     kept = [each for each, is_free in zip(placed, free.tolist(), strict=True) if is_free]
-                    placed = [*kept, *_as_deep_as(grid, taken)]
+                    placed = [*kept, *_as_deep_as(grid, taken, kept)]
         return _numbered(placed), (*notes, *self._notes(placed))
 
     def _placed(self, opening: Opening, wall: Plane, is_told: bool) -> _Placed:
@@ -78,25 +80,13 @@ class ToldOpenings:
         wall = self._wall(edit)
         if wall is None:
             return f"{where} is left out: no wall across {axis_name(edit.wall.normal)} is there"
-        pixels = np.array([*edit.corners, edit.last if edit.last is not None else edit.corners[1]])
-        rays = components(world_rays(pixels, self.camera.matrix, self.rotation), self.turns)
-        if (rays[:, wall.axis] * wall.offset <= 0).any():
-            return f"{where} is left out: it would go on behind the camera"
-        flat = rays[:, [int(partner(wall.axis)), UP]] * (wall.offset / rays[:, wall.axis])[:, None]
-        size = np.abs(flat[1] - flat[0])
-        count = np.array([edit.columns, edit.rows])
-        step = np.where(count > 1, (flat[2] - flat[1]) / np.maximum(count - 1, 1), 0.0)
-        if (size <= 0).any() or ((count > 1) & (np.abs(step) < size * (1 - TOUCHING))).any():
-            return f"{where} is left out: it has no area, or its rows and columns overlap"
-        low = flat[:2].min(axis=0)
-        found = []
-        for row in range(edit.rows):
-            for column in range(edit.columns):
-                u0, v0 = (low + step * [column, row]).tolist()
-                wide, tall = size.tolist()
-                opening = Opening(0, wall.id, u0, u0 + wide, v0, v0 + tall, edit.kind, shape=shape)
-                found.append(self._placed(opening, wall, is_told=True))
-        return found
+        rectangles = rectangles_on(edit, (wall.axis, wall.offset), self.camera, self.rotation, self.turns)
+        if isinstance(rectangles, str):
+            return f"{where} is left out: {rectangles}"
+        return [
+            self._placed(Opening(0, wall.id, u0, u1, v0, v1, edit.kind, shape=shape), wall, is_told=True)
+            for u0, u1, v0, v1 in rectangles.tolist()
+        ]
 
     def _wall(self, edit: Window) -> Plane | None:
         """The wall that an edit names: the plane of a face there of that normal, else the plane of its line."""
@@ -133,13 +123,42 @@ class ToldOpenings:
         return [f"{outside} of the windows and doors that you drew reach beyond the face of their wall: no holes"]
 
 
-def _as_deep_as(grid: list[_Placed], taken: list[_Placed]) -> list[_Placed]:
-    """Windows with the recess of the one among those whose places they take that they cover most of; all the same."""
+def rectangles_on(edit: Window, wall: tuple[int, float], camera: Camera, rotation: Float, turns: Turns) -> Float | str:
+    """u0, u1, v0 and v1 (W, 4) of the windows of an edit on a wall of a direction at an offset, row by row.
+
+    Or why there are none, in words.
+    """
+    axis, offset = wall
+    pixels = np.array([*edit.corners, edit.last if edit.last is not None else edit.corners[1]])
+    rays = components(world_rays(pixels, camera.matrix, rotation), turns)
+    if (rays[:, axis] * offset <= 0).any():
+        return "it would go on behind the camera"
+    flat = rays[:, [int(partner(axis)), UP]] * (offset / rays[:, axis])[:, None]
+    size = np.abs(flat[1] - flat[0])
+    count = np.array([edit.columns, edit.rows])
+    step = np.where(count > 1, (flat[2] - flat[1]) / np.maximum(count - 1, 1), 0.0)
+    if (size <= 0).any() or ((count > 1) & (np.abs(step) < size * (1 - TOUCHING))).any():
+        return "it has no area, or its rows and columns overlap"
+    row, column = np.indices((edit.rows, edit.columns)).reshape(2, -1)
+    low = flat[:2].min(axis=0) + step * np.column_stack([column, row])
+    return np.stack([low[:, 0], low[:, 0] + size[0], low[:, 1], low[:, 1] + size[1]], axis=1)
+
+
+def _as_deep_as(grid: list[_Placed], taken: list[_Placed], others: list[_Placed]) -> list[_Placed]:
+    """Windows with the recess of the one among those whose places they take that they cover most of; all the same.
+
+    Where they take none's, it is that of the nearest other one in their wall that is as large and of their kind: who
+    draws a window that was missed means one as those beside it.
+    """
     deep = [each for each in taken if each.opening.recess is not None]
-    if not deep:
-        return grid
     every = shapely.union_all([each.shape for each in grid])
-    one = max(deep, key=lambda each: float(shapely.intersection(each.shape, every).area))
+    if deep:
+        one = max(deep, key=lambda each: float(shapely.intersection(each.shape, every).area))
+    else:
+        alike = [each for each in others if each.opening.recess is not None and _is_alike(each, grid[0])]
+        if taken or not alike:
+            return grid
+        one = min(alike, key=lambda each: float(each.shape.distance(every)))
     assert one.opening.recess is not None
     ratio = one.opening.recess / abs(one.wall.offset)
     return [
@@ -149,6 +168,13 @@ def _as_deep_as(grid: list[_Placed], taken: list[_Placed]) -> list[_Placed]:
         )
         for each in grid
     ]
+
+
+def _is_alike(one: _Placed, other: _Placed) -> bool:
+    """Whether two openings of a kind lie in one wall and are of one size."""
+    sizes = [np.array([each.u1 - each.u0, each.v1 - each.v0]) for each in (one.opening, other.opening)]
+    is_equal = (np.abs(np.log(sizes[0] / sizes[1])) <= EQUAL).all()
+    return bool(is_equal) and (one.wall.id, one.opening.kind) == (other.wall.id, other.opening.kind)
 
 
 def _numbered(placed: list[_Placed]) -> tuple[Opening, ...]:

@@ -7,7 +7,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
-from linecad.corrections.edits import FaceEdit, Region, WallByEdges
+from linecad.corrections.edits import FaceEdit, Point, Region, WallByEdges
 from linecad.directions import UP, components, partner
 from linecad.geometry import project, world_rays
 from linecad.model.openings.corners import on_wall
@@ -17,6 +17,7 @@ from linecad.model.regions.told import Told
 from linecad.scene import Lines, Plane
 
 ON_GROUND = 0.9  # share of a level line that told ground must cover in the photo, for the line to lie on it
+IN_THE_SKY = "what you called ground lies above the horizon, where no ground can be seen; draw around what is below it"
 APART = 0.01  # log offset between the edges of one wall, above which a note says so
 
 
@@ -46,6 +47,8 @@ def tell(
     told = Told()
     for edit in faces:
         match edit:
+            case Region(shows="ground") if is_above_horizon(edit.polygon, view.camera.matrix, view.rotation):
+                told = replace(told, notes=(*told.notes, IN_THE_SKY))
             case Region():
                 told = told.with_area(np.array(edit.polygon), edit.shows, view.camera)
             case WallByEdges():
@@ -69,6 +72,11 @@ def tell(
         words = "what you called ground has no face: nothing tells how low it is; draw a line that lies on it"
         return replace(told, notes=(*told.notes, words)), surfaces
     return told, with_ground(surfaces, height)
+
+
+def is_above_horizon(polygon: Sequence[Point], K: Float, R: Float) -> bool:
+    """Whether no ray of a part of the photo, px, goes down."""
+    return bool((world_rays(np.array(polygon), K, R)[:, UP] >= 0).all())
 
 
 def ground_height(ground: shapely.Geometry, lines: Lines, feet: GroundOfFeet | None) -> float | None:

@@ -67,7 +67,7 @@ class Page:
 
     def __init__(self, client, session, solving, saved):
         self.client, self.session, self.solving, self.saved = client, session, solving, saved
-        self.version = None
+        self.version = self.answer = None
 
     def get(self, path, **more):
         return self.client.get(f"/api/{path}", **more)
@@ -76,15 +76,16 @@ class Page:
         return self.client.post(f"/api/{path}", json=body)
 
     def state(self):
-        found = self.get("state").json()
-        self.version = found["version"]
-        return found
+        return self._heard(self.get("state").json())
 
     def change(self, path, **body):
         answer = self.post(path, base_version=self.version, **body)
         assert answer.status_code == 200, answer.text
-        self.version = answer.json()["version"]
-        return answer.json()
+        return self._heard(answer.json())
+
+    def _heard(self, found):
+        self.answer, self.version = found.pop("answer"), found["version"]
+        return found
 
     def edit(self, **edit):
         return self.change("edit", edit=edit)

@@ -3,9 +3,11 @@
 import numpy as np
 import pytest
 
+import linecad.editing.bodies
 from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.bodies import NODES, at_once
 from linecad.options import Options
+from linecad.ties.placing import place_bodies
 from solver.options import SolveOptions
 
 
@@ -191,6 +193,23 @@ class TestPreview:
         assert solved.state() == state
         there = solved.edit(**edit)
         assert told["moves"]["1"] == pytest.approx(there["moved"][0]["log_factor"])
+
+    def test_what_was_tried_out_is_taken_without_a_second_search(self, solved, monkeypatch):
+        searches = []
+
+        def counted(*given, **more):
+            searches.append(given)
+            return place_bodies(*given, **more)
+
+        monkeypatch.setattr(linecad.editing.bodies, "place_bodies", counted)
+        edit = place(solved.state(), 0.5)
+        solved.post("preview", base_version=solved.version, edit=edit)
+        there = solved.edit(**edit)
+        assert len(searches) == 1
+        solved.change("undo")
+        solved.post("preview", base_version=solved.version, edit=place(solved.state(), 0.3))
+        assert solved.edit(**edit)["bodies"] == there["bodies"]  # after something else it is searched for again
+        assert len(searches) == 3
 
     def test_it_tells_what_would_be_contradicted(self, solved):
         state = solved.edit(**place(solved.state(), 0.5))

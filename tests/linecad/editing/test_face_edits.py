@@ -47,6 +47,20 @@ def test_a_lasso_that_crosses_itself_means_the_largest_part_that_it_goes_around(
     assert answer.json()["areas"] == [{"is": "sky", "polygon": [list(corner) for corner in found.polygon]}]
 
 
+def test_ground_above_the_horizon_is_refused(page):
+    """It did nothing, and nobody was told."""
+    horizon = page.state()["photo"]["height"] / 2  # the made camera looks nearly level
+    above = [[100, 0], [400, 0], [400, horizon - 250]]
+    answer = edit(page, op="region", polygon=above, **{"is": "ground"})
+    assert answer.status_code == 422
+    assert "above the horizon" in answer.json()["error"]
+    assert edits(page) == ()
+    assert edit(page, op="region", polygon=above, **{"is": "sky"}).status_code == 200
+    page.state()
+    reaching_down = [*above[:2], [400, horizon + 250]]
+    assert edit(page, op="region", polygon=reaching_down, **{"is": "ground"}).status_code == 200
+
+
 def test_a_window_names_its_wall_by_a_level_line_in_it_and_is_a_hole_after_the_solve(solved):
     page, state = solved
     plane, shape = wall_of(state)
@@ -60,6 +74,9 @@ def test_a_window_names_its_wall_by_a_level_line_in_it_and_is_a_hole_after_the_s
     assert found.wall.line.ends in [tuple(map(tuple, line["segment"])) for line in own]
     page.solving.answer()  # nobody had to ask for it
     after = page.state()
+    (mark,) = after["areas"]  # drawn in the photo, after a reload too
+    assert mark["is"] == "window"
+    assert np.abs(np.array(mark["polygon"])[:, None] - corners).sum(axis=2).min(axis=0).max() < 1e-6
     panes = [face for each in after["planes"] for face in each["faces"] if face["kind"] == "window"]
     seen = [project(after, face["outline"]) for face in panes]
     assert min(np.abs(ring - corners[0]).sum(axis=1).min() for ring in seen) < 1e-6
@@ -75,6 +92,13 @@ def test_a_wall_is_named_by_its_lines(solved):
     four = [line["id"] for line in (*upright, *level)]
     assert edit(page, op="wall", lines=four).status_code == 200
     assert isinstance(edits(page)[0], WallByEdges)
+    (mark,) = page.state()["areas"]
+    assert mark["is"] == "wall"
+    for number in four:  # each side lies along an edge
+        segment = next(np.array(line["segment"]) for line in lines if line["id"] == number)
+        across = np.array([[0, -1], [1, 0]]) @ (segment[1] - segment[0]) / np.linalg.norm(segment[1] - segment[0])
+        off = np.abs((np.array(mark["polygon"]) - segment[0]) @ across)
+        assert np.sort(off)[:2].max() < 1e-6
     answer = edit(page, op="wall", lines=four[:2] * 2)
     assert answer.status_code == 409 or "two upright edges" in answer.json()["error"]
 

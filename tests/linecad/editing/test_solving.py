@@ -2,6 +2,7 @@
 
 import threading
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -36,6 +37,20 @@ def test_the_pipe_is_closed_by_the_thread_that_listens_to_it(made_photo):
         assert time.monotonic() < end, "nobody closes the pipe"
         time.sleep(0.01)
     assert closed_by == ["answers of the solver"]
+
+
+def test_a_task_that_comes_late_is_over(made_photo, task):
+    """Each is started behind the answer to its edit, and the next edit's may have been faster."""
+    heard = []
+    solver = SolvingProcess(made_photo, Options(), lambda _: None, heard.append)
+    solver.start(replace(task, number=8))
+    solver.start(replace(task, number=7))
+    end = time.monotonic() + 60
+    while not heard:
+        assert time.monotonic() < end, "no answer"
+        time.sleep(0.01)
+    solver.close()
+    assert [answer.number for answer in heard] == [8]
 
 
 @pytest.fixture

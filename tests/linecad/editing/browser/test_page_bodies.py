@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from linecad.io.scene_file import read_scene
+
 pytestmark = pytest.mark.thorough  # every day the server is asked what the page asks it (test_bodies.py)
 
 NEAR, FAR = 0, 1  # the bodies of the made scene, the larger first
@@ -176,6 +178,18 @@ def test_two_level_lines_are_at_the_same_height(told):
     now = told.state
     first, second = (line_now(now, line)["ends"][0][2] for line in (far, near))
     assert first == pytest.approx(second, rel=0.02)
+
+
+def test_what_holds_already_is_said_to_move_nothing(told):
+    """It moved nothing and said nothing."""
+    told.press("b")
+    click_line(told, lines_of(told.state, FAR, "z")[0])
+    told.press("Shift+D")
+    told.wait("linecad.bodies.gestures.now?.places")
+    told.run("linecad.bodies.gestures.moveTo(1e-8)")
+    told.press("Enter")
+    told.page.get_by_text("That holds already").wait_for()
+    assert facts(told) == ["place"]
 
 
 def test_two_upright_lines_are_in_one_plane_and_a_key_turns_it(told):
@@ -404,3 +418,29 @@ def test_the_rebuild_behind_a_fact_takes_nothing_away(told):
     assert told.run("[linecad.photo.viewport.x, linecad.photo.viewport.scale, linecad.model.orbit.distance]") == view
     assert told.run("document.activeElement.dataset.gesture") == "move"
     assert told.page.locator("#messages .message").count() == 0
+
+
+def test_an_export_waits_for_the_scene_behind_a_fact(told, tmp_path):
+    """It held the scene before, and nobody was told."""
+    state = told.state
+    line, to = (lines_of(state, body, "x", "y")[0] for body in (FAR, NEAR))
+    told.press("e")
+    edit = {"op": "place", "line": line["id"], "to": to["id"], "log_ratio": 0.25}
+    with told.page.expect_download() as download:
+        told.run(
+            """async (edit) => {
+              await linecad.editing.edit(edit);
+              document.querySelector("[data-format=json]").click();
+            }""",
+            edit,
+        )
+        told.page.get_by_text("JSON is written when the model holds your corrections").wait_for()
+    download.value.save_as(tmp_path / "now.json")
+    told.page.get_by_text("Saved boxes.json.", exact=True).wait_for()
+    told.wait("linecad.store.solve.state === 'idle'")
+    scene, now = read_scene(tmp_path / "now.json"), told.served.ask("state")
+    assert now["solve"]["fresh"]
+    moved = scene.lines.row_by_look["xyz".index(line["axis"]), np.array(line["segment"]).tobytes()]
+    np.testing.assert_allclose(scene.lines.ends[moved], line_now(now, line)["ends"])
+    assert not np.allclose(scene.lines.ends[moved], line["ends"], rtol=0.01)
+    told.press("Control+z")

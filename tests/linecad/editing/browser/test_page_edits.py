@@ -232,6 +232,7 @@ def test_a_line_is_drawn_with_undo_inside_it_and_a_proposed_axis(screen):
     screen.wait("linecad.draft.proposal !== null")
     assert screen.run("linecad.draft.proposal.axis") == "z"
     screen.page.mouse.click(*end)
+    screen.wait("linecad.store.state.lines.some(({ origin }) => origin === 'drawn')")  # it is proposed, then sent
     screen.settle()
     drawn = [each for each in screen.state["lines"] if each["origin"] == "drawn"]
     assert [each["axis"] for each in drawn] == ["z"]

@@ -104,6 +104,18 @@ def test_it_takes_the_place_of_those_that_it_overlaps_with_their_recess_and_leav
     assert (found[2].recess, found[2].panel) == pytest.approx((0.25, OFFSET + 0.25))
 
 
+def test_one_that_was_missed_has_the_recess_of_the_nearest_equal_one_in_its_wall():
+    bare = Plane(8, 1, 15.0, ())
+    elsewhere = Opening(2, 8, 6, 7, 0, 1, "window", 0.5, 15.5, shape=2)
+    others = (found_at(0, -4, 0, 0.25), found_at(1, -2, 0, 0.3), elsewhere)
+    for (wide, tall), recess in (((1.0, 1.0), 0.3), ((1.05, 0.97), 0.3), ((1.0, 1.6), None)):
+        window = Window(WallAnchor(1, None), pixels_of([1, 1 + wide], [0, tall]))
+        found, _ = told(window, planes=(WALL, bare)).among(others)
+        assert found[-1].recess == (None if recess is None else pytest.approx(recess))
+    door = Window(WallAnchor(1, None), pixels_of([1, 2], [0, 1]), "door")
+    assert told(door, planes=(WALL, bare)).among(others)[0][-1].recess is None
+
+
 def test_no_window_takes_away_what_is_there_until_one_is_drawn():
     at = pixels_of([0.5], [0.5])[0]
     window = Window(WallAnchor(1, None), pixels_of([0.1, 0.9], [0.1, 0.9]))

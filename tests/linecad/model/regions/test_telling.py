@@ -10,7 +10,7 @@ from linecad.corrections.edits import Anchor, Region, WallByEdges
 from linecad.directions import UP
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, weights_of
-from linecad.model.regions.telling import ground_height, tell, wall_by_edges
+from linecad.model.regions.telling import IN_THE_SKY, ground_height, tell, wall_by_edges
 
 EVERYWHERE = shapely.box(-0.5, -0.5, 959.5, 719.5)
 
@@ -83,6 +83,14 @@ def test_told_ground_has_the_height_of_level_lines_on_it_else_of_feet_else_of_th
     nowhere = shapely.box(0, 0, 1, 1)
     assert ground_height(nowhere, house.lines, feet) == 2.3
     assert ground_height(nowhere, house.lines, None) == -house.lines.ends[:, :, UP].min()
+
+
+def test_ground_above_the_horizon_is_left_out_with_a_note(house):
+    view = View(house.camera, house.rotation, house.photo)
+    edit = Region(((10.0, 5.0), (200.0, 5.0), (200.0, 60.0)), "ground")
+    told, _ = tell([edit], house.planes, house.lines, surfaces_of(house), view, None)
+    assert told.areas == ()
+    assert told.notes == (IN_THE_SKY,)
 
 
 def test_told_ground_becomes_a_surface_where_none_was_found(house):
