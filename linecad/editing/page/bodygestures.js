@@ -280,7 +280,7 @@ export class BodyGestures {
   }
 
   #share(id) {
-    return this.bodies.byId.get(id)?.share ?? 0;
+    return id === this.bodies.part ? 1 : (this.bodies.byId.get(id)?.share ?? 0); // what was chosen comes first
   }
 
   /** The log factors by which bodies are shown moved, by number. */

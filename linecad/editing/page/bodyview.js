@@ -104,7 +104,7 @@ export class BodyView {
     this.#chosen(context);
     const chips = moves.length > 0 ? moves : [...this.#flash];
     const colour = moves.length > 0 ? GHOST : "#00707c";
-    const largest = (id) => this.bodies.byId.get(id)?.share ?? 0;
+    const largest = (id) => (id === this.bodies.part ? 1 : (this.bodies.byId.get(id)?.share ?? 0));
     const taken = [];
     for (const [body, log] of chips.sort((a, b) => largest(b[0]) - largest(a[0])).slice(0, MOST_CHIPS))
       this.#chip(context, body, log, colour, taken);
