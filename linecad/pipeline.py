@@ -133,6 +133,19 @@ def prepare(
     return Prepared(found, whole, graph, annotations, details, corrected, evidence)
 
 
+def prepared_for(
+    prepared: Prepared, options: Options, corrected: CorrectedLines, on_stage: StageReport = silent
+) -> Prepared:
+    """The same after other edits that only say something of bodies (`CorrectedLines.differs_in_facts`)."""
+    graph, known = prepared.graph, prepared.evidence
+    if known is None or prepared.is_for(corrected):
+        return replace(prepared, corrected=corrected)
+    limits = with_annotations(options.solve, prepared.annotations)
+    with told_in_the_photo(graph, corrected):
+        evidence = find_evidence(graph, known.setting.sight, limits, facts_of(graph, corrected)[0], on_stage)
+    return replace(prepared, corrected=corrected, evidence=evidence)
+
+
 def reconstruct_prepared(
     photo: str,
     prepared: Prepared,

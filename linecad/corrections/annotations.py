@@ -1,6 +1,6 @@
 """What corrections mean for a line graph: which of its crossings a person called real, fake or unsure."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -52,8 +52,7 @@ def facts_of(graph: LineGraph, corrected: CorrectedLines) -> tuple[tuple[ToldFac
     """What a person says of the bodies of a graph's lines, by its nodes; and notes on lines that it has not."""
     ids = corrected.ids[rows_of(graph.segments, corrected)].tolist()
     node = {number: own for own, number in enumerate(ids)}
-    told = [replace(each, lines=tuple(node[line] for line in each.lines))
-            for each in corrected.all_facts if all(line in node for line in each.lines)]  # fmt: skip
+    told = [fact for each in corrected.all_facts if (fact := each.by(node))]
     missed = len(corrected.facts) - sum(not each.is_implied for each in told)
     note = (
         f"{missed} of {len(corrected.facts)} things that were said of bodies are left out: a line of theirs is too "

@@ -109,7 +109,7 @@ class Correcting:
         self.distances: dict[tuple[Place, Place], tuple[FoundPlace, FoundPlace, float]] = {}
         self.names: dict[int, str] = {}
         self.parted: list[tuple[int, int]] = []
-        self.facts: dict[Fact, tuple[int, ...]] = {}
+        self.facts: dict[Fact, ToldFact] = {}
         self.faces: list[ToldFace] = []
         self._table: LineTable | None = None
 
@@ -189,7 +189,7 @@ class Correcting:
             lengths={own: metres for number, metres in self.lengths.items() for own in self._now(number)[:1]},
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
             notes=notes,
-            facts=tuple(ToldFact(fact, now) for fact, own in self.facts.items() if (now := self._named(fact, own))),
+            facts=tuple(now for told in self.facts.values() if (now := self._told_now(told))),
             distances=tuple(
                 (one, other, metres)
                 for first, second, metres in self.distances.values()
@@ -221,17 +221,23 @@ class Correcting:
             raise CorrectionError("it was said of lines along other axes; say it again")
         if fact in self.facts:
             raise CorrectionError("this was said already; take it back first to say something else")
-        named = tuple(self.find(anchor) for anchor in anchors_of(fact))
-        if len(set(named)) < len(named):
+        told = self.by_ids(fact)
+        if len(set(told.lines)) < len(told.lines):
             raise CorrectionError("this takes two lines; choose another one")
-        self.facts[fact] = named
+        self.facts[fact] = told
 
-    def _named(self, fact: Fact, lines: tuple[int, ...]) -> tuple[int, ...]:
-        """The lines that a fact is about now, of one that was split the piece nearest to where it was named."""
-        middles = (tuple(np.mean(anchor.ends, axis=0).tolist()) for anchor in anchors_of(fact))
-        now = [self._nearest(own, middle) for own, middle in zip(lines, middles, strict=True)]
+    def by_ids(self, fact: Fact) -> ToldFact:
+        """A fact by the ids of its lines; CorrectionError where one that it is about is not there."""
+        part = self.table.find_all(fact.part, self.drawing.width) if isinstance(fact, PlaceAt) else ()
+        return ToldFact(fact, tuple(self.find(anchor) for anchor in anchors_of(fact)), part=part)
+
+    def _told_now(self, told: ToldFact) -> ToldFact | None:
+        """A fact about lines as they are now, of one that was split the piece nearest to where it was named."""
+        middles = (tuple(np.mean(anchor.ends, axis=0).tolist()) for anchor in anchors_of(told.fact))
+        now = [self._nearest(own, middle) for own, middle in zip(told.lines, middles, strict=True)]
         found = tuple(own for own in now if own is not None)
-        return found if len(set(found)) == len(lines) else ()
+        part = tuple(now for own in told.part for now in self._now(own))
+        return replace(told, lines=found, part=part) if len(set(found)) == len(told.lines) else None
 
     def found_place(self, place: Place, before_frame: bool = False) -> FoundPlace:
         """The point with its line found again; CorrectionError when that is not there."""

@@ -1,12 +1,13 @@
 """The lines of a photo after all edits, and what a person knows beside them."""
 
-from dataclasses import dataclass, field
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
 
 from linecad.arrays import Int
-from linecad.corrections.edits import Cut, FaceEdit, Fact, Label, OnePlane, Point, WallByEdges
+from linecad.corrections.edits import Anchor, Cut, FaceEdit, Fact, Label, OnePlane, PlaceAt, Point, WallByEdges
 from linecad.directions import UP, partner
 from linecad.line_graph import Segments
 
@@ -30,6 +31,14 @@ class ToldFact:
     fact: Fact
     lines: tuple[int, ...]
     is_implied: bool = False  # by what a person told of faces; it gives way to what was told of bodies
+    part: tuple[int, ...] = ()  # the lines of a part of a body, those that are still there
+
+    def by(self, number: Mapping[int, int]) -> "ToldFact | None":
+        """The same by other numbers of the lines; None where one that it is about has none."""
+        if any(line not in number for line in self.lines):
+            return None
+        lines, part = (tuple(number[line] for line in own if line in number) for own in (self.lines, self.part))
+        return replace(self, lines=lines, part=part)
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,8 +67,13 @@ class CorrectedLines:
 
     @property
     def cuts(self) -> frozenset[Fact]:
-        """The facts on which it depends which lines are one body."""
+        """The facts that say where bodies are parted, wherever the parts stand."""
         return frozenset(told.fact for told in self.facts if isinstance(told.fact, Cut))
+
+    @property
+    def parts(self) -> frozenset[tuple[Anchor, ...]]:
+        """The parts of bodies that were placed by themselves."""
+        return frozenset(told.fact.part for told in self.facts if isinstance(told.fact, PlaceAt) and told.fact.part)
 
     @property
     def implied(self) -> tuple[ToldFact, ...]:
@@ -85,6 +99,10 @@ class CorrectedLines:
 
     def differs_in_places(self, other: "CorrectedLines") -> bool:
         """Whether nothing differs but facts that say where bodies stand."""
+        return self.differs_at_once(other) and self.parts == other.parts
+
+    def differs_at_once(self, other: "CorrectedLines") -> bool:
+        """The same, or facts that place a part of a body."""
         return self.differs_in_facts(other) and self.cuts == other.cuts
 
     def differs_in_facts(self, other: "CorrectedLines") -> bool:

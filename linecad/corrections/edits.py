@@ -16,6 +16,7 @@ OpeningWord = Literal["window", "door"]
 OPENING_WORDS: tuple[OpeningWord, ...] = get_args(OpeningWord)
 
 MOST_CORNERS = 1000  # of a polygon
+MOST_LINES = 10_000  # of a part of a body
 MOST_OF_GRID = 100  # rows or columns of equal windows
 MOST_EDITS = 100_000  # in one file; a photo has some thousand crossings
 SHORTEST = 1e-6  # m, of a known length
@@ -182,11 +183,15 @@ class Cut:
 
 @dataclass(frozen=True)
 class PlaceAt:
-    """Where a line stands against another one: the log ratio of the depths of their segments' middles."""
+    """Where a line stands against another one: the log ratio of the depths of their segments' middles.
+
+    With it goes its body, or a `part` of that alone: of these lines those of its body become a body of their own.
+    """
 
     line: Anchor
     to: Anchor
     log_ratio: float
+    part: tuple[Anchor, ...] = ()  # that the line is one of; none for the whole body
 
 
 Fact = Meet | OnePlane | Foot | Cut | PlaceAt

@@ -1,6 +1,8 @@
 """Facts about bodies in the corrections file."""
 
-from linecad.corrections.edits import LARGEST_LOG_RATIO, Cut, Fact, Foot, Meet, OnePlane, PlaceAt
+from collections.abc import Callable
+
+from linecad.corrections.edits import LARGEST_LOG_RATIO, MOST_LINES, Anchor, Cut, Fact, Foot, Meet, OnePlane, PlaceAt
 from linecad.corrections.nodes import anchor, anchor_to_json, axis, point, two_anchors
 from linecad.directions import axis_name
 from linecad.io.strict_json import Node
@@ -20,7 +22,19 @@ def read_fact(node: Node) -> Fact:
         case "cut":
             return Cut(two_anchors(node["lines"]))
         case _:
-            return PlaceAt(anchor(node["line"]), anchor(node["to"]), node["log_ratio"].number(LARGEST_LOG_RATIO))
+            ends = anchor(node["line"]), anchor(node["to"])
+            return PlaceAt(*ends, node["log_ratio"].number(LARGEST_LOG_RATIO), part_of(node, anchor))
+
+
+def part_of(node: Node, line: Callable[[Node], Anchor]) -> tuple[Anchor, ...]:
+    """The lines of a part of a body under "part", each read by `line`; none where that is not there."""
+    part = node.get("part")
+    if part is None:
+        return ()
+    lines = part.items()
+    if not 1 <= len(lines) <= MOST_LINES:
+        raise part.wrong(f"a list of 1 to {MOST_LINES}")
+    return tuple(line(each) for each in lines)
 
 
 def fact_to_json(fact: Fact) -> dict[str, object]:
@@ -37,4 +51,5 @@ def fact_to_json(fact: Fact) -> dict[str, object]:
             return {"op": "cut", "lines": [anchor_to_json(line) for line in fact.lines]}
         case PlaceAt():
             ends = {"line": anchor_to_json(fact.line), "to": anchor_to_json(fact.to)}
-            return {"op": "place", **ends, "log_ratio": fact.log_ratio}
+            part = {"part": [anchor_to_json(line) for line in fact.part]} if fact.part else {}
+            return {"op": "place", **ends, "log_ratio": fact.log_ratio, **part}

@@ -1,5 +1,7 @@
 """The lines of a photo in a table, in which one that an anchor names is looked up again by its geometry."""
 
+import contextlib
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -48,6 +50,14 @@ class LineTable:
                 f"no line runs from ({a:.0f}, {b:.0f}) to ({c:.0f}, {d:.0f}) along {axis_name(anchor.axis)} any more"
             )
         return int(self.ids[own.argmax()])
+
+    def find_all(self, anchors: Sequence[Anchor], width: int) -> tuple[int, ...]:
+        """The ids of the lines that anchors name, of those that are there."""
+        found = []
+        for anchor in anchors:
+            with contextlib.suppress(CorrectionError):
+                found.append(self.find(anchor, width))
+        return tuple(dict.fromkeys(found))
 
     def has(self, ends: Float, axis: int) -> bool:
         """Whether a line of this axis has these ends (2, 2), in either order."""

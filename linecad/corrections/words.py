@@ -22,4 +22,4 @@ def what_is_said(fact: Fact) -> str:
         case Cut():
             return "not connected"
         case _:
-            return "stands here"
+            return "a part of it stands here" if fact.part else "stands here"

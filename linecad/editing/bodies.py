@@ -14,13 +14,15 @@ from linecad.decide.annotations import told_in_the_photo
 from linecad.errors import CorrectionError
 from linecad.line_graph import LineGraph
 from linecad.options import Options
+from linecad.ties.evidence import part_of_body
 from linecad.ties.facts import tie_of
 from linecad.ties.placing import BodyPlaces, place_bodies
+from linecad.ties.sides import extended, parted_off
 from solver.options import SolveOptions
 
 MOVED = 1e-3  # log factor from which a body counts as moved
 # Of the search that answers at once; the one behind it, which builds the scene, ends with a proof. With 100 instead, 73
-# of 96 facts about South Building end where the proof does, not 66, after up to twice the time (docs/decisions/0115).
+# of 96 facts about South Building end where the proof does, not 66, after up to twice the time (docs/decisions/0114).
 NODES = 30
 
 
@@ -30,7 +32,7 @@ class ShownBodies:
 
     solved: BodyPlaces  # as in the scene
     now: BodyPlaces  # by all that was said since
-    before: Float | None  # (B,) log scales before the last fact; None where none was told yet
+    before: Float | None  # (N,) log depths of lines before the last fact; None where none was told yet
     corrected: CorrectedLines  # that the scene was built for
     facts: tuple[ToldFact, ...]  # by the ids of their lines, that `now` knows of
     ids: tuple[int, ...]  # of the graph's nodes
@@ -65,10 +67,22 @@ class ShownBodies:
     @cached_property
     def moves(self) -> Float:
         """(B + 1,) log factors by which bodies and, last, the ground are farther than in the scene."""
-        own = self.count
-        moved = self.now.log_scale[:own] - self.solved.log_scale[:own]
-        ground = self.now.placement.log_scale[own] - self.solved.placement.log_scale[own]
+        return self.moved_from(self.solved)
+
+    def moved_from(self, other: BodyPlaces) -> Float:
+        """(B + 1,) the same from where they were at other places, at which some of them were one body."""
+        before, own = other.evidence.setting.bodies, self.count
+        moved = self.now.log_scale[:own] - extended(other.log_scale[: before.count], before, self.now.evidence)
+        ground = self.now.placement.log_scale[own] - other.placement.log_scale[before.count]
         return np.append(moved, ground)
+
+    @cached_property
+    def moved_by_last(self) -> Float:
+        """(B,) log factors by which the last fact moved bodies."""
+        if self.before is None:
+            return np.zeros(self.count)
+        first = [int(lines[0]) for lines in self.now.evidence.setting.lines]
+        return np.asarray((self.now.log_depth - self.before)[first])
 
     def factor(self, body: int) -> float:
         """By which what belongs to a body is farther than in the scene; 1 for lines of none."""
@@ -76,11 +90,7 @@ class ShownBodies:
 
     def told(self, facts: Sequence[ToldFact]) -> tuple[ToldFact, ...]:
         """Facts by the nodes of the graph; those without lines in it are left out."""
-        return tuple(
-            replace(each, lines=tuple(self.node[line] for line in each.lines))
-            for each in facts
-            if all(line in self.node for line in each.lines)
-        )
+        return tuple(fact for each in facts if (fact := each.by(self.node)))
 
     def check(self, told: ToldFact) -> None:
         """Raise CorrectionError where a fact, by the ids of its lines, says nothing of these bodies."""
@@ -88,23 +98,31 @@ class ShownBodies:
             raise CorrectionError("a line of it is too short or stands alone; choose one of the wall beside it")
         own = self.told([told])[0]
         if not isinstance(told.fact, Cut):
-            tie_of(self.now.evidence.setting, own)
+            part = part_of_body(self.body, own)
+            tie_of(parted_off(self.now.evidence, [part]).setting, own)
 
     def with_facts(self, corrected: CorrectedLines, options: Options) -> "ShownBodies":
         """The bodies where the facts about corrected lines put them; ContradictionError where no places fit."""
-        facts, evidence = corrected.all_facts, self.solved.evidence
+        facts = corrected.all_facts
         if facts not in self._tried:
+            own, evidence = self.told(facts), self.solved.evidence
+            for told in own:
+                evidence = parted_off(evidence, [part_of_body(evidence.setting.bodies.body, told)])
             with told_in_the_photo(evidence.setting.graph, corrected):
-                near = self.now.placement.log_scale
-                now = place_bodies(evidence, at_once(options.solve), self.told(facts), near=near)
+                near = extended(self.now.placement.log_scale, self.now.evidence.setting.bodies, evidence)
+                now = place_bodies(evidence, at_once(options.solve), own, near=near)
             self._tried.clear()
-            self._tried[facts] = replace(self, now=now, before=self.now.log_scale, facts=facts)
+            self._tried[facts] = replace(self, now=now, before=self.now.log_depth, facts=facts)
         return self._tried[facts]
 
     def preview(self, corrected: CorrectedLines, options: Options) -> dict[int, float]:
-        """By which log factor each body would move from where it is shown, and the ground, whose number is `count`."""
-        moved = self.with_facts(corrected, options).moves - self.moves
-        return {body: float(by) for body, by in enumerate(moved.tolist()) if abs(by) > MOVED}
+        """By which log factor each body would move from where it is shown, and the ground, whose number is `count`.
+
+        Behind that come parts of bodies that would be bodies of their own.
+        """
+        *bodies, ground = self.with_facts(corrected, options).moved_from(self.now).tolist()
+        moved = [*bodies[: self.count], ground, *bodies[self.count :]]
+        return {body: by for body, by in enumerate(moved) if abs(by) > MOVED}
 
 
 def at_once(options: SolveOptions) -> SolveOptions:

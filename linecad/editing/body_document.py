@@ -1,7 +1,10 @@
 """What the page is told of bodies and of facts about them, as JSON."""
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from linecad.arrays import Bool
 from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Cut, Fact, Foot
 from linecad.corrections.fact_file import fact_to_json
@@ -9,9 +12,11 @@ from linecad.corrections.words import what_is_said
 from linecad.directions import UP, letter_of
 from linecad.editing.bodies import MOVED, ShownBodies
 from linecad.editing.state import Now
-from linecad.ties.alternatives import OtherPlace, other_places
+from linecad.ties.alternatives import OtherPlace, other_places, other_places_of
 from linecad.ties.candidates import Candidate
+from linecad.ties.evidence import side_of
 from linecad.ties.facts import TOLERANCE
+from linecad.ties.sides import parts_of
 from linecad.ties.weights import TOLERANCE as TIE_TOLERANCE
 
 GUESS = 0.5  # probability below which a place is a guess
@@ -106,8 +111,39 @@ def places_of(now: Now, body: int) -> list[dict[str, object]]:
     return [_place(bodies, place) for place in other_places(bodies.now, body)]
 
 
+def parts_of_body(now: Now, body: int) -> list[dict[str, object]]:
+    """The parts of a body that a person may place by themselves, by the ids of lines, the most doubtful first."""
+    bodies = None if now.model is None else now.model.bodies
+    if bodies is None or not 0 <= body < bodies.count:
+        return []
+    return [
+        {"lines": [bodies.ids[line] for line in part.lines.tolist()], "probability": part.probability}
+        for part in parts_of(bodies.now.evidence, bodies.now.seams, body)
+    ]
+
+
+def places_of_part(now: Now, lines: Sequence[int]) -> list[dict[str, object]]:
+    """The other places of a part of a body by the ids of its lines; none of what is no part of one body.
+
+    As in `ShownBodies.preview` the part has the number behind that of the ground.
+    """
+    bodies = None if now.model is None else now.model.bodies
+    own = [] if bodies is None else [bodies.node[line] for line in lines if line in bodies.node]
+    if bodies is None or not own:
+        return []
+    part = side_of(bodies.body, own[0], own)
+    if not len(part):
+        return []
+    found = [(_place(bodies, place), place.moved) for place in other_places_of(bodies.now, part)]
+    return [{**shown, "bodies": [*_numbers(moved[: bodies.count]), bodies.count + 1]} for shown, moved in found]
+
+
+def _numbers(chosen: Bool) -> list[int]:
+    return [int(number) for number in np.flatnonzero(chosen)]
+
+
 def _place(bodies: ShownBodies, place: OtherPlace) -> dict[str, object]:
-    moved = np.flatnonzero(place.moved[: bodies.count]).tolist()
+    moved = _numbers(place.moved[: bodies.count])
     words = list(dict.fromkeys(words_of(reason) for reason in place.reasons))
     return {"move": place.move, "worth": place.worth, "bodies": moved, "words": words}
 
@@ -120,7 +156,7 @@ def facts_of_page(now: Now) -> list[dict[str, object]]:
     contradicted = () if now.contradiction is None else now.contradiction.facts
     return [
         {
-            **fact_to_json(fact),
+            **{key: value for key, value in fact_to_json(fact).items() if key != "part"},
             "edit": number[fact],
             "words": what_is_said(fact),
             "lines": list(told.lines),
@@ -156,7 +192,7 @@ def moved_by_last(now: Now) -> list[dict[str, object]]:
         last = now.corrections.edits[-1]
     if bodies is None or bodies.before is None or not isinstance(last, Fact):
         return []
-    moved = bodies.now.log_scale[: bodies.count] - bodies.before[: bodies.count]
+    moved = bodies.moved_by_last
     lines = next((told.lines for told in bodies.facts if told.fact == last), ())
     own = [moved[body] for line in lines if (body := bodies.body_of(line)) >= 0]
     # Where a foot moves the ground, all that stands on it goes along.

@@ -34,7 +34,7 @@ from linecad.corrections.edits import (
     Withdraw,
 )
 from linecad.corrections.face_file import FACE_OPERATIONS
-from linecad.corrections.fact_file import FACTS
+from linecad.corrections.fact_file import FACTS, part_of
 from linecad.corrections.file import OPERATIONS, PARTS, frame_lines, label, many, metres, name
 from linecad.corrections.nodes import axis, ends, point, two
 from linecad.corrections.snapping import LONGEST_REACH, Proposal, find_snap, propose, stretch
@@ -99,7 +99,8 @@ def _fact(node: Node, lines: Correcting) -> Fact:
             return Cut(_two(node["lines"], lines))
         case _:
             to = lines.anchor(node["to"].integer())
-            return PlaceAt(_line(node, lines), to, node["log_ratio"].number(LARGEST_LOG_RATIO))
+            part = part_of(node, lambda each: lines.anchor(each.integer()))
+            return PlaceAt(_line(node, lines), to, node["log_ratio"].number(LARGEST_LOG_RATIO), part)
 
 
 def _told(node: Node, session: Session) -> Fact:

@@ -18,7 +18,7 @@ from starlette.routing import Route
 from exporters.formats import FORMATS, SCENE_FILE
 from linecad.depth.depth_map import DepthMap
 from linecad.editing.answers import Answers
-from linecad.editing.body_document import places_of
+from linecad.editing.body_document import parts_of_body, places_of, places_of_part
 from linecad.editing.cell_layer import picture_of_cells
 from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
@@ -94,6 +94,8 @@ class Editor:
             Route("/api/redo", _post(self.redo), methods=["POST"]),
             Route("/api/preview", _post(self.preview), methods=["POST"]),
             Route("/api/places/{body:int}", self.places),
+            Route("/api/parts/{body:int}", self.parts),
+            Route("/api/part", _post(self.part), methods=["POST"]),
             Route("/api/propose", _post(self.propose), methods=["POST"]),
             Route("/api/shown", _post(self.shown), methods=["POST"]),
             Route("/api/solve", _post(self.solve), methods=["POST"]),
@@ -190,6 +192,15 @@ class Editor:
     def places(self, request: Request) -> Response:
         """GET /api/places/BODY: where else a body could stand, the most likely first."""
         return JSONResponse(places_of(self.session.now(), request.path_params["body"]))
+
+    def parts(self, request: Request) -> Response:
+        """GET /api/parts/BODY: the parts of a body that may stand by themselves, the most doubtful first."""
+        return JSONResponse(parts_of_body(self.session.now(), request.path_params["body"]))
+
+    def part(self, body: Node) -> Response:
+        """POST /api/part: where else the part of a body with these lines could stand."""
+        lines = [line.integer() for line in body["lines"].items()]
+        return JSONResponse(places_of_part(self.session.now(), lines))
 
     def propose(self, body: Node) -> Response:
         """POST /api/propose: what a drawn line would be, or one whose end is dragged."""

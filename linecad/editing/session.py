@@ -21,7 +21,6 @@ from linecad.corrections.edits import (
     NameGroup,
     SetFrame,
     Withdraw,
-    anchors_of,
 )
 from linecad.editing.bodies import ShownBodies
 from linecad.editing.distant import between, distant
@@ -271,7 +270,7 @@ class Session:
         if isinstance(edit, Withdraw) or not isinstance(edit, Fact):
             return None
         bodies = self._bodies_now()
-        told = ToldFact(edit, tuple(self._editing.find(anchor) for anchor in anchors_of(edit)))
+        told = self._editing.by_ids(edit)
         bodies.check(told)
         return told
 
@@ -287,7 +286,7 @@ class Session:
     def _moved(self, model: Model) -> Model:
         """The model with its bodies where the facts put them that are told now."""
         bodies, corrected = model.bodies, self._lines.corrected
-        if bodies is None or not bodies.corrected.differs_in_places(corrected):
+        if bodies is None or not bodies.corrected.differs_at_once(corrected):
             return model
         try:
             return replace(model, bodies=bodies.with_facts(corrected, self.options))

@@ -24,7 +24,7 @@ from linecad.depth.depth_map import DepthMap
 from linecad.errors import ContradictionError, LinecadError
 from linecad.finding import FoundLines
 from linecad.options import Options
-from linecad.pipeline import Prepared, Reconstruction, prepare, reconstruct_prepared
+from linecad.pipeline import Prepared, Reconstruction, prepare, prepared_for, reconstruct_prepared
 from linecad.progress import StageReport, silent
 from solver.options import Progress
 
@@ -244,8 +244,12 @@ class TaskSolver:
 
     def _made(self, task: Task, tell: Callable[[Progress], None], on_stage: StageReport) -> Reconstruction:
         prepared = self._prepared
-        if prepared is None or not prepared.is_for(task.corrected):
+        known = None if prepared is None else prepared.corrected
+        if prepared is not None and known is not None and known.differs_in_facts(task.corrected):
+            if not prepared.is_for(task.corrected):
+                prepared = prepared_for(prepared, self._options, task.corrected, on_stage)
+        else:
             found = replace(task.found, pixels=self._photo.pixels)
             prepared = prepare(found, self._options, on_stage, task.corrected, self._depth)
-            self._prepared = prepared
+        self._prepared = prepared
         return reconstruct_prepared(self._photo.name, prepared, self._options, tell, on_stage, task.corrected)

@@ -4,11 +4,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from linecad.arrays import Bool
+from linecad.arrays import Bool, Float, Int
 from linecad.ties.candidates import Candidate
-from linecad.ties.placing import CONNECTING, BodyPlaces
+from linecad.ties.evidence import Evidence
+from linecad.ties.facts import FactTies, ties_of_facts
+from linecad.ties.placing import BodyPlaces, kept_candidates, tie_up
+from linecad.ties.sides import extended, part_off
 from linecad.ties.weights import above_chance
 from solver.bodies.local_search import sets_that_move
+from solver.bodies.ties import Ties
 
 SAME_PLACE = 0.01  # log scale within which two places are one
 MOST = 12
@@ -24,16 +28,38 @@ class OtherPlace:
     reasons: tuple[Candidate, ...]  # what asks for it, the most telling first
 
 
+@dataclass(frozen=True, eq=False)
+class _Standing:
+    """Bodies where they stand, and what ties them."""
+
+    evidence: Evidence
+    told: FactTies
+    ties: Ties
+    log_scale: Float  # (B,) of bodies, ground and map
+
+
 def other_places(places: BodyPlaces, body: int) -> list[OtherPlace]:
     """The places that other evidence asks for, the most likely first; MOST at most, none for the reference.
 
     Each is that of a set of bodies which moves as a whole, of all such sets the one that loses least. Evidence that is
     too weak for a tie may be all there is: it proposes places, and orders those that cost the same.
     """
-    evidence, ties, log_scale = places.evidence, places.ties, places.placement.log_scale
-    reference = evidence.reference
-    kept = [each for each in evidence.candidates if not (each.kind in CONNECTING and each.bodies in places.told.cuts)]
-    if body == reference or not kept:
+    return _elsewhere(_Standing(places.evidence, places.told, places.ties, places.placement.log_scale), body)
+
+
+def other_places_of(places: BodyPlaces, part: Int) -> list[OtherPlace]:
+    """The same for a part of a body, by its lines, which is a body of its own there: the last one."""
+    evidence = part_off(places.evidence, part)
+    told = ties_of_facts(evidence.setting, places.facts)
+    log_scale = extended(places.placement.log_scale, places.evidence.setting.bodies, evidence)
+    ties, _ = tie_up(evidence, places.facts, told)
+    return _elsewhere(_Standing(evidence, told, ties, log_scale), evidence.setting.bodies.count - 1)
+
+
+def _elsewhere(places: "_Standing", body: int) -> list[OtherPlace]:
+    evidence, ties, log_scale = places.evidence, places.ties, places.log_scale
+    kept = kept_candidates(evidence, places.told.cuts)
+    if body == evidence.reference or not kept:
         return []
     first, second = np.array([each.bodies for each in kept], np.int64).T
     asked, gain = np.array([each.log_ratio for each in kept]), np.array([above_chance(each) for each in kept])
@@ -56,22 +82,22 @@ def other_places(places: BodyPlaces, body: int) -> list[OtherPlace]:
     return best[:MOST]
 
 
-def _sets(places: BodyPlaces, body: int) -> list[Bool]:
+def _sets(places: "_Standing", body: int) -> list[Bool]:
     """The sets of bodies that may move with a body while the reference stays."""
-    count, reference = len(places.placement.log_scale), places.evidence.reference
-    every = [*sets_that_move(places.ties, places.placement.log_scale), *_clusters(places)]
+    count, reference = len(places.log_scale), places.evidence.reference
+    every = [*sets_that_move(places.ties, places.log_scale), *_clusters(places)]
     own = {moved.tobytes(): moved for moved in every if moved[body] and not moved[reference]}
     return list(own.values()) or [np.arange(count) == body]
 
 
-def _clusters(places: BodyPlaces) -> list[Bool]:
+def _clusters(places: "_Standing") -> list[Bool]:
     """Sets of bodies (B,) that hold together more than each does to the rest: single linkage by the ties that hold.
 
     A block that several ties hold to the reference has no cut of one tie, and moves as a whole all the same.
     """
-    ties, count = places.ties, len(places.placement.log_scale)
+    ties, count = places.ties, len(places.log_scale)
     weight: dict[tuple[int, int], float] = {}
-    for tie in np.flatnonzero(ties.holds(places.placement.log_scale)).tolist():
+    for tie in np.flatnonzero(ties.holds(places.log_scale)).tolist():
         one, other = sorted(ties.bodies[tie].tolist())
         weight[one, other] = weight.get((one, other), 0.0) + float(ties.weight[tie])
     cluster, found = np.arange(count), []

@@ -39,11 +39,7 @@ class Evidence:
     heard: DepthWitness | str  # the depth map, or why it was left out
     real: Bool  # (E,) crossings that a person called so
     fake: Bool  # (E,)
-
-    @property
-    def reference(self) -> int:
-        """The body that the others are placed relative to."""
-        return int(self.setting.bodies.size.argmax()) if self.setting.bodies.count else 0
+    reference: int  # the body that the others are placed relative to: the largest, or what is left of that
 
     def without_photo(self) -> "Evidence":
         """The same without pixels: small enough to hand on, and enough to place bodies."""
@@ -68,20 +64,22 @@ def find_evidence(
         ratios = end_ratios(graph)
         check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
     on_stage("fitting depths, with and without some of the lines")
-    setting = _setting(graph, sight, options, real, fake, facts)
+    setting, reference = _setting(graph, sight, options, real, fake, facts)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
     looks = Looks(setting)
     candidates = find_candidates(setting, looks)
     seams = find_seams(setting, looks)
     pieces = find_pieces(setting, seams, looks)
     heard = hear(setting, candidates, sight.depth)
-    return Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake)
+    return Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake, reference)
 
 
 def _setting(
     graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool, facts: Sequence[ToldFact]
-) -> Setting:
+) -> tuple[Setting, int]:
     """Bodies of the lines as they were found; fitted again only where what a person said contradicts them inside.
+
+    And the one that others are placed relative to.
 
     So a word about two bodies moves these, and what is far from them keeps its place.
     """
@@ -92,8 +90,16 @@ def _setting(
         believed = replace(believed, weight=np.where(real, CERTAIN, graph.weight))
         log_depth = RobustFit(believed).depths()
         bodies = find_rigid_bodies(believed, log_depth, fits := resample(believed, options.seed, FITS))
-    cuts = [told.lines for told in facts if isinstance(told.fact, Cut)]
-    return Setting(believed, log_depth, cut_bodies(bodies, believed, log_depth, cuts), fits, sight)
+    cut = cut_bodies(bodies, believed, log_depth, facts)
+    return Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut)
+
+
+def _reference(bodies: RigidBodies, cut: RigidBodies) -> int:
+    """The largest piece of the largest body: what a person says of a part of it does not move all others."""
+    if not bodies.count:
+        return 0
+    largest = bodies.body == int(bodies.size.argmax())
+    return int(np.bincount(cut.body[largest], minlength=cut.count).argmax())
 
 
 def _contradicts(graph: LineGraph, log_depth: Float, bodies: RigidBodies, real: Bool, fake: Bool) -> bool:
@@ -104,20 +110,41 @@ def _contradicts(graph: LineGraph, log_depth: Float, bodies: RigidBodies, real: 
     return bool((~apart & ((real & ~meets) | (fake & meets & graph.informative))).any())
 
 
-def cut_bodies(bodies: RigidBodies, graph: LineGraph, log_depth: Float, cuts: Sequence[tuple[int, ...]]) -> RigidBodies:
+def cut_bodies(bodies: RigidBodies, graph: LineGraph, log_depth: Float, facts: Sequence[ToldFact]) -> RigidBodies:
     """The bodies with those parted that hold both lines of a cut, where the least weight of crossings joins the two.
 
-    Of crossings that agree at log depths (N,). The side of the second line becomes a body of its own.
+    Of crossings that agree at log depths (N,). The side of the second line becomes a body of its own. So does a part
+    that was placed by itself: of its lines those that are of one body with the line that it was placed by.
     """
     body, count = bodies.body.copy(), bodies.count
     agrees = graph.informative & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
-    for first, second in cuts:
+    for told in facts:
+        if told.part:
+            own = part_of_body(body, told)
+            if len(own):
+                body[own] = count
+                count += 1
+        if not isinstance(told.fact, Cut):
+            continue
+        first, second = told.lines
         if body[first] < 0 or body[first] != body[second]:
             continue
         inside = agrees & (body[graph.edges] == body[first]).all(axis=1)
         body[_side_of(second, first, graph.edges[inside], graph.weight[inside])] = count
         count += 1
     return RigidBodies(body, count)
+
+
+def part_of_body(body: Int, told: ToldFact) -> Int:
+    """The lines of a part that was placed by itself, by the body (N,) of each; none where it is a whole body."""
+    return side_of(body, told.lines[0], told.part)
+
+
+def side_of(body: Int, line: int, lines: Sequence[int]) -> Int:
+    """Of some lines those that are of one body with a line; none where that is all of the body, or there is none."""
+    part, placed = np.array(lines, np.int64), body[line]
+    own = np.unique(part[body[part] == placed])
+    return own if placed >= 0 and len(own) < (body == placed).sum() else own[:0]
 
 
 def _side_of(line: int, other: int, edges: Int, weight: Float) -> Int:

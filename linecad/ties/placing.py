@@ -20,6 +20,7 @@ from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
 from linecad.ties.links import find_links, told_links
 from linecad.ties.pieces import with_stays
 from linecad.ties.probability import chances, main_lines, probabilities
+from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.weights import weigh_candidates, worth_a_tie
 from solver.bodies.search import place
@@ -82,14 +83,18 @@ class BodyPlaces:
     def probability_at(self, log_depth: Float, connected: Bool) -> Float:
         """The same for lines at depths (N,) near these, where these crossings are `connected` (E,)."""
         evidence, setting, pieces = self.evidence, self.evidence.setting, self.evidence.pieces
-        seams = with_stays(list(evidence.seams), pieces, self.scale_with_ground)
         links = find_links(pieces, self.scale_with_ground, self.placement.margin, evidence.reference, self.mapped)
         # What a person ties to the reference stands there.
         certain = self.placement.counted & (self.ties.weight >= IMPLIED)
         told = self.ties.parts(certain, len(self.placement.log_scale))
         links = told_links(links, pieces, evidence.reference, told == told[evidence.reference])
         length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)
-        return probabilities(setting, log_depth, pieces, chances(pieces, seams, links, length))
+        return probabilities(setting, log_depth, pieces, chances(pieces, self.seams, links, length))
+
+    @cached_property
+    def seams(self) -> list[Seam]:
+        """Where bodies are weak, as sure as they are at these places."""
+        return with_stays(list(self.evidence.seams), self.evidence.pieces, self.scale_with_ground)
 
     @property
     def by_map(self) -> Bool:
@@ -210,11 +215,7 @@ def place_bodies(
     """
     setting, heard, reference = evidence.setting, evidence.heard, evidence.reference
     size, told = setting.bodies.size, ties_of_facts(setting, facts)
-    sure, edges = _sure(setting, evidence.real)
-    told.check(facts, sure, setting.graph.edges[edges])
-    kept = [each for each in evidence.candidates if not (each.kind in CONNECTING and each.bodies in told.cuts)]
-    ties = weigh_candidates(kept, size).joined(sure).joined(told.ties)
-    sources = [*worth_a_tie(kept), *edges.tolist(), *(-1 - told.number).tolist()]
+    ties, sources = tie_up(evidence, facts, told)
     if isinstance(heard, DepthWitness):
         ties = ties.joined(ties_to_map(heard, size))
     on_stage(f"placing {setting.bodies.count} bodies by {len(ties)} ties")
@@ -226,6 +227,24 @@ def place_bodies(
         mapped = follow_map(heard, ties, placement, reference, size)
     sources += [None] * (len(ties) - len(sources))
     return BodyPlaces(evidence, tuple(facts), told, tuple(sources), ties, placement, mapped)
+
+
+def tie_up(evidence: Evidence, facts: Sequence[ToldFact], told: FactTies) -> tuple[Ties, list[Candidate | int | None]]:
+    """The ties of bodies, all but those of a depth map, and what each is of (`BodyPlaces.sources`).
+
+    ContradictionError where facts and crossings called real cannot all hold.
+    """
+    setting = evidence.setting
+    sure, edges = _sure(setting, evidence.real)
+    told.check(facts, sure, setting.graph.edges[edges])
+    kept = kept_candidates(evidence, told.cuts)
+    ties = weigh_candidates(kept, setting.bodies.size).joined(sure).joined(told.ties)
+    return ties, [*worth_a_tie(kept), *edges.tolist(), *(-1 - told.number).tolist()]
+
+
+def kept_candidates(evidence: Evidence, cuts: frozenset[tuple[int, int]]) -> list[Candidate]:
+    """The candidates that a person lets stand who says that some pairs of bodies are not connected."""
+    return [each for each in evidence.candidates if not (each.kind in CONNECTING and each.bodies in cuts)]
 
 
 def _sure(setting: Setting, real: Bool) -> tuple[Ties, Int]:

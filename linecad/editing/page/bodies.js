@@ -99,12 +99,24 @@ export class Bodies {
     return this.list.length;
   }
 
+  /** The number of the part that is chosen (bodyparts.js), behind that of the ground. */
+  get part() {
+    return this.list.length + 1;
+  }
+
+  /** Let lines, by their ids, be the part that is chosen; none for no part. */
+  choosePart(ids) {
+    this.linesOf.delete(this.part);
+    if (ids) this.linesOf.set(this.part, this.#present(ids));
+  }
+
   get reference() {
     return this.list.find(({ reference }) => reference)?.id ?? null;
   }
 
   nameOf(id) {
     if (id === this.ground) return "The ground";
+    if (id === this.part) return `Part of ${this.nameOf(this.selected)}`;
     return this.letters.has(id) ? `Body ${this.letters.get(id)}` : "No body";
   }
 

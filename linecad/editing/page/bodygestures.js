@@ -2,6 +2,7 @@
 
 import { apartAcross, normalsOf, partnersOf, placeEdit, snapsOf } from "./bodyplaces.js";
 import { lengthOf, middleOf, movedText } from "./bodies.js";
+import { BodyParts } from "./bodyparts.js";
 import { gestureOf } from "./gesturelist.js";
 
 const PARTNERS = 60; // lines that the arrow keys go through
@@ -12,7 +13,7 @@ const MOVES_BODIES = ["meet", "plane", "place"]; // a foot may move the ground a
 const HOLDS_ALREADY = "That holds already, so nothing moves. It is among your facts now.";
 const FINELY = 0.1; // of a step, with Shift
 
-/** The gesture under way, `now`: null or `{kind, body, first, second, normal, pixel, fixed, places, index, log, preview}`. */
+/** The gesture under way, `now`: null or `{kind, body, part, first, second, normal, pixel, fixed, places, index, log, preview}`. */
 export class BodyGestures {
   now = null;
   #listeners = [];
@@ -21,7 +22,9 @@ export class BodyGestures {
 
   constructor(store, actions, bodies) {
     Object.assign(this, { store, actions, bodies });
+    this.parts = new BodyParts(store, actions, bodies);
     store.listen((changed) => this.#noticed(changed));
+    this.parts.listen(() => this.leave());
   }
 
   /** Call `listener` after each change of what is chosen or of what it would do. */
@@ -71,21 +74,24 @@ export class BodyGestures {
   async #beginWithBody(kind, index) {
     const { bodies } = this;
     const body = bodies.selected;
-    this.#put({ kind, body, preview: null, log: 0, index: -1, places: null });
+    const part = this.parts.chosen;
+    this.#put({ kind, body, part, preview: null, log: 0, index: -1, places: null });
     if (body === null) return this.#put({ body: undefined });
-    if (body === bodies.reference || body === bodies.ground) {
+    if (!part && (body === bodies.reference || body === bodies.ground)) {
       const why = body === bodies.ground ? "goes where feet say" : "is the one that the others are placed against";
-      this.actions.messages.tell(`${bodies.nameOf(body)} ${why}; choose another body.`);
+      const instead = body === bodies.ground ? "" : ", or a part of it (Shift+K)";
+      this.actions.messages.tell(`${bodies.nameOf(body)} ${why}; choose another body${instead}.`);
       return this.leave();
     }
     let places = [];
     try {
-      places = await this.actions.server.get(`places/${body}`);
+      const { server } = this.actions;
+      places = part ? await server.post("part", { lines: part.lines }) : await server.get(`places/${body}`);
     } catch (error) {
       this.actions.messages.tell(error.message, "error");
     }
-    if (this.now?.kind !== kind || this.now.body !== body) return;
-    this.#put({ places, snaps: snapsOf(bodies, body, places) });
+    if (this.now?.kind !== kind || this.now.body !== body || this.now.part !== part) return;
+    this.#put({ places, snaps: snapsOf(bodies, body, places, part) });
     if (kind === "place" && places.length > 0) this.#showPlace(index % places.length);
   }
 
@@ -224,14 +230,15 @@ export class BodyGestures {
 
   /** The edit that is chosen so far, or null. */
   get edit() {
-    const { kind, body, first, second, normal, pixel, log, index } = this.now ?? {};
+    const { kind, body, part, first, second, normal, pixel, log, index } = this.now ?? {};
     switch (kind) {
       case "foot":
         return first && pixel ? { op: "foot", line: first.id, pixel } : null;
       case "place":
-        return index >= 0 ? placeEdit(this.bodies, body, log) : null;
+        return index >= 0 ? placeEdit(this.bodies, body, log, part) : null;
       case "move":
-        return body !== undefined && this.now.places && Math.abs(log) > 1e-9 ? placeEdit(this.bodies, body, log) : null;
+        if (body === undefined || !this.now.places || Math.abs(log) <= 1e-9) return null;
+        return placeEdit(this.bodies, body, log, part);
       case "plane":
         return second && normal ? { op: "plane", lines: [first.id, second.id], normal } : null;
       case "height":
@@ -282,14 +289,14 @@ export class BodyGestures {
   }
 
   #share(id) {
-    return this.bodies.byId.get(id)?.share ?? 0;
+    return id === this.bodies.part ? 1 : (this.bodies.byId.get(id)?.share ?? 0); // what was chosen comes first
   }
 
   /** The log factors by which bodies are shown moved, by number. */
   get moves() {
-    const { kind, body, log, places, index, preview, tried } = this.now ?? {};
+    const { kind, body, part, log, places, index, preview, tried } = this.now ?? {};
     if (preview?.moves && tried === JSON.stringify(this.edit)) return preview.moves;
-    if (kind === "move" && log) return { [body]: log };
+    if (kind === "move" && log) return { [part ? this.bodies.part : body]: log };
     if (kind === "place" && index >= 0) return Object.fromEntries(places[index].bodies.map((id) => [id, log]));
     return {};
   }

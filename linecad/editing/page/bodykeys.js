@@ -13,6 +13,12 @@ export function bodyKeys({ bodies, gestures, panel }) {
         text: `${label}: ${first[0].toLowerCase()}${first.slice(1)}; arrows choose too, Enter takes it, Esc leaves it`,
         run: () => gestures.begin(kind),
       })),
+      {
+        keys: ["shift+k"],
+        shown: "Shift+K",
+        text: "A part of the selected body, the most doubtful first; then Next place or Move",
+        run: () => gestures.parts.next(),
+      },
       { keys: ["shift+b"], shown: "Shift+B", text: "The list of bodies, open or shut", run: () => panel.toggle() },
       {
         keys: ["shift+pagedown"],

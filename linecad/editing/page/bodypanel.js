@@ -35,6 +35,7 @@ export class BodyPanel {
       if (shown.some((name) => changed.has(name))) this.#renew(changed);
     });
     gestures.listen(() => this.#pressButtons());
+    gestures.parts.listen(() => !this.panel.hidden && this.#show());
     this.#renew(new Set(["state"]));
   }
 
@@ -160,8 +161,41 @@ export class BodyPanel {
       element("p", {}, place, element("br"), sure),
       ...this.#ties("Holds it there", counted),
       ...this.#ties("Did not count", refused),
+      ...this.#parts(id),
       ...this.#otherPlaces(id, body),
     ];
+  }
+
+  /** What may stand by itself: a list that is filled when the server has answered. */
+  #parts(id) {
+    const { parts } = this.gestures;
+    const list = element("ul", { class: "ties parts" });
+    const title = element("h4", { hidden: true }, "May stand by itself (", element("kbd", {}, "⇧K"), ")");
+    const row = (part) =>
+      element(
+        "li",
+        {},
+        element(
+          "button",
+          {
+            class: "place",
+            "data-at": `part-${part.lines[0]}-${part.lines.length}`,
+            "aria-pressed": String(part === parts.chosen),
+            title: "Choose this part; then Next place or Move",
+            onclick: () => parts.choose(part === parts.chosen ? null : part),
+          },
+          `${part.lines.length} lines, belongs here: ${percent(part.probability)}`,
+        ),
+      );
+    const fill = (found) => {
+      if (this.bodies.selected !== id) return;
+      title.hidden = found.length === 0;
+      const shown = found.slice(0, MOST_TIES);
+      if (parts.chosen && !shown.includes(parts.chosen)) shown.push(parts.chosen);
+      list.replaceChildren(...shown.map(row));
+    };
+    parts.list().then(fill, () => {}); // the next state asks again
+    return [title, list];
   }
 
   #ties(title, ties) {

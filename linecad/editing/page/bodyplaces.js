@@ -7,12 +7,15 @@ import { distance } from "./picking.js";
 const SAME = 0.005; // log factor within which two places to snap to are one
 const FARTHEST = 1.5; // log factor; what is farther off is nothing that a drag means
 
-/** The edit that says that a body stands so many times, by a log factor, as far away as it is shown. */
-export function placeEdit(bodies, body, log) {
+/** The edit that says that a body, or a part of it, stands so many times, by a log factor, as far away as it is shown. */
+export function placeEdit(bodies, body, log, part = null) {
   const { state } = bodies.store;
-  const [line, to] = [bodies.lineOf(body), bodies.lineOf(bodies.reference)];
-  const [own, other] = [line, to].map((each) => Math.log(depthAt(state, each, middleOf(each))));
-  return { op: "place", line: line.id, to: to.id, log_ratio: own + log - other };
+  const own = new Set(part?.lines);
+  const line = part ? bodies.lineOf(bodies.part) : bodies.lineOf(body);
+  const to = bodies.linesOf.get(bodies.reference).find(({ id }) => !own.has(id));
+  const [depth, other] = [line, to].map((each) => Math.log(depthAt(state, each, middleOf(each))));
+  const edit = { op: "place", line: line.id, to: to.id, log_ratio: depth + log - other };
+  return part ? { ...edit, part: part.lines } : edit;
 }
 
 /** The direction of an axis in the world, up to its sign: those of the main frame are the world's. */
@@ -41,11 +44,12 @@ export function apartAcross(state, first, second, axis) {
   return own * other > 0 ? Math.log(other / own) : null;
 }
 
-/** The places that a body snaps to, `{log, text}`: other places, planes of other bodies, the ground. */
-export function snapsOf(bodies, body, places) {
+/** The places that a body snaps to, `{log, text}`: other places, planes of other bodies, the ground; of a part the first. */
+export function snapsOf(bodies, body, places, part = null) {
   const { state } = bodies.store;
   const found = places.map(({ move, words }) => ({ log: move, text: words.join(", ") || "another place" }));
   found.push({ log: 0, text: "where it was" });
+  if (part) return distinct(found.filter(({ log }) => Math.abs(log) < FARTHEST)); // planes are of whole bodies
   const planes = state.planes.filter((plane) => plane.offset !== undefined);
   const ground = planes.find((plane) => plane.body === bodies.ground);
   for (const own of planes.filter((plane) => plane.body === body)) {

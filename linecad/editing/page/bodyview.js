@@ -36,6 +36,7 @@ export class BodyView {
       if (seen.some((name) => changed.has(name))) this.#renew();
     });
     gestures.listen(() => this.#renew());
+    gestures.parts.listen(() => this.#renew());
     const onView = photo.onView;
     photo.onView = () => {
       onView();
@@ -96,17 +97,19 @@ export class BodyView {
     const { selected, hovered } = this.bodies;
     if (hovered !== null && hovered !== selected) this.#body(context, hovered, INK, FILL.hovered, 1.2);
     if (selected !== null) this.#body(context, selected, INK, FILL.selected, 2.4);
+    if (this.gestures.parts.chosen) this.#strokes(context, this.#linesOf(this.bodies.part), GHOST, 3.2);
     for (const body of this.#flash.keys()) this.#strokes(context, this.#linesOf(body), CHANGED, 3.4);
     const moves = Object.entries(this.gestures.moves).map(([id, log]) => [Number(id), log]);
     for (const [body] of moves) this.#strokes(context, this.#linesOf(body), GHOST, 2.2);
     this.#chosen(context);
     const chips = moves.length > 0 ? moves : [...this.#flash];
     const colour = moves.length > 0 ? GHOST : "#00707c";
-    const largest = (id) => this.bodies.byId.get(id)?.share ?? 0;
+    const largest = (id) => (id === this.bodies.part ? 1 : (this.bodies.byId.get(id)?.share ?? 0));
     const taken = [];
     for (const [body, log] of chips.sort((a, b) => largest(b[0]) - largest(a[0])).slice(0, MOST_CHIPS))
       this.#chip(context, body, log, colour, taken);
-    if (chips.length === 0 && selected !== null) this.#name(context, selected);
+    if (chips.length === 0 && selected !== null)
+      this.#name(context, this.gestures.parts.chosen ? this.bodies.part : selected);
     canvas.dispatchEvent(new Event("painted"));
   }
 
@@ -239,6 +242,7 @@ export class BodyView {
     };
     if (hovered !== null && hovered !== selected) light(hovered, ink, 2);
     if (selected !== null) light(selected, ink, 2.2);
+    if (this.gestures.parts.chosen) light(this.bodies.part, channels(GHOST), 3);
     for (const [body, log] of this.#flash)
       (light(body, channels(CHANGED), 4), lit.push(...this.#arrow(body, -log, CHANGED, true)));
     for (const line of [this.gestures.now?.first, this.gestures.now?.second])

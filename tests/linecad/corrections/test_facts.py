@@ -38,6 +38,19 @@ def test_facts_name_lines_by_their_ids(applied, anchor, meet):
     assert applied(meet, place, foot).facts == (ToldFact(meet, (0, 5)), ToldFact(place, (2, 7)), ToldFact(foot, (1,)))
 
 
+def test_lines_of_a_part_go_with_it_and_those_that_are_gone_are_left_out(applied, anchor):
+    part = (anchor(2), anchor(3), anchor(4))
+    place = PlaceAt(anchor(2), anchor(7), 0.25, part)
+    assert applied(place).facts == (ToldFact(place, (2, 7), part=(2, 3, 4)),)
+    lines = applied(Delete(anchor(3)), place)
+    assert (lines.facts, lines.notes) == ((ToldFact(place, (2, 7), part=(2, 4)),), ())
+    assert applied(place, Delete(anchor(4))).facts == (ToldFact(place, (2, 7), part=(2, 3)),)
+    assert (lines.parts, lines.cuts) == ({part}, frozenset())
+    assert applied(place).differs_at_once(applied())
+    assert not applied(place).differs_in_places(applied()), "which lines are one body depends on it"
+    assert said(place).startswith("a part of it stands here at (")
+
+
 def test_what_is_taken_back_is_not_said_any_more(applied, anchor, meet):
     other = Cut((anchor(2), anchor(7)))
     facts, noted = notes(applied, meet, other, Withdraw(meet))

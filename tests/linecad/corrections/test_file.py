@@ -79,6 +79,7 @@ facts = st.one_of(
     st.builds(Foot, anchors, points),
     st.builds(Cut, pairs),
     st.builds(PlaceAt, anchors, anchors, st.floats(-5, 5)),
+    st.builds(PlaceAt, anchors, anchors, st.floats(-5, 5), st.lists(anchors, min_size=1, max_size=5).map(tuple)),
 )
 places = st.builds(Place, points, anchors | st.builds(FaceAnchor, points, st.integers(0, 6)))
 parts = st.one_of(

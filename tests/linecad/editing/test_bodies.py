@@ -8,6 +8,7 @@ from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.bodies import NODES, at_once
 from linecad.options import Options
 from linecad.ties.placing import place_bodies
+from linecad.ties.sides import Part
 from solver.options import SolveOptions
 
 
@@ -181,6 +182,117 @@ class TestFacts:
         freed = solved.edit(op="withdraw", edit=1)
         assert freed["contradiction"] is None
         assert freed["lines"] == there["lines"]
+
+
+def depth_at_middle(state, number):
+    """The camera depth at which a line passes nearest to the ray of the middle of its segment."""
+    line = next(each for each in state["lines"] if each["id"] == number)
+    middle = np.mean(line["segment"], axis=0)
+    ray = np.linalg.inv(np.array(state["K"])) @ [*middle, 1.0] @ np.array(state["R_cam_from_world"])
+    start, end = np.array(line["ends"])
+    along = (end - start) / np.linalg.norm(end - start)
+    across = ray - (ray @ along) * along
+    return across @ (start - (start @ along) * along) / (across @ across)
+
+
+def half_of(state, body):
+    """The ids of the lines of a body in the model that are in the lower half of it, and those of the others."""
+    own = [line for line in lines_of(state, body) if line["ends"] is not None]
+    height = {line["id"]: -np.mean(line["ends"], axis=0)[2] for line in own}
+    ordered = sorted(height, key=lambda number: height[number])
+    return ordered[: len(own) // 2], ordered[len(own) // 2 :]
+
+
+def place_part(state, factor=1.0):
+    """The word that half of the largest body stands so many times as far as it does."""
+    half, rest = half_of(state, 0)
+    now = np.log(depth_at_middle(state, half[0]) / depth_at_middle(state, rest[0]))
+    return {"op": "place", "line": half[0], "to": rest[0], "part": half, "log_ratio": float(now + np.log(factor))}
+
+
+class TestParts:
+    def test_a_part_moves_at_once_and_the_rest_of_its_body_stays(self, solved):
+        before = solved.state()
+        half, rest = half_of(before, 0)
+        there = solved.edit(**place_part(before, 1.5))
+        body = {line["id"]: line["body"] for line in there["lines"]}
+        assert {body[line] for line in half} == {2}
+        assert {body[line] for line in rest} == {0}
+        for line in half:
+            assert depths(there, 2)[line] == pytest.approx(1.5 * depths(before, 0)[line], rel=0.02)
+        for line in rest:
+            assert depths(there, 0)[line] == pytest.approx(depths(before, 0)[line])
+        assert [each["id"] for each in there["bodies"] if each["reference"]] == [0]
+        assert {plane["body"] for plane in there["planes"]} <= {0, 1, 2, 3}, "the ground comes last"
+        fact = there["facts"][0]
+        assert (fact["words"], fact["holds"], fact["bodies"]) == ("a part of it stands here", True, [2, 0])
+        assert "part" not in fact
+        assert [each["body"] for each in there["moved"] if each["asked"]] == [2]
+
+    def test_the_scene_behind_it_parts_the_same_lines(self, solved):
+        before = solved.state()
+        half, rest = half_of(before, 0)
+        there = solved.edit(**place_part(before, 1.5))
+        solved.solving.answer()
+        built = solved.state()
+        assert built["solve"]["fresh"]
+        body = {line["id"]: line["body"] for line in built["lines"]}
+        assert {body[line] for line in half} == {2}
+        assert {body[line] for line in rest} == {0}
+        assert [fact["holds"] for fact in built["facts"]] == [True]
+        ratios = []
+        for lines, number in ((half, 2), (rest, 0)):
+            was, now = depths(there, number), depths(built, number)
+            common = [line for line in lines if line in was and line in now]
+            ratios.append(np.median([np.linalg.norm(now[line][0]) / np.linalg.norm(was[line][0]) for line in common]))
+        assert ratios[0] == pytest.approx(ratios[1], rel=0.02), "both by the scale of the model, if that changed"
+
+    def test_undo_makes_one_body_of_it_again(self, solved):
+        before = solved.state()
+        there = solved.edit(**place_part(before, 1.5))
+        solved.edit(**place(there, 0.5))  # there is a later word
+        solved.change("undo")
+        back = solved.change("undo")
+        assert back["lines"] == before["lines"]
+
+    def test_what_would_move_has_the_number_behind_the_ground(self, solved):
+        state = solved.state()
+        told = solved.post("preview", base_version=solved.version, edit=place_part(state, 1.5)).json()
+        assert list(told["moves"]) == ["3"]
+        assert told["moves"]["3"] == pytest.approx(np.log(1.5), abs=0.02)
+
+    def test_a_part_that_is_all_of_its_body_is_the_body(self, solved):
+        state = solved.state()
+        edit = {**place(state, 0.5), "part": [line["id"] for line in lines_of(state, 1)]}
+        there = solved.edit(**edit)
+        assert len(there["bodies"]) == 2
+        assert [moved["body"] for moved in there["moved"]] == [1]
+
+    def test_what_the_part_is_placed_against_is_none_of_it(self, solved):
+        edit = place_part(solved.state())
+        text = solved.refused(422, "edit", edit={**edit, "to": edit["part"][1], "log_ratio": 1.0})
+        assert "of one body" in text
+        assert "expected a list of 1" in solved.refused(422, "edit", edit={**edit, "part": []})
+
+    def test_parts_are_told_by_lines_the_most_doubtful_first(self, solved, monkeypatch):
+        assert solved.get("parts/0").json() == [], "nothing is weak here"
+        assert solved.get("parts/77").json() == []
+        sides = [Part(np.array([0, 1]), 0.2), Part(np.array([2]), 0.7)]
+        monkeypatch.setattr("linecad.editing.body_document.parts_of", lambda *_: sides)
+        ids = solved.session.now().model.bodies.ids
+        expected = [{"lines": list(ids[:2]), "probability": 0.2}, {"lines": [ids[2]], "probability": 0.7}]
+        assert solved.get("parts/0").json() == expected
+
+    def test_places_of_a_part_are_asked_for_by_its_lines(self, solved):
+        state = solved.state()
+        half, _ = half_of(state, 1)
+        places = solved.post("part", lines=half).json()
+        for place in places:
+            assert 3 in place["bodies"], "the number behind the ground"
+            assert 1 not in place["bodies"] or len(place["bodies"]) > 1
+        assert solved.post("part", lines=[]).json() == []
+        assert solved.post("part", lines=[9999]).json() == []
+        assert solved.post("part", lines=[line["id"] for line in lines_of(state, 1)]).json() == [], "that is the body"
 
 
 class TestPreview:

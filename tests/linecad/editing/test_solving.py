@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linecad.pipeline
-from linecad.corrections.edits import Corrections
+from linecad.corrections.edits import Corrections, PlaceAt
 from linecad.depth.depth_map import DepthMap
 from linecad.editing.document import solve_of
 from linecad.editing.run import EditOptions, edit
@@ -93,6 +93,29 @@ def test_a_solve_tells_its_stages_to_the_end(made_photo, task):
     assert any(stage.startswith("placing") for stage in stages)
     assert stages[-1] == "building planes and faces"
     assert answer.seconds > answer.made.solution.seconds
+
+
+def test_what_is_said_of_bodies_needs_no_second_look_at_lines(made_photo, monkeypatch):
+    """A part that is placed by itself parts bodies anew, on the line graph that is known."""
+    corrections = Corrections(made_photo.name, made_photo.width, made_photo.height)
+    session = Session(made_photo, find_segments(made_photo.grey), Options(), corrections, lambda _: None)
+    solver = TaskSolver(made_photo, Options())
+    session.take(solver.answer(session.task(session.now().version), lambda _: None))
+    bodies = session.now().model.bodies
+    own = [bodies.ids[line] for line in np.flatnonzero(bodies.body == 0)]
+    part = tuple(session.editing.anchor(line) for line in own[:6])
+    fact = PlaceAt(part[0], session.editing.anchor(own[-1]), 0.4, part)
+    session.edit(session.now().version, lambda _: fact)
+    monkeypatch.setattr("linecad.editing.solving.prepare", None)
+    session.take(solver.answer(session.task(session.now().version), lambda _: None))
+    assert not session.now().error
+    there = session.now().model.bodies
+    assert len({there.body_of(line) for line in own[:6]}) == 1
+    assert there.body_of(own[0]) != there.body_of(own[-1])
+    anew = TaskSolver(made_photo, Options())
+    monkeypatch.undo()
+    answer = anew.answer(session.task(session.now().version), lambda _: None)
+    assert answer.made.scene.lines.ends.tolist() == session.now().model.scene.lines.ends.tolist()
 
 
 def test_a_stage_is_told_until_the_search_begins(made_photo):

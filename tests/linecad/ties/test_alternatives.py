@@ -83,6 +83,5 @@ def test_a_block_that_two_ties_hold_to_the_reference_moves_as_a_whole():
     ties = Ties(
         np.array([[0, 1], [0, 2], [1, 2]]), np.zeros(3), np.full(3, 0.02), np.array([2.0, 2.0, 9.0]), np.full(3, -1)
     )
-    placed = SimpleNamespace(log_scale=np.zeros(3))
-    clusters = _clusters(SimpleNamespace(ties=ties, placement=placed))
+    clusters = _clusters(SimpleNamespace(ties=ties, log_scale=np.zeros(3)))
     assert [np.flatnonzero(cluster).tolist() for cluster in clusters] == [[1, 2], [0, 1, 2]]

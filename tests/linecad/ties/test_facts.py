@@ -259,7 +259,9 @@ class TestCuts:
         edges = [(i, j) for i in range(count) for j in range(i + 1, count) if random.random() < 0.6]
         weight = random.uniform(0.5, 3, len(edges))
         graph = build_links(count, edges, weight=weight)
-        body = cut_bodies(one_body(count), graph, np.zeros(count), [(0, count - 1)]).body
+        line = Anchor(((0.0, 0.0), (1.0, 0.0)), 0)
+        cut = ToldFact(Cut((line, line)), (0, count - 1))
+        body = cut_bodies(one_body(count), graph, np.zeros(count), [cut]).body
         assert body[0] == 0
         assert body[-1] == 1
         ends = np.array(edges)

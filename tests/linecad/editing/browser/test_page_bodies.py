@@ -1,5 +1,7 @@
 """Bodies on the page: selected in both views, and what a person says of them by real clicks, drags and keys."""
 
+import json
+
 import numpy as np
 import pytest
 
@@ -444,3 +446,94 @@ def test_an_export_waits_for_the_scene_behind_a_fact(told, tmp_path):
     np.testing.assert_allclose(scene.lines.ends[moved], line_now(now, line)["ends"])
     assert not np.allclose(scene.lines.ends[moved], line["ends"], rtol=0.01)
     told.press("Control+z")
+@pytest.fixture
+def parted(told):
+    """The page where the lower half of the larger body may stand by itself: in the made scene all holds together."""
+    own = [line for line in told.state["lines"] if line["body"] == NEAR and line["ends"]]
+    own.sort(key=lambda line: np.mean(line["ends"], axis=0)[2])
+    lines = [line["id"] for line in own[: len(own) // 2]]
+    answer = json.dumps([{"lines": lines, "probability": 0.3}])
+    pattern = f"**/api/parts/{NEAR}"
+    told.page.route(pattern, lambda route: route.fulfill(body=answer, content_type="application/json"))
+    yield told, lines
+    told.page.unroute(pattern)
+
+
+def middle_depths(state, numbers):
+    """The camera depth of the middle of each of some lines."""
+    found = {}
+    for number in numbers:
+        line = next(each for each in state["lines"] if each["id"] == number)
+        found[number] = depth_at(state, line, np.mean(line["segment"], axis=0))
+    return found
+
+
+def test_a_part_of_the_largest_body_is_moved_by_keys_and_the_rest_stays(parted):
+    told, lines = parted
+    before = told.state
+    rest = [line["id"] for line in before["lines"] if line["body"] == NEAR and line["ends"] and line["id"] not in lines]
+    told.press("b")
+    told.press("Shift+PageDown")
+    told.press("Shift+D")
+    assert told.run("linecad.bodies.gestures.now") is None, "the largest body as a whole stays"
+    told.press("Shift+K")
+    told.wait("linecad.bodies.gestures.parts.chosen !== null")
+    assert told.run("linecad.bodies.bodies.linesOf.get(linecad.bodies.bodies.part).length") == len(lines)
+    assert "Part of Body A" in told.run("linecad.bodies.bodies.nameOf(linecad.bodies.bodies.part)")
+    told.press("Shift+D")
+    told.wait("linecad.bodies.gestures.now?.snaps !== undefined")
+    for _ in range(5):
+        told.press("ArrowUp")
+    wait_for_effect(told)
+    assert "Part of Body A" in bar(told)
+    assert list(told.run("linecad.bodies.gestures.moves")) == [str(len(before["bodies"]) + 1)]
+    told.press("Enter")
+    assert facts(told) == ["place"]
+    now = told.state
+    was, there = middle_depths(before, lines + rest), middle_depths(now, lines + rest)
+    stays = np.median([there[line] / was[line] for line in rest])  # a scene built anew may have another unit
+    for line in lines:
+        assert np.log(there[line] / was[line] / stays) == pytest.approx(0.05, abs=0.02)
+    for line in rest:
+        assert there[line] == pytest.approx(stays * was[line], rel=0.01)
+    body = {line["id"]: line["body"] for line in now["lines"]}
+    assert {body[line] for line in lines} == {FAR + 1}
+    assert {body[line] for line in rest} == {NEAR}
+    assert told.run("linecad.bodies.gestures.parts.chosen") is None
+    assert "a part of it stands here: Body C, Body A" in told.page.locator("#bodies-panel .facts li").inner_text()
+
+
+def test_parts_are_chosen_in_the_panel_and_lie_over_the_photo(parted):
+    told, lines = parted
+    told.press("b")
+    told.press("Shift+PageDown")
+    row = told.page.locator("#bodies-panel .parts button")
+    row.wait_for()
+    assert f"{len(lines)} lines, belongs here: 30 %" in row.inner_text()
+    row.click()
+    told.settle()
+    assert told.run("linecad.bodies.gestures.parts.chosen.lines") == lines
+    row = told.page.locator("#bodies-panel .parts button")
+    row.wait_for()
+    assert row.get_attribute("aria-pressed") == "true"
+    told.press("Shift+N")
+    told.wait("linecad.bodies.gestures.now?.places !== null")
+    assert "Place 1 of" in bar(told) or "Nothing speaks for another place" in bar(told)
+    told.press("Escape")
+    told.press("Shift+K")
+    assert told.run("linecad.bodies.gestures.parts.chosen") is None, "behind the last part comes the whole body"
+    told.press("Shift+K")
+    told.wait("linecad.bodies.gestures.parts.chosen !== null")
+    told.press("Shift+PageDown")
+    assert told.run("linecad.bodies.gestures.parts.chosen") is None, "another body has other parts"
+    assert told.run("linecad.bodies.bodies.linesOf.has(linecad.bodies.bodies.part)") is False
+
+
+def test_what_holds_together_has_no_part(told):
+    told.press("Shift+K")
+    assert "Click a body first" in told.page.locator("#messages").inner_text()
+    told.press("b")
+    told.press("Shift+PageDown")
+    told.press("Shift+PageDown")
+    told.press("Shift+K")
+    told.page.get_by_text("This body holds together well").wait_for()
