@@ -24,7 +24,8 @@ from linecad.lines.segments import find_segments
 from linecad.options import Options
 
 try:
-    from linecad.editing.server import Editor, listen, serve
+    from linecad.editing.listening import listen, serve
+    from linecad.editing.server import Editor
 except ModuleNotFoundError as missing:
     raise EditorError(
         f"the page needs the library {missing.name}; install it with: pip install 'linecad[editor]'"

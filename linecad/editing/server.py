@@ -1,13 +1,10 @@
-"""The server of the page: Starlette on 127.0.0.1, its routes and how it starts and ends."""
+"""The routes of the page's server, by Starlette."""
 
-import os
-import socket
 import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, Protocol
 
-import uvicorn
 from starlette.applications import Starlette
 from starlette.background import BackgroundTask
 from starlette.concurrency import run_in_threadpool
@@ -24,7 +21,7 @@ from linecad.editing.depth_layers import layer_of
 from linecad.editing.document import document_of, solve_of
 from linecad.editing.downloads import Download, download_of
 from linecad.editing.edits import proposal_to_json, read_edit
-from linecad.editing.guard import HOST, Guard, TooLargeError
+from linecad.editing.guard import Guard, TooLargeError
 from linecad.editing.labelling import labels_to_json
 from linecad.editing.saving import Saver
 from linecad.editing.session import Session
@@ -46,7 +43,6 @@ MEDIA_TYPES = {
 LABELS = "labels"  # beside the formats of scenes
 LONGEST_NUMBER = 16  # digits of an answer
 LONGEST_TAB = 100  # characters of a tab's name
-STOP_S = 3  # that open requests get when the server ends
 
 
 class Solver(Protocol):
@@ -279,48 +275,6 @@ def page_files() -> dict[str, bytes]:
     if "index.html" not in files:
         raise EditorError("the files of the page are missing; install linecad again")
     return files
-
-
-def listen(port: int) -> socket.socket:
-    """A socket on 127.0.0.1 alone; port 0 takes a free one. EditorError when the port is taken."""
-    listener = socket.socket()
-    try:
-        if os.name == "posix":  # else a port is taken for a minute after its last connection; elsewhere it means more
-            listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listener.bind((HOST, port))
-        listener.listen()
-    except OSError as error:
-        listener.close()
-        raise EditorError(
-            f"port {port} cannot be used: {error.strerror}; leave out --port to take a free one"
-        ) from None
-    return listener
-
-
-def serve(app: Guard, listener: socket.socket, on_ready: Callable[[], None]) -> None:
-    """Serve until Ctrl-C or a request to end; `on_ready` is called when the first request can come."""
-    config = uvicorn.Config(
-        app,
-        log_level="warning",
-        access_log=False,
-        server_header=False,
-        proxy_headers=False,
-        ws="none",
-        lifespan="off",
-        timeout_graceful_shutdown=STOP_S,
-    )
-    _Server(config, on_ready).run(sockets=[listener])
-
-
-class _Server(uvicorn.Server):
-    def __init__(self, config: uvicorn.Config, on_ready: Callable[[], None]) -> None:
-        super().__init__(config)
-        self.on_ready = on_ready
-
-    async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Tell when the server listens."""
-        await super().startup(sockets)
-        self.on_ready()
 
 
 def _post(answer: Callable[[Node], Response]) -> Callable[[Request], Any]:

@@ -116,8 +116,10 @@ def next_gesture(
         fact = placed(session, bodies, thing, line, move)
         gain = shown_gain(session, bodies, points, thing, fact)
         tried.append((gain, bodies.ids[line], f"{word}{' of a part' * thing.is_part}", fact))
-    gain, line, word, fact = max(tried, key=lambda each: each[0], default=(0.0, -1, "", None))
-    if fact is None or gain < least:
+    if not tried:
+        return None
+    gain, line, word, fact = max(tried, key=lambda each: each[0])
+    if gain < least:
         return None
     moved.append(line)
     return word, fact
@@ -125,7 +127,7 @@ def next_gesture(
 
 def shown_gain(session: Session, bodies: ShownBodies, points: Points, thing: Thing, fact: PlaceAt) -> float:
     """How many more points are right where the page shows things before the fact is taken."""
-    moves, conflict, refused = session.preview(session.now().version, lambda _: edit)
+    moves, conflict, refused = session.preview(session.now().version, lambda _: fact)
     if conflict is not None or refused is not None:
         return -np.inf
     which, off = errors(bodies, points)

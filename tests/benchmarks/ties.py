@@ -142,7 +142,8 @@ def place_bodies(photo: Judged, candidates: list[Candidate], depth: DepthMap | N
     told = np.zeros(len(setting.graph.edges), bool)
     seams = tuple(seam for seam, _ in photo.seams)
     heard = hear(setting, candidates, depth)
-    evidence = Evidence(setting, tuple(candidates), seams, photo.pieces, heard, real=told, fake=told)
+    reference = int(setting.bodies.size.argmax())
+    evidence = Evidence(setting, tuple(candidates), seams, photo.pieces, heard, told, told, reference)
     options = SolveOptions(node_limit=FEW_NODES if photo.is_part else None)
     return linecad.ties.placing.place_bodies(evidence, options)
 

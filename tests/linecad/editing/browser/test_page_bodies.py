@@ -446,6 +446,8 @@ def test_an_export_waits_for_the_scene_behind_a_fact(told, tmp_path):
     np.testing.assert_allclose(scene.lines.ends[moved], line_now(now, line)["ends"])
     assert not np.allclose(scene.lines.ends[moved], line["ends"], rtol=0.01)
     told.press("Control+z")
+
+
 @pytest.fixture
 def parted(told):
     """The page where the lower half of the larger body may stand by itself: in the made scene all holds together."""
