@@ -11,6 +11,7 @@ from linecad.ties.alternatives import other_places, other_places_of
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.candidates import find_candidates
 from linecad.ties.evidence import Evidence, find_evidence, side_of
+from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces, find_pieces
 from linecad.ties.placing import place_bodies
 from linecad.ties.seams import find_seams
@@ -30,9 +31,10 @@ def evidence(row, build_setting):
     """All of it one body, as where a seam was not seen."""
     none = np.zeros(len(row.graph.edges), bool)
     setting = build_setting(row, body=np.zeros(len(row.part), int))
-    seams = find_seams(setting)
-    pieces = find_pieces(setting, seams)
-    return Evidence(setting, tuple(find_candidates(setting)), tuple(seams), pieces, "", none, none, 0)
+    looks = Looks(setting)
+    seams = find_seams(setting, looks)
+    pieces = find_pieces(setting, seams, looks)
+    return Evidence(setting, tuple(find_candidates(setting, looks)), tuple(seams), pieces, "", none, none, 0)
 
 
 @pytest.fixture(scope="module")
