@@ -1,6 +1,7 @@
 """Bodies on the page: selected in both views, and what a person says of them by real clicks, drags and keys."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -502,7 +503,9 @@ def test_a_part_of_the_largest_body_is_moved_by_keys_and_the_rest_stays(parted):
     assert {body[line] for line in lines} == {FAR + 1}
     assert {body[line] for line in rest} == {NEAR}
     assert told.run("linecad.bodies.gestures.parts.chosen") is None
-    assert "a part of it stands here: Body C, Body A" in told.page.locator("#bodies-panel .facts li").inner_text()
+    shown = told.page.locator("#bodies-panel .facts li").inner_text()
+    # The letters follow the shares of the photo, and the scene behind the fact may be built by now.
+    assert re.match("a part of it stands here: Body (A, Body C|C, Body A)", shown)
 
 
 def test_parts_are_chosen_in_the_panel_and_lie_over_the_photo(parted):

@@ -9,6 +9,8 @@ from linecad.corrections.file import SUFFIX, read_corrections
 
 pytestmark = pytest.mark.thorough  # every day the server is asked what the page asks it (test_face_edits.py)
 
+ON_GROUND = ((300, 940), (700, 940), (700, 1040), (300, 1040))  # px of the sample street
+
 
 def corrections(screen):
     """The edits in the file, once all are written."""
@@ -67,7 +69,7 @@ def test_a_lasso_says_what_a_part_of_the_photo_shows(screen):
 
 def test_clicks_are_corners_of_an_area_that_enter_closes(screen):
     take(screen, "Shift+A", "ground")
-    for place in ((60, 60), (260, 60), (260, 160)):
+    for place in ON_GROUND[:3]:
         screen.click(place)
     screen.press("Enter")
     (edit,) = corrections(screen)
@@ -135,7 +137,7 @@ def clear_place(state, line):
 
 def test_undo_takes_back_a_corner_before_what_was_sent(screen):
     take(screen, "Shift+A", "ground")
-    for place in ((60, 60), (260, 60), (260, 160), (60, 160)):
+    for place in ON_GROUND:
         screen.click(place)
     screen.press("Control+z")
     screen.press("Enter")
