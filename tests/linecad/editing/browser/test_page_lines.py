@@ -322,8 +322,14 @@ class TestMoving:
         now = screen.run("({...linecad.photo.viewport})")
         assert (now["x"], now["y"], now["scale"]) == (before["x"] - 60, before["y"], before["scale"])
         screen.page.wait_for_timeout(300)  # another gesture
-        for step in (4, 20, 70):
-            screen.page.mouse.wheel(0, step)
+        # In one go: a slow machine would put a pause between them, after which the last is a wheel's.
+        screen.run(
+            """() => {
+              const canvas = document.querySelector("#overlay-canvas");
+              for (const deltaY of [4, 20, 70])
+                canvas.dispatchEvent(new WheelEvent("wheel", { deltaY, bubbles: true, cancelable: true }));
+            }"""
+        )
         screen.settle()
         now = screen.run("({...linecad.photo.viewport})")
         assert (now["y"], now["scale"]) == (before["y"] - 94, before["scale"])
