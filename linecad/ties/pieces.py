@@ -41,10 +41,9 @@ class Pieces:
         """(Q,) lines of each."""
         return np.bincount(self.piece[self.piece >= 0], minlength=self.count)
 
-    @property
-    def body_with_ground(self) -> Int:
-        """(Q + 1,) the body of each, and last the ground's number among bodies."""
-        return np.append(self.body, self.body.max(initial=-1) + 1)
+    def body_with_ground(self, bodies: int) -> Int:
+        """(Q + 1,) the body of each, and last the number of the ground, which is that of bodies: some have no piece."""
+        return np.append(self.body, bodies)
 
     def of(self, lines: Int) -> Int:
         """The pieces that some lines are in."""
@@ -98,12 +97,12 @@ def _asks_for_the_same(one: Candidate, other: Candidate) -> bool:
     return abs(one.log_ratio - other.log_ratio) < SAME_RATIO and not two_planes
 
 
-def ties_between_bodies(pieces: Pieces) -> tuple[Ties, list[Candidate]]:
-    """What ties pieces of different bodies, as ties of these bodies, and the candidate that each is of.
+def ties_between_bodies(pieces: Pieces, count: int) -> tuple[Ties, list[Candidate]]:
+    """What ties pieces of different bodies, as ties of the `count` bodies, and the candidate that each is of.
 
     Where several pieces of two bodies ask for one ratio they see one thing, and the heaviest of their ties is it.
     """
-    ties, body = weigh_candidates(pieces.candidates, pieces.size), pieces.body_with_ground
+    ties, body = weigh_candidates(pieces.candidates, pieces.size), pieces.body_with_ground(count)
     heaviest = np.argsort(-ties.weight, kind="stable")
     worth = worth_a_tie(pieces.candidates)
     told = [as_of_bodies(worth[number], body) for number in heaviest.tolist()]

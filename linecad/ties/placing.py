@@ -238,7 +238,7 @@ def tie_up(evidence: Evidence, facts: Sequence[ToldFact], told: FactTies) -> tup
     sure, edges = _sure(setting, evidence.real)
     told.check(facts, sure, setting.graph.edges[edges])
     kept = kept_candidates(evidence, told.cuts)
-    between, of_pieces = ties_between_bodies(evidence.pieces)
+    between, of_pieces = ties_between_bodies(evidence.pieces, setting.bodies.count)
     stands = [number for number, each in enumerate(of_pieces) if not _is_cut(each, told.cuts)]
     found, candidates = mean_of_looks(
         (weigh_candidates(kept, setting.bodies.size), worth_a_tie(kept)),

@@ -91,7 +91,7 @@ def _is_of_part(candidate: Candidate, pieces: Pieces, of_piece: Int, part: int) 
 
     By the most telling one between pieces of the same two bodies that asks for the same.
     """
-    ground, body = pieces.count, pieces.body_with_ground
+    ground, body = pieces.count, pieces.body_with_ground(part)  # among the bodies before
     best, weight = ground, -np.inf
     for each in pieces.candidates:
         told = as_of_bodies(each, body)
@@ -105,7 +105,7 @@ def _is_of_part(candidate: Candidate, pieces: Pieces, of_piece: Int, part: int) 
 
 def _between(pieces: Pieces, part: int) -> list[Candidate]:
     """The candidates of a part, as found between pieces; the best of those that ask for one ratio."""
-    body = pieces.body_with_ground
+    body = pieces.body_with_ground(part + 1)
     best_first = sorted(pieces.candidates, key=lambda each: -above_chance(each))
     told = [each for candidate in best_first if (each := as_of_bodies(candidate, body)) and part in each.bodies]
     return sorted((told[number] for number in distinct(told)), key=lambda each: each.bodies)

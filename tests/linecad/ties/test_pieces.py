@@ -61,7 +61,7 @@ TWO = np.array([0, 1, 0, 2])  # the bodies of pieces 0 to 2, and the ground
 def between(*rows, piece=(0, 1, 2)):
     """What ties bodies 0 and 1 where pieces of 40 lines have such candidates: (pieces, log ratio, log-odds) each."""
     told = [Candidate("bundle", pieces, ratio, -1, worth_features(log_odds)) for pieces, ratio, log_odds in rows]
-    return ties_between_bodies(Pieces(np.repeat(piece, 40), TWO[:-1], told))
+    return ties_between_bodies(Pieces(np.repeat(piece, 40), TWO[:-1], told), 2)
 
 
 def worth_features(log_odds):
@@ -83,6 +83,12 @@ def test_what_ties_pieces_of_one_body_ties_no_bodies():
     assert len(between()[0]) == 0
 
 
+def test_a_body_without_pieces_is_not_the_ground():
+    told = [Candidate("bundle", (0, 1), 0.3, -1, worth_features(2.0))]
+    ties, _ = ties_between_bodies(Pieces(np.zeros(40, int), np.array([0]), told), 2)
+    assert ties.bodies.tolist() == [[0, 2]]
+
+
 def test_of_pieces_that_ask_for_one_ratio_the_heaviest_tells():
     ties, told = between(((0, 1), 0.300, 2.0), ((1, 2), -0.305, 3.0))
     assert ties.log_ratio.tolist() == [0.305]
@@ -93,7 +99,7 @@ def test_of_pieces_that_ask_for_one_ratio_the_heaviest_tells():
 def test_without_seams_pieces_see_what_bodies_see(one_body):
     parted = replace(one_body, bodies=RigidBodies(np.arange(len(one_body.log_depth)) % 2, 2))
     found = find_pieces(parted, [], Looks(parted))
-    ties, _ = ties_between_bodies(found)
+    ties, _ = ties_between_bodies(found, 2)
     wholes = weigh_candidates(found.candidates, parted.bodies.size)
     assert len(ties) > 0
     assert sorted(ties.log_ratio.tolist()) == sorted(wholes.log_ratio.tolist())
