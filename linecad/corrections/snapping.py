@@ -132,17 +132,18 @@ def _with(drawn: Float, held: list[int], target: Float) -> Float:
 def _crossed(ends: Float, end: int, lines: LineTable, reach: float, line: Float | None = None) -> Snap | None:
     """Where the line of `ends` crosses another segment nearest to one end of it, within `reach` px.
 
-    A segment that stops short of it by `reach` is crossed at the foot too. `line` tells the direction, where the ends
-    may have met.
+    A segment whose end is within `reach` of the place is crossed there too, however slanted it is. `line` tells the
+    direction, where the ends may have met.
     """
     if len(lines.ids) == 0:
         return None
     base = ends if line is None else line
     place, beside = segment_coordinates(lines.ends, base)  # (N, 2)
     turn = beside[:, 1] - beside[:, 0]
-    steep = np.abs(turn) > 0.05 * np.linalg.norm(lines.ends[:, 1] - lines.ends[:, 0], axis=1)
+    length = np.linalg.norm(lines.ends[:, 1] - lines.ends[:, 0], axis=1)
+    steep = np.abs(turn) > 0.05 * length
     share = np.where(steep, -beside[:, 0] / np.where(steep, turn, 1.0), 0.0)
-    margin = reach / np.maximum(np.abs(turn), 1e-9)
+    margin = reach / np.maximum(length, 1e-9)
     there = steep & (share >= -margin) & (share <= 1 + margin)
     at = place[:, 0] + share * (place[:, 1] - place[:, 0])
     own = float(segment_coordinates(ends[end], base)[0])

@@ -23,38 +23,38 @@ LARGEST_MARGIN = 20.0
 TOLD = 0.97  # probability of a place that a person gave: nobody measured how often people are wrong
 FARTHEST_OFF = 6.0  # widths of a depth map
 # Logistic regression on bodies of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = 0.4945
+AT_ONCE = -0.0484
 LOG_ODDS: dict[str, float] = {
-    "margin": 0.0423,
-    "root of margin": 0.1742,
-    "lines of the body": -0.7468,
-    "lines of the piece": -0.6290,
-    "lines of the other": -0.6028,
-    "weight": 2.2564,
-    "weight of all": 0.6294,
-    "kinds": 0.2221,
-    "weakest": 0.9509,
-    "by a bundle": 0.0735,
-    "by the ground": 0.0913,
-    "bodies": -0.2959,
+    "margin": 0.0817,
+    "root of margin": 0.3850,
+    "lines of the body": -0.7887,
+    "lines of the piece": -0.6889,
+    "lines of the other": -0.2550,
+    "weight": 2.7536,
+    "weight of all": 0.1207,
+    "kinds": 0.1320,
+    "weakest": 0.8382,
+    "by a bundle": -0.0774,
+    "by the ground": 0.1080,
+    "bodies": -0.2642,
 }
 # The same where a depth map was heard.
-WITH_MAP_AT_ONCE = 0.8300
+WITH_MAP_AT_ONCE = 0.0750
 WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "margin": 0.0912,
-    "root of margin": 0.4182,
-    "lines of the body": -0.1821,
-    "lines of the piece": -1.1263,
-    "lines of the other": -0.2631,
-    "weight": 1.5551,
-    "weight of all": 0.6108,
-    "kinds": -0.0298,
-    "weakest": 0.2533,
-    "by a bundle": -0.2312,
-    "by the ground": -0.1358,
-    "bodies": -0.2096,
-    "map's word": 0.4827,
-    "off the map": -0.3055,
+    "margin": 0.1075,
+    "root of margin": 0.5132,
+    "lines of the body": -1.0235,
+    "lines of the piece": 0.0746,
+    "lines of the other": 0.1311,
+    "weight": 2.3338,
+    "weight of all": 0.1174,
+    "kinds": -0.0021,
+    "weakest": -0.0069,
+    "by a bundle": -0.2902,
+    "by the ground": -0.0784,
+    "bodies": -0.3271,
+    "map's word": 0.1935,
+    "off the map": -0.2591,
 }
 
 

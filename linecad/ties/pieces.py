@@ -1,22 +1,24 @@
 """Pieces: the bodies of a photo, parted at all of their seams, and the evidence between these.
 
 What other bodies and the ground say of either side of a seam, the body as a whole cannot hear. So every body is parted,
-candidates are looked for between the pieces, and the scene program's local search may move them: a seam whose sides it
-moves apart is doubtful.
+and candidates are looked for between the pieces. They are a second look at where the bodies stand; and the scene
+program's local search may move the pieces: a seam whose sides it moves apart is doubtful.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.candidates import SAME_RATIO, Candidate, find_candidates
 from linecad.ties.looks import Looks
 from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting
-from linecad.ties.weights import weigh_candidates
+from linecad.ties.weights import weigh_candidates, worth_a_tie
 from solver.bodies.local_search import climb
+from solver.bodies.ties import Ties
 
 SAME_PLACE = 0.03  # log scale within which pieces are still where they stood to each other
 
@@ -39,6 +41,10 @@ class Pieces:
         """(Q,) lines of each."""
         return np.bincount(self.piece[self.piece >= 0], minlength=self.count)
 
+    def body_with_ground(self, bodies: int) -> Int:
+        """(Q + 1,) the body of each, and last the number of the ground, which is that of bodies: some have no piece."""
+        return np.append(self.body, bodies)
+
     def of(self, lines: Int) -> Int:
         """The pieces that some lines are in."""
         return np.unique(self.piece[lines])
@@ -60,6 +66,51 @@ def find_pieces(setting: Setting, seams: list[Seam], looks: Looks) -> Pieces:
     """The pieces of all bodies, and what ties them; `looks` are those at the photo."""
     piece, body = part_bodies(setting.bodies, seams)
     return Pieces(piece, body, find_candidates(replace(setting, bodies=RigidBodies(piece, len(body))), looks))
+
+
+def as_of_bodies(candidate: Candidate, body: Int) -> Candidate | None:
+    """A candidate of two pieces as one of their bodies (Q + 1,), the ground's last; None of pieces of one body."""
+    first, second = (int(body[piece]) for piece in candidate.bodies)
+    if first == second:
+        return None
+    if first < second:
+        return replace(candidate, bodies=(first, second))
+    return replace(candidate, bodies=(second, first), log_ratio=-candidate.log_ratio)
+
+
+def distinct(candidates: Iterable[Candidate | None]) -> list[int]:
+    """The places of those candidates that are the first of their two bodies to ask for their ratio.
+
+    As in one look at bodies, only planes with other normals may repeat a ratio.
+    """
+    chosen: dict[tuple[int, int], list[tuple[int, Candidate]]] = {}
+    for number, candidate in enumerate(candidates):
+        if candidate is not None:
+            of_pair = chosen.setdefault(candidate.bodies, [])
+            if not any(_asks_for_the_same(candidate, other) for _, other in of_pair):
+                of_pair.append((number, candidate))
+    return sorted(number for of_pair in chosen.values() for number, _ in of_pair)
+
+
+def _asks_for_the_same(one: Candidate, other: Candidate) -> bool:
+    two_planes = one.kind == other.kind == "plane" and one.normal != other.normal
+    return abs(one.log_ratio - other.log_ratio) < SAME_RATIO and not two_planes
+
+
+def ties_between_bodies(pieces: Pieces, count: int) -> tuple[Ties, list[Candidate]]:
+    """What ties pieces of different bodies, as ties of the `count` bodies, and the candidate that each is of.
+
+    Where several pieces of two bodies ask for one ratio they see one thing, and the heaviest of their ties is it.
+    """
+    ties, body = weigh_candidates(pieces.candidates, pieces.size), pieces.body_with_ground(count)
+    heaviest = np.argsort(-ties.weight, kind="stable")
+    worth = worth_a_tie(pieces.candidates)
+    told = [as_of_bodies(worth[number], body) for number in heaviest.tolist()]
+    chosen = distinct(told)
+    candidates = [candidate for number in chosen if (candidate := told[number]) is not None]
+    own = ties.subset(heaviest[chosen])
+    bodies = np.array([candidate.bodies for candidate in candidates], np.int64).reshape(-1, 2)
+    return replace(own, bodies=bodies, log_ratio=np.array([each.log_ratio for each in candidates])), candidates
 
 
 def with_stays(seams: list[Seam], pieces: Pieces, log_scale: Float) -> list[Seam]:

@@ -18,11 +18,11 @@ from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
 from linecad.ties.links import find_links, told_links
-from linecad.ties.pieces import with_stays
+from linecad.ties.pieces import ties_between_bodies, with_stays
 from linecad.ties.probability import chances, main_lines, probabilities
 from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting, Sight
-from linecad.ties.weights import weigh_candidates, worth_a_tie
+from linecad.ties.weights import mean_of_looks, weigh_candidates, worth_a_tie
 from solver.bodies.search import place
 from solver.bodies.ties import Placement, Ties
 from solver.choice import boundaries
@@ -238,13 +238,22 @@ def tie_up(evidence: Evidence, facts: Sequence[ToldFact], told: FactTies) -> tup
     sure, edges = _sure(setting, evidence.real)
     told.check(facts, sure, setting.graph.edges[edges])
     kept = kept_candidates(evidence, told.cuts)
-    ties = weigh_candidates(kept, setting.bodies.size).joined(sure).joined(told.ties)
-    return ties, [*worth_a_tie(kept), *edges.tolist(), *(-1 - told.number).tolist()]
+    between, of_pieces = ties_between_bodies(evidence.pieces, setting.bodies.count)
+    stands = [number for number, each in enumerate(of_pieces) if not _is_cut(each, told.cuts)]
+    found, candidates = mean_of_looks(
+        (weigh_candidates(kept, setting.bodies.size), worth_a_tie(kept)),
+        (between.subset(np.array(stands, np.int64)), [of_pieces[number] for number in stands]),
+    )
+    return found.joined(sure).joined(told.ties), [*candidates, *edges.tolist(), *(-1 - told.number).tolist()]
 
 
 def kept_candidates(evidence: Evidence, cuts: frozenset[tuple[int, int]]) -> list[Candidate]:
     """The candidates that a person lets stand who says that some pairs of bodies are not connected."""
-    return [each for each in evidence.candidates if not (each.kind in CONNECTING and each.bodies in cuts)]
+    return [each for each in evidence.candidates if not _is_cut(each, cuts)]
+
+
+def _is_cut(candidate: Candidate, cuts: frozenset[tuple[int, int]]) -> bool:
+    return candidate.kind in CONNECTING and candidate.bodies in cuts
 
 
 def _sure(setting: Setting, real: Bool) -> tuple[Ties, Int]:

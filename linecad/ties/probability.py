@@ -24,11 +24,10 @@ RIGHT = 0.05  # log scale
 OFF = (0.06, 1.0)  # log scale, by which what does not hold is off, to either side
 LEAST_WEIGHT = 0.1  # log-odds of one crossing that agrees and one that does not, for lines with hardly any
 # Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -3.0648
+AT_ONCE = -2.3645
 LOG_ODDS: dict[str, float] = {
-    "together": 4.6341,
-    "agreement": 2.8884,
-    "contradictions": 0.0167,
+    "together": 4.6316,
+    "agreement": 2.0366,
 }
 
 
@@ -49,7 +48,6 @@ def line_features(setting: Setting, log_depth: Float) -> dict[str, Float]:
     return {
         "together": together,
         "agreement": (sums(agrees, graph.weight) + LEAST_WEIGHT) / (sums(told, graph.weight) + 2 * LEAST_WEIGHT),
-        "contradictions": np.log1p(sums(told & ~agrees)),
     }
 
 

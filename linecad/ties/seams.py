@@ -46,25 +46,25 @@ OF_BUNDLE = (
     "plane beside",
 )
 # Logistic regression on cuts of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -3.0900
+AT_ONCE = -2.9592
 LOG_ODDS: dict[str, float] = {
-    "near": -1.3759,
-    "levels": 0.4042,
-    "level excess": 0.1969,
-    "level lead": 0.1916,
-    "same eaves": 0.4499,
-    "size excess": 0.0897,
-    "corners": -0.1324,
-    "pieces": 0.5265,
-    "from both": -0.3251,
-    "supported": 1.5321,
-    "connected": 0.3948,
-    "plane of it": 1.3830,
-    "plane beside": 1.8106,
-    "shade": 2.5943,
-    "overlap across": 0.5808,
-    "overlap down": -0.5445,
-    "stays": 1.5040,
+    "near": -0.7158,
+    "levels": 0.3874,
+    "level excess": 0.2297,
+    "level lead": 0.1911,
+    "same eaves": 0.2896,
+    "size excess": 0.0305,
+    "corners": -0.0753,
+    "pieces": 0.5490,
+    "from both": -0.1421,
+    "supported": 1.4844,
+    "connected": -0.3781,
+    "plane of it": 1.2260,
+    "plane beside": 1.4263,
+    "shade": 2.7248,
+    "overlap across": 0.3661,
+    "overlap down": -0.4805,
+    "stays": 1.4715,
 }
 
 

@@ -14,7 +14,7 @@ from linecad.ties.bodies import RigidBodies
 from linecad.ties.candidates import SAME_RATIO, Candidate
 from linecad.ties.depth_ties import DepthWitness
 from linecad.ties.evidence import Evidence
-from linecad.ties.pieces import Pieces
+from linecad.ties.pieces import Pieces, as_of_bodies, distinct
 from linecad.ties.seams import Seam
 from linecad.ties.weights import above_chance
 
@@ -63,7 +63,8 @@ def part_off(evidence: Evidence, lines: Int) -> Evidence:
         for each in evidence.candidates
         if own not in each.bodies or not _is_of_part(each, pieces, of_piece, new)
     ]
-    between = _between(pieces, of_piece, new)
+    moved = replace(pieces, body=of_piece)
+    between = _between(moved, new)
     heard = evidence.heard
     if isinstance(heard, DepthWitness):
         asked = heard.reading.log_scale
@@ -73,7 +74,7 @@ def part_off(evidence: Evidence, lines: Int) -> Evidence:
         evidence,
         setting=parted,
         candidates=(*kept, *between),
-        pieces=replace(pieces, body=of_piece),
+        pieces=moved,
         heard=heard,
         reference=new if is_most else evidence.reference,
     )
@@ -90,39 +91,24 @@ def _is_of_part(candidate: Candidate, pieces: Pieces, of_piece: Int, part: int) 
 
     By the most telling one between pieces of the same two bodies that asks for the same.
     """
-    ground = pieces.count
-    body = np.append(pieces.body, pieces.body.max() + 1)
+    ground, body = pieces.count, pieces.body_with_ground(part)  # among the bodies before
     best, weight = ground, -np.inf
     for each in pieces.candidates:
-        own = [int(body[piece]) for piece in each.bodies]
-        ratio = each.log_ratio if own[0] < own[1] else -each.log_ratio
-        is_same = tuple(sorted(own)) == candidate.bodies and abs(ratio - candidate.log_ratio) < SAME_RATIO
-        if is_same and (found := above_chance(each)) > weight:
+        told = as_of_bodies(each, body)
+        if told is None or told.bodies != candidate.bodies or abs(told.log_ratio - candidate.log_ratio) >= SAME_RATIO:
+            continue
+        if (found := above_chance(each)) > weight:
             weight = found
             best = next((piece for piece in each.bodies if piece < ground and of_piece[piece] == part), ground)
     return best < ground
 
 
-def _between(pieces: Pieces, of_piece: Int, part: int) -> list[Candidate]:
+def _between(pieces: Pieces, part: int) -> list[Candidate]:
     """The candidates of a part, as found between pieces; the best of those that ask for one ratio."""
-    body = np.append(of_piece, of_piece.max() + 1)  # the ground comes last among pieces and bodies
-    found: dict[tuple[int, int], list[Candidate]] = {}
-    for candidate in sorted(pieces.candidates, key=lambda each: -above_chance(each)):
-        first, second = (int(body[piece]) for piece in candidate.bodies)
-        if first == second or part not in (first, second):
-            continue
-        ratio = candidate.log_ratio if first < second else -candidate.log_ratio
-        of_pair = found.setdefault((min(first, second), max(first, second)), [])
-        if not any(
-            abs(ratio - other.log_ratio) < SAME_RATIO and not _two_planes(candidate, other) for other in of_pair
-        ):
-            of_pair.append(replace(candidate, bodies=(min(first, second), max(first, second)), log_ratio=ratio))
-    return [each for pair in sorted(found) for each in found[pair]]
-
-
-def _two_planes(one: Candidate, other: Candidate) -> bool:
-    """Whether candidates are of planes with different normals: only these may repeat a ratio."""
-    return one.kind == other.kind == "plane" and one.normal != other.normal
+    body = pieces.body_with_ground(part + 1)
+    best_first = sorted(pieces.candidates, key=lambda each: -above_chance(each))
+    told = [each for candidate in best_first if (each := as_of_bodies(candidate, body)) and part in each.bodies]
+    return sorted((told[number] for number in distinct(told)), key=lambda each: each.bodies)
 
 
 def extended(log_scale: Float, before: RigidBodies, evidence: Evidence) -> Float:

@@ -1,12 +1,12 @@
 """From candidates to ties: how much each is worth, by a table fitted to scenes of known depth."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.directions import MAIN, UP
-from linecad.ties.candidates import Candidate, Kind
+from linecad.ties.candidates import SAME_RATIO, Candidate, Kind
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from solver.bodies.ties import Ties
 
@@ -16,6 +16,8 @@ TOLERANCE = 0.02  # log ratio within which a tie holds
 LEAST_WEIGHT = 2.0  # of a tie: weaker ones are so many that some always agree with a wrong place
 REPEATING: tuple[Kind, ...] = ("plane", "level")
 REPEATED = 0.6  # of the weight of planes and levels, which repeat each other more than crossings do
+OF_PIECES = 1 / 3  # of a tie's weight, that the look at pieces has
+LEAST_OF_PIECES = 0.5  # what that must come to of a tie that pieces alone ask for: many of crumbs make the search long
 FULL_SIZE = 30.0  # lines of the smaller body, from which a tie has its full weight: crumbs must not move walls
 
 
@@ -38,8 +40,6 @@ def worth_a_tie(candidates: Sequence[Candidate]) -> list[Candidate]:
 def weigh_candidates(candidates: Sequence[Candidate], size: Int) -> Ties:
     """The ties of bodies of `size` (B,) lines, one for each candidate that is `worth_a_tie`, in their order."""
     chosen = worth_a_tie(candidates)
-    layers = [(kind, normal) for kind in REPEATING for normal in (-1, 0, 1, UP)]
-    layers += [("plane", normal) for normal in sorted({each.normal for each in chosen}) if normal >= MAIN]
     with_ground = np.append(size, size.sum())  # the ground is no crumb
     smaller = np.array([with_ground[list(candidate.bodies)].min() for candidate in chosen], np.float64)
     repeated = np.array([REPEATED if candidate.kind in REPEATING else 1.0 for candidate in chosen])
@@ -50,8 +50,36 @@ def weigh_candidates(candidates: Sequence[Candidate], size: Int) -> Ties:
         log_ratio=np.array([candidate.log_ratio for candidate in chosen]),
         tolerance=np.full(len(chosen), TOLERANCE),
         weight=weight,
-        group=np.array([
-            layers.index((candidate.kind, candidate.normal)) if candidate.kind in REPEATING else -1
-            for candidate in chosen
-        ]),
-    )  # fmt: skip
+        group=np.array([_group_of(candidate) for candidate in chosen]),
+    )
+
+
+def _group_of(candidate: Candidate) -> int:
+    """The same number for all candidates that repeat each other, -1 for others."""
+    if candidate.kind not in REPEATING:
+        return -1
+    return REPEATING.index(candidate.kind) + len(REPEATING) * (candidate.normal + 1)
+
+
+def mean_of_looks(
+    whole: tuple[Ties, list[Candidate]], pieces: tuple[Ties, list[Candidate]]
+) -> tuple[Ties, list[Candidate]]:
+    """Ties of bodies by what these show as wholes and by what their pieces show, and the candidate that each is of.
+
+    What both ask for is one tie, at the ratio of the wholes. What one look alone shows has its share of the weight.
+    """
+    (ties, candidates), (others, told) = whole, pieces
+    weight, alone = ties.weight * (1 - OF_PIECES), []
+    free = np.ones(len(ties), bool)
+    for number in range(len(others)):
+        same = (ties.bodies == others.bodies[number]).all(axis=1) & (ties.group == others.group[number])
+        off = np.where(free & same, np.abs(ties.log_ratio - others.log_ratio[number]), np.inf)
+        worth = OF_PIECES * float(others.weight[number])
+        if off.min(initial=np.inf) < SAME_RATIO:
+            weight[off.argmin()] += worth
+            free[off.argmin()] = False
+        elif worth >= LEAST_OF_PIECES:
+            alone.append(number)
+    added = others.subset(np.array(alone, np.int64))
+    mean = replace(ties, weight=weight).joined(replace(added, weight=OF_PIECES * added.weight))
+    return mean, [*candidates, *(told[number] for number in alone)]

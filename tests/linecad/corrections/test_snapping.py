@@ -94,6 +94,15 @@ class TestSnapping:
         assert found.ends[1][1] == pytest.approx(bottom[1] + 7)
         assert np.abs(segment_coordinates(found.ends, alone.ends)[1]).max() < 1e-9  # the line is the same one
 
+    def test_a_line_that_ends_far_before_the_crossing_is_not_crossed(self, made, drawing):
+        """It was where it is slanted: beside the drawn line its end is near, along it far away."""
+        drawn = towards(made, np.array([700.0, 400.0]), 2, 200)
+        there = np.add(drawn[1], [0.0, 4.0])
+        slanted = lines([np.add(there, [9.0, 90.0]), np.add(there, [30.0, 300.0])])
+        assert propose(drawing, slanted, drawn, 2, 15.0).snaps[1] is None
+        near = lines([np.add(there, [1.2, 9.0]), np.add(there, [30.0, 300.0])])
+        assert propose(drawing, near, drawn, 2, 15.0).snaps[1] is not None
+
     @given(st.integers(0, 10**6), st.floats(1, 15))
     def test_whatever_it_snaps_to_the_free_end_stays_near_where_it_was_drawn(self, made, drawing, table, seed, reach):
         """Two ends that snapped put the line between both, 24 px from where it was drawn, and neither end was there."""

@@ -1,5 +1,7 @@
 """What a person says of bodies: true words ask for the true scales, impossible ones are told, and they outweigh all."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -248,6 +250,17 @@ class TestCuts:
         assert evidence.setting.bodies.count == 2
         fact = two(seen, Cut, 0, 30)
         kinds = [{source.kind for source in place_bodies(evidence, options, facts).sources} for facts in ((), [fact])]
+        assert "bundle" in kinds[0]
+        assert "bundle" not in kinds[1]
+
+    def test_pieces_alone_tie_bodies_that_are_not_cut(self, build_town, build_row):
+        """Where the bodies as wholes show nothing, their pieces do; a cut goes for both."""
+        seen = build_town(*build_row(1))
+        evidence = replace(find_evidence(seen.graph, seen.sight, SolveOptions()), candidates=())
+        kinds = [
+            {source.kind for source in place_bodies(evidence, SolveOptions(), facts).sources}
+            for facts in ((), [two(seen, Cut, 0, 30)])
+        ]
         assert "bundle" in kinds[0]
         assert "bundle" not in kinds[1]
 

@@ -7,9 +7,12 @@ import pytest
 
 from linecad.ties import pieces as module
 from linecad.ties.bodies import RigidBodies
+from linecad.ties.candidates import Candidate
 from linecad.ties.looks import Looks
-from linecad.ties.pieces import Pieces, find_pieces, part_bodies, with_stays
+from linecad.ties.pieces import Pieces, find_pieces, part_bodies, ties_between_bodies, with_stays
 from linecad.ties.seams import Seam, find_seams
+from linecad.ties.table import AT_ONCE, LOG_ODDS
+from linecad.ties.weights import CHANCE, weigh_candidates
 from solver.bodies.ties import Ties
 
 NESTED = [Seam(np.arange(5), np.arange(5, 8), {}), Seam(np.arange(5, 7), np.array([7]), {})]
@@ -50,6 +53,56 @@ def test_what_ties_the_sides_of_a_seam_is_found_at_the_ratio_that_they_have(one_
     bundles = [each for each in found.candidates if each.kind == "bundle"]
     assert bundles
     assert min(abs(each.log_ratio) for each in bundles) < 1e-6
+
+
+TWO = np.array([0, 1, 0, 2])  # the bodies of pieces 0 to 2, and the ground
+
+
+def between(*rows, piece=(0, 1, 2)):
+    """What ties bodies 0 and 1 where pieces of 40 lines have such candidates: (pieces, log ratio, log-odds) each."""
+    told = [Candidate("bundle", pieces, ratio, -1, worth_features(log_odds)) for pieces, ratio, log_odds in rows]
+    return ties_between_bodies(Pieces(np.repeat(piece, 40), TWO[:-1], told), 2)
+
+
+def worth_features(log_odds):
+    name = max(LOG_ODDS["bundle"], key=lambda one: abs(LOG_ODDS["bundle"][one]))
+    return {name: (log_odds - AT_ONCE["bundle"]) / LOG_ODDS["bundle"][name]}
+
+
+def test_what_ties_pieces_ties_their_bodies_at_the_same_ratio():
+    ties, told = between(((0, 1), 0.3, 2.0), ((1, 2), 0.2, 3.0), ((2, 3), -0.1, 4.0))
+    assert ties.bodies.tolist() == [[0, 2], [0, 1], [0, 1]]
+    assert ties.log_ratio.tolist() == [-0.1, -0.2, 0.3]
+    assert ties.weight.tolist() == pytest.approx([4.0 - CHANCE, 3.0 - CHANCE, 2.0 - CHANCE])
+    assert [(each.bodies, each.log_ratio) for each in told] == [((0, 2), -0.1), ((0, 1), -0.2), ((0, 1), 0.3)]
+
+
+def test_what_ties_pieces_of_one_body_ties_no_bodies():
+    ties, told = between(((0, 2), 0.0, 5.0))
+    assert len(ties) == len(told) == 0
+    assert len(between()[0]) == 0
+
+
+def test_a_body_without_pieces_is_not_the_ground():
+    told = [Candidate("bundle", (0, 1), 0.3, -1, worth_features(2.0))]
+    ties, _ = ties_between_bodies(Pieces(np.zeros(40, int), np.array([0]), told), 2)
+    assert ties.bodies.tolist() == [[0, 2]]
+
+
+def test_of_pieces_that_ask_for_one_ratio_the_heaviest_tells():
+    ties, told = between(((0, 1), 0.300, 2.0), ((1, 2), -0.305, 3.0))
+    assert ties.log_ratio.tolist() == [0.305]
+    assert ties.weight.tolist() == pytest.approx([3.0 - CHANCE])
+    assert len(told) == 1
+
+
+def test_without_seams_pieces_see_what_bodies_see(one_body):
+    parted = replace(one_body, bodies=RigidBodies(np.arange(len(one_body.log_depth)) % 2, 2))
+    found = find_pieces(parted, [], Looks(parted))
+    ties, _ = ties_between_bodies(found, 2)
+    wholes = weigh_candidates(found.candidates, parted.bodies.size)
+    assert len(ties) > 0
+    assert sorted(ties.log_ratio.tolist()) == sorted(wholes.log_ratio.tolist())
 
 
 def stays(ties, monkeypatch):

@@ -3,15 +3,18 @@
 import numpy as np
 import pytest
 
-from linecad.ties.candidates import KINDS, Candidate
+from linecad.ties.candidates import KINDS, SAME_RATIO, Candidate
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from linecad.ties.weights import (
     BY_CHANCE,
     FULL_SIZE,
+    LEAST_OF_PIECES,
     LEAST_WEIGHT,
+    OF_PIECES,
     REPEATED,
     TOLERANCE,
     log_odds_of,
+    mean_of_looks,
     weigh_candidates,
 )
 
@@ -85,3 +88,60 @@ def test_no_candidates_are_no_ties():
         ties = weigh_candidates(candidates, LARGE)
         assert len(ties) == 0
         assert ties.value(np.zeros(3)) == 0
+
+
+def look(*candidates):
+    """Of large bodies."""
+    chosen = list(candidates)
+    return weigh_candidates(chosen, LARGE), chosen
+
+
+def test_what_both_looks_ask_for_is_one_tie_at_the_ratio_of_the_wholes():
+    one, other = worth(6.0, log_ratio=0.10), worth(3.0, log_ratio=0.10 + 0.9 * SAME_RATIO)
+    ties, told = mean_of_looks(look(one), look(other))
+    assert ties.log_ratio.tolist() == [0.10]
+    assert ties.weight.tolist() == pytest.approx([6.0 * (1 - OF_PIECES) + 3.0 * OF_PIECES])
+    assert told == [one]
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        worth(3.0, log_ratio=0.1 + 1.1 * SAME_RATIO),
+        worth(3.0, log_ratio=0.1, bodies=(0, 2)),
+        worth(3.0, "plane", log_ratio=0.1, normal=1),
+    ],
+    ids=["another ratio", "other bodies", "a kind that repeats itself"],
+)
+def test_what_one_look_shows_has_its_share_of_the_weight(other):
+    one = worth(6.0, log_ratio=0.1)
+    (whole, _), (parted, _) = look(one), look(other)
+    ties, told = mean_of_looks(look(one), look(other))
+    assert told == [one, other]
+    assert ties.bodies.tolist() == [list(one.bodies), list(other.bodies)]
+    assert ties.weight.tolist() == pytest.approx([whole.weight[0] * (1 - OF_PIECES), parted.weight[0] * OF_PIECES])
+
+
+def test_a_tie_takes_no_more_than_one_of_the_pieces():
+    one = worth(6.0, log_ratio=0.1)
+    near, nearer = worth(3.0, log_ratio=0.105), worth(4.0, log_ratio=0.101)
+    ties, told = mean_of_looks(look(one), look(nearer, near))
+    assert told == [one, near]
+    assert ties.weight.tolist() == pytest.approx([6.0 * (1 - OF_PIECES) + 4.0 * OF_PIECES, 3.0 * OF_PIECES])
+
+
+@pytest.mark.parametrize(("share", "count"), [(0.9, 1), (1.1, 2)])
+def test_weak_ties_that_pieces_alone_ask_for_are_left_out(share, count):
+    other = worth(3.0, log_ratio=0.3)
+    size = FULL_SIZE * share * LEAST_OF_PIECES / (OF_PIECES * 3.0)
+    crumbs = weigh_candidates([other], np.array([size, size]))
+    assert len(mean_of_looks(look(worth(6.0, log_ratio=0.1)), (crumbs, [other]))[0]) == count
+
+
+def test_looks_that_agree_weigh_as_one():
+    candidates = [worth(6.0, log_ratio=0.1), worth(4.0, "plane", (1, 2), 0.2, 0), worth(3.0, "level", (0, 2), 0.4)]
+    ties, told = mean_of_looks(look(*candidates), look(*candidates))
+    once, _ = look(*candidates)
+    assert told == candidates
+    assert ties.weight.tolist() == pytest.approx(once.weight.tolist())
+    assert ties.group.tolist() == once.group.tolist()
