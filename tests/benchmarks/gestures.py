@@ -4,8 +4,9 @@ For photos of known depth: the automatic model, and then one gesture of the page
 somebody who sees which body stands wrong, or which of the parts of a body that the page offers. Each is put at one of
 its other places where one of those that the page proposes is right (*next place*), else dragged there, by a hand that
 is off by HAND (*move*); of the things that are wrong, that is moved by which most is right where the page shows it
-before it is taken; where the model is worse for it, it is undone, which is one more gesture. Prints recall and
-precision at 5 % of everything in the file before and after each.
+before it is taken. With `--undo` it is undone where the model is worse for it, which is one more gesture: what went
+wrong by it may also be what is put right next. Prints recall and precision at 5 % of everything in the file before and
+after each.
 """
 
 import argparse
@@ -44,6 +45,7 @@ def main() -> None:
     parser.add_argument("dataset", type=Path)
     parser.add_argument("--only", default="", help="photos whose name starts so")
     parser.add_argument("--gestures", type=int, default=6)
+    parser.add_argument("--undo", action="store_true", help="what makes the model worse is taken back")
     chosen = parser.parse_args()
     for case in find_dataset(chosen.dataset).cases:
         if not case.name.startswith(chosen.only):
@@ -53,11 +55,11 @@ def main() -> None:
             continue
         corrections = Corrections(photo.name, photo.width, photo.height)
         session = Session(photo, find_segments(photo.grey), Options(), corrections, lambda _: None)
-        told = steps(session, TaskSolver(photo, Options()), reference.edges, chosen.gestures)
+        told = steps(session, TaskSolver(photo, Options()), reference.edges, chosen.gestures, chosen.undo)
         print(f"{case.name}: {' -> '.join(told)}", flush=True)
 
 
-def steps(session: Session, solver: TaskSolver, points: Points, most: int) -> list[str]:
+def steps(session: Session, solver: TaskSolver, points: Points, most: int, undoes: bool) -> list[str]:
     """What is right before and after each gesture."""
     random, score = np.random.default_rng(0), solved(session, solver, points)
     told, moved = [in_words(score)], list[int]()
@@ -69,7 +71,7 @@ def steps(session: Session, solver: TaskSolver, points: Points, most: int) -> li
         session.edit(session.now().version, lambda _, fact=fact: fact)  # type: ignore[misc]
         score = solved(session, solver, points)
         told.append(f"{gesture.word} {in_words(score)}")
-        if is_worse(score, before):
+        if undoes and is_worse(score, before):
             session.undo(session.now().version)
             moved += [gesture.line] * MOST_TIMES
             score = solved(session, solver, points)

@@ -38,6 +38,7 @@ def main() -> None:
     parser.add_argument("dataset", type=Path)
     parser.add_argument("name", help="of a photo")
     parser.add_argument("--gestures", type=int, default=6)
+    parser.add_argument("--undo", action="store_true", help="what makes the model worse is taken back")
     parser.add_argument("-o", "--output", type=Path, metavar="DIR")
     chosen = parser.parse_args()
     (case,) = (case for case in find_dataset(chosen.dataset).cases if case.name == chosen.name)
@@ -49,7 +50,7 @@ def main() -> None:
             console: list[str] = []
             page.on("console", lambda told: console.append(f"{told.type}: {told.text}"))
             page.on("pageerror", lambda error: console.append(f"error: {error}"))
-            play(page, case, photo, chosen.gestures, chosen.output)
+            play(page, case, photo, chosen.gestures, chosen.undo, chosen.output)
             print(f"console: {console or 'nothing'}")
 
 
@@ -60,7 +61,7 @@ def camera_of(case: Case) -> Path:
     return case.truth / "camera.json" if case.truth.is_dir() else case.photo.with_suffix(".json")
 
 
-def play(page: Page, case: Case, photo: Path, most: int, output: Path | None) -> None:
+def play(page: Page, case: Case, photo: Path, most: int, undoes: bool, output: Path | None) -> None:
     points, moved = open_case(case)[1].edges, list[int]()
     assert points is not None, "no depth is known"
     random = np.random.default_rng(0)
@@ -84,7 +85,7 @@ def play(page: Page, case: Case, photo: Path, most: int, output: Path | None) ->
         score = exported(page, photo, points)
         print(f"{gesture.word} ({took:.0f} s) -> {in_words(score)}", flush=True)
         picture(page, output, f"{number}-taken")
-        if is_worse(score, before):
+        if undoes and is_worse(score, before):
             page.keyboard.press("Control+Z")
             solved(page)
             number, score = number + 1, exported(page, photo, points)
