@@ -69,7 +69,7 @@ def play(page: Page, case: Case, photo: Path, most: int, undoes: bool, output: P
     score = exported(page, photo, points)
     print(f"{case.name}: {in_words(score)}", flush=True)
     picture(page, output, "0")
-    number = 0
+    number = undone = 0
     while number < most:
         number += 1
         twin = twin_of(case, photo)
@@ -80,6 +80,8 @@ def play(page: Page, case: Case, photo: Path, most: int, undoes: bool, output: P
         show(page, twin, gesture)
         picture(page, output, f"{number}-shown")
         page.keyboard.press("Enter")
+        settle(page)
+        assert page.evaluate("linecad.store.state.facts.length") == number - undone, "the gesture was not taken"
         solved(page)
         took, before = time.monotonic() - began, score
         score = exported(page, photo, points)
@@ -88,7 +90,7 @@ def play(page: Page, case: Case, photo: Path, most: int, undoes: bool, output: P
         if undoes and is_worse(score, before):
             page.keyboard.press("Control+Z")
             solved(page)
-            number, score = number + 1, exported(page, photo, points)
+            number, undone, score = number + 1, undone + 2, exported(page, photo, points)
             moved += [gesture.line] * MOST_TIMES
             print(f"undo -> {in_words(score)}", flush=True)
 
@@ -124,7 +126,8 @@ def show(page: Page, twin: Session, gesture: Gesture) -> None:
         page.keyboard.press(key)
     for _ in range(fine):
         page.keyboard.press(f"Shift+{key}")
-    settle(page)
+    while page.evaluate("linecad.bodies.gestures.effect === null"):
+        page.wait_for_timeout(50)
 
 
 def body_of(page: Page, lines: set[int]) -> int:
