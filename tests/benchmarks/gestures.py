@@ -4,7 +4,9 @@ For photos of known depth: the automatic model, and then one gesture of the page
 somebody who sees which body stands wrong, or which of the parts of a body that the page offers. Each is put at one of
 its other places where one of those that the page proposes is right (*next place*), else dragged there, by a hand that
 is off by HAND (*move*); of the things that are wrong, that is moved by which most is right where the page shows it
-before it is taken. Prints recall and precision at 5 % of everything in the file before and after each gesture.
+before it is taken. With `--undo` it is undone where the model is worse for it, which is one more gesture: what went
+wrong by it may also be what is put right next. Prints recall and precision at 5 % of everything in the file before and
+after each.
 """
 
 import argparse
@@ -14,12 +16,12 @@ from pathlib import Path
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.corrections.edits import Corrections, Edit, PlaceAt
+from linecad.corrections.edits import Corrections, PlaceAt
 from linecad.editing.bodies import ShownBodies
 from linecad.editing.session import Session
 from linecad.editing.solving import TaskSolver
 from linecad.evaluation.datasets import find_dataset
-from linecad.evaluation.depth import score_depth
+from linecad.evaluation.depth import DepthScore, score_depth
 from linecad.evaluation.references import Points, open_case
 from linecad.geometry import distances_to
 from linecad.lines.segments import find_segments
@@ -35,6 +37,7 @@ HAND = 0.02  # log factor, standard deviation, by which a body that is dragged m
 LEAST_GAIN = 0.002  # of all points, that a gesture puts right
 MOST_TRIED = 8  # things that are looked at for one gesture
 MOST_TIMES = 2  # that the same thing is moved
+WORSE = 0.005  # of all points: right ones less wrong ones that a gesture loses where it is taken back
 
 
 def main() -> None:
@@ -42,6 +45,7 @@ def main() -> None:
     parser.add_argument("dataset", type=Path)
     parser.add_argument("--only", default="", help="photos whose name starts so")
     parser.add_argument("--gestures", type=int, default=6)
+    parser.add_argument("--undo", action="store_true", help="what makes the model worse is taken back")
     chosen = parser.parse_args()
     for case in find_dataset(chosen.dataset).cases:
         if not case.name.startswith(chosen.only):
@@ -51,35 +55,50 @@ def main() -> None:
             continue
         corrections = Corrections(photo.name, photo.width, photo.height)
         session = Session(photo, find_segments(photo.grey), Options(), corrections, lambda _: None)
-        told = steps(session, TaskSolver(photo, Options()), reference.edges, chosen.gestures)
+        told = steps(session, TaskSolver(photo, Options()), reference.edges, chosen.gestures, chosen.undo)
         print(f"{case.name}: {' -> '.join(told)}", flush=True)
 
 
-def steps(session: Session, solver: TaskSolver, points: Points, most: int) -> list[str]:
+def steps(session: Session, solver: TaskSolver, points: Points, most: int, undoes: bool) -> list[str]:
     """What is right before and after each gesture."""
-    random, told = np.random.default_rng(0), [scored(session, solver, points)]
-    moved: list[int] = []
+    random, score = np.random.default_rng(0), solved(session, solver, points)
+    told, moved = [in_words(score)], list[int]()
     while len(told) <= most:
         gesture = next_gesture(session, points, moved, random)
         if gesture is None:
             break
-        word, edit = gesture
-        put(session, edit)
-        told.append(f"{word} {scored(session, solver, points)}")
+        fact, before = gesture.fact, score
+        session.edit(session.now().version, lambda _, fact=fact: fact)  # type: ignore[misc]
+        score = solved(session, solver, points)
+        told.append(f"{gesture.word} {in_words(score)}")
+        if undoes and is_worse(score, before):
+            session.undo(session.now().version)
+            moved += [gesture.line] * MOST_TIMES
+            score = solved(session, solver, points)
+            told.append(f"undo {in_words(score)}")
     return told
 
 
-def put(session: Session, edit: Edit) -> None:
-    session.edit(session.now().version, lambda _: edit)
-
-
-def scored(session: Session, solver: TaskSolver, points: Points) -> str:
+def solved(session: Session, solver: TaskSolver, points: Points) -> DepthScore:
+    """The score of the model of all that the session holds."""
     session.take(solver.answer(session.task(session.now().version), lambda _: None))
     now = session.now()
     assert now.model is not None
     assert not now.error, now.error
-    score = score_depth(now.model.scene, points.pixels, points.depth)
+    return score_depth(now.model.scene, points.pixels, points.depth)
+
+
+def in_words(score: DepthScore) -> str:
     return f"{score.recall_5:.3f} / {score.precision_5:.3f}"
+
+
+def is_worse(now: DepthScore, before: DepthScore) -> bool:
+    """Whether somebody who sees the model takes a gesture back: other things went wrong by it."""
+    return _right_less_wrong(now) < _right_less_wrong(before) - WORSE
+
+
+def _right_less_wrong(score: DepthScore) -> float:
+    return 2 * score.recall_5 - score.recall_5 / max(score.precision_5, 1e-9)
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,15 +112,29 @@ class Thing:
     gain: float  # points that this puts right
 
 
-def next_gesture(
-    session: Session, points: Points, moved: list[int], random: np.random.Generator
-) -> tuple[str, Edit] | None:
+@dataclass(frozen=True, eq=False)
+class Gesture:
+    """What is done next, by a key of the page."""
+
+    thing: Thing
+    line: int  # the id of the line by which it is placed
+    is_proposed: bool  # by *next place*, else by *move*
+    move: float  # log factor
+    fact: PlaceAt
+
+    @property
+    def word(self) -> str:
+        """For the table."""
+        return f"{'next place' if self.is_proposed else 'move'}{' of a part' * self.thing.is_part}"
+
+
+def next_gesture(session: Session, points: Points, moved: list[int], random: np.random.Generator) -> Gesture | None:
     """The gesture that puts most known points right; `moved` are the lines by which things were moved before."""
     model = session.now().model
     assert model is not None
     assert model.bodies is not None
     bodies = model.bodies
-    least, tried = LEAST_GAIN * len(points.depth), list[tuple[float, int, str, PlaceAt]]()
+    least, tried = LEAST_GAIN * len(points.depth), list[tuple[float, Gesture]]()
     for thing in wrong_things(bodies, points):
         line = max(thing.lines.tolist(), key=lambda own: length(bodies, own))
         if len(tried) == MOST_TRIED:
@@ -110,19 +143,18 @@ def next_gesture(
             continue
         found = other_places_of(bodies.now, thing.lines) if thing.is_part else other_places(bodies.now, thing.body)
         best = min((place.move for place in found), key=lambda move: abs(move - thing.off), default=np.inf)
-        word, move = "next place", best
-        if abs(best - thing.off) >= SEEN:
-            word, move = "move", thing.off + random.normal(0, HAND)
+        is_proposed = bool(abs(best - thing.off) < SEEN)
+        move = best if is_proposed else thing.off + float(random.normal(0, HAND))
         fact = placed(session, bodies, thing, line, move)
         gain = shown_gain(session, bodies, points, thing, fact)
-        tried.append((gain, bodies.ids[line], f"{word}{' of a part' * thing.is_part}", fact))
+        tried.append((gain, Gesture(thing, bodies.ids[line], is_proposed, move, fact)))
     if not tried:
         return None
-    gain, line, word, fact = max(tried, key=lambda each: each[0])
+    gain, gesture = max(tried, key=lambda each: each[0])
     if gain < least:
         return None
-    moved.append(line)
-    return word, fact
+    moved.append(gesture.line)
+    return gesture
 
 
 def shown_gain(session: Session, bodies: ShownBodies, points: Points, thing: Thing, fact: PlaceAt) -> float:

@@ -237,7 +237,7 @@ export class BodyGestures {
       case "place":
         return index >= 0 ? placeEdit(this.bodies, body, log, part) : null;
       case "move":
-        if (body === undefined || !this.now.places || Math.abs(log) <= 1e-9) return null;
+        if (body === undefined || Math.abs(log) <= 1e-9) return null;
         return placeEdit(this.bodies, body, log, part);
       case "plane":
         return second && normal ? { op: "plane", lines: [first.id, second.id], normal } : null;
