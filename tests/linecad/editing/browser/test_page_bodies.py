@@ -292,19 +292,24 @@ def test_keys_alone_move_a_body(told):
 def test_a_body_is_moved_before_its_other_places_are_known(told):
     """Arrows and Enter did nothing until they were, and nothing told so."""
     held = []
-    told.page.route("**/api/places/*", lambda route: held.append(route))
-    told.press("b")
-    told.press("Shift+PageDown")
-    told.press("Shift+PageDown")
-    told.press("Shift+D")
-    for _ in range(5):
-        told.press("ArrowUp")
-    wait_for_effect(told)
-    told.press("Enter")
-    assert facts(told) == ["place"]
-    assert held
-    for route in held:
-        route.continue_()
+
+    def hold(route):
+        held.append(route)
+
+    told.page.route("**/api/places/*", hold)
+    try:
+        told.press("b")
+        told.press("Shift+PageDown")
+        told.press("Shift+PageDown")
+        told.press("Shift+D")
+        for _ in range(5):
+            told.press("ArrowUp")
+        wait_for_effect(told)
+        told.press("Enter")
+        assert facts(told) == ["place"]
+        assert held
+    finally:
+        told.page.unroute("**/api/places/*", hold)  # which lets go on what is held
 
 
 def test_a_drag_in_the_model_is_one_fact_and_leaves_the_photo_as_it_is(told):
