@@ -298,6 +298,7 @@ def screen(shared_screen) -> Iterator[Screen]:
           photo.change((viewport) => viewport.fit());
           model.fit();
           document.activeElement.blur();
+          document.querySelector("#messages").replaceChildren(); // errors and warnings catch clicks
         }"""
     )
     screen.settle()

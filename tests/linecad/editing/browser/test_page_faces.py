@@ -78,6 +78,17 @@ def test_clicks_are_corners_of_an_area_that_enter_closes(screen):
     assert edit.shows == "ground"
 
 
+def test_news_over_the_photo_catches_no_click(screen):
+    take(screen, "Shift+A", "ground")
+    screen.run("linecad.actions.messages.tell('News that is long enough to lie over much of the photo, and stays a while')")
+    box = screen.page.locator("#messages .message").bounding_box()
+    screen.page.mouse.click(box["x"] + 20, box["y"] + box["height"] / 2)
+    assert screen.run("linecad.actions.faces.outline.length") == 1
+    screen.page.locator("#messages .message button").click()
+    assert screen.page.locator("#messages .message").count() == 0
+    screen.press("Escape")
+
+
 def test_a_window_by_two_corners_becomes_rows_and_columns_by_one_more_drag(screen):
     plane, shape = walls(screen.state)[0]
     low, high = box_in(shape, 0.05)
