@@ -80,7 +80,9 @@ def test_clicks_are_corners_of_an_area_that_enter_closes(screen):
 
 def test_news_over_the_photo_catches_no_click(screen):
     take(screen, "Shift+A", "ground")
-    screen.run("linecad.actions.messages.tell('News that is long enough to lie over much of the photo, and stays a while')")
+    screen.run(
+        "linecad.actions.messages.tell('News that is long enough to lie over much of the photo, and stays a while')"
+    )
     box = screen.page.locator("#messages .message").bounding_box()
     screen.page.mouse.click(box["x"] + 20, box["y"] + box["height"] / 2)
     assert screen.run("linecad.actions.faces.outline.length") == 1
