@@ -1,0 +1,119 @@
+"""Where the sky ends: cells of the photo cut along its outline, which no line of the scene follows.
+
+Trees, domes and chimneys stand before the sky without a line along their outlines. A cell that shows both would be all
+wall or all sky.
+"""
+
+from itertools import pairwise
+
+import cv2
+import numpy as np
+import shapely
+
+from linecad.arrays import Bool, Float
+from linecad.model.regions import partition
+from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.raster import Raster
+
+MARGIN = 1.5  # samples between what is sky for sure and its end
+SPIRE = 3.5  # samples; what is nowhere wider than twice that does not reach into the sky: a vane, an antenna
+LEAST_HOLE = 0.005  # of the photo; a smaller thing in the sky is no part of the scene
+LEAST_PART = 0.0012  # of the photo, of a cell: less is not cut off
+THIN = 2.5  # samples; what is nowhere wider than twice that is not cut off
+STRAIGHT = 3.0  # samples, by which the outline may be straightened
+ZIGZAG = 24.0  # samples; a shorter edge between two that turn against each other is left out
+AT_CORNER = 8.0  # samples, within which the outline goes to a corner of a cell
+
+
+def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
+    """The part of the photo that is sky for sure and up to where that ends, px."""
+    if not heaven.is_sky:
+        return shapely.Polygon()
+    # A row more above and a column to either side: the sky goes on beyond the photo.
+    mask = cv2.copyMakeBorder(heaven.seed.reshape(raster.shape).astype(np.uint8), 1, 0, 1, 1, cv2.BORDER_REPLICATE)
+    rings, nested = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    parts, holes = [], []
+    for ring, (_, _, _, outer) in zip(rings, nested[0], strict=True) if len(rings) else ():
+        if len(ring) > 2:
+            shape = shapely.make_valid(shapely.Polygon((ring[:, 0].astype(np.float64) - 0.5) * raster.step - 0.5))
+            (parts if outer < 0 else holes).append(shape)
+    large = [hole for hole in holes if hole.area >= LEAST_HOLE * raster.size * raster.step**2]
+    sky = shapely.difference(shapely.union_all(parts), shapely.union_all(large))
+    wide = shapely.buffer(sky, (MARGIN + SPIRE) * raster.step, quad_segs=4)
+    return shapely.buffer(wide, -SPIRE * raster.step, quad_segs=4)
+
+
+def near_outline(sky: shapely.Geometry, raster: Raster) -> Bool:
+    """Mask (H, W) of the samples in which a border may be that follows the outline."""
+    image = np.zeros(raster.shape, np.uint8)
+    for part in partition.polygons_of(sky):
+        for ring in (part.exterior, *part.interiors):
+            corners = np.rint(raster.samples_of(shapely.get_coordinates(ring))).astype(np.int32)
+            cv2.polylines(image, [corners], True, 1, round(2 * STRAIGHT))
+    return image > 0
+
+
+def cut_at(cells: list[shapely.Polygon], sky: shapely.Geometry, raster: Raster) -> list[shapely.Polygon]:
+    """The cells, those that show much of the sky and much else cut along its outline."""
+    outlines = [outline for cell in cells for outline in _outlines_in(cell, sky, raster)]
+    if not outlines:
+        return cells
+    sides = _sides_of(cells)
+    tree = shapely.STRtree(shapely.linestrings(sides))
+    bends = [_straight(_at_corners(outline, sides, tree, raster.step), raster.step) for outline in outlines]
+    cut = [shapely.LineString(bend) for bend in bends if len(bend) > 1]
+    return partition.cells_between([*shapely.boundary(np.array(cells, object)), *cut])
+
+
+def _outlines_in(cell: shapely.Polygon, sky: shapely.Geometry, raster: Raster) -> list[Float]:
+    """The outlines (V, 2) px of the sky that cut off large parts of a cell, each from side to side of it."""
+    if not shapely.intersects(cell, sky) or shapely.contains(sky, cell):
+        return []
+    parts = [
+        part for part in partition.polygons_of(shapely.intersection(cell, sky))
+        if _is_large(part, raster) and _is_large(shapely.difference(cell, part), raster)
+    ]  # fmt: skip
+    across = shapely.intersection(shapely.boundary(sky), cell)
+    lines = [line for line in shapely.get_parts(across) if isinstance(line, shapely.LineString)]
+    merged = shapely.get_parts(shapely.line_merge(shapely.MultiLineString(lines)))
+    around = [line for line in merged if any(shapely.dwithin(line, part, partition.GRID) for part in parts)]
+    return [shapely.get_coordinates(line) for line in around if not line.is_closed]
+
+
+def _is_large(part: shapely.Geometry, raster: Raster) -> bool:
+    """Whether a part of a cell is worth a cell of its own."""
+    wide = shapely.buffer(part, -THIN * raster.step, join_style="mitre")
+    back = shapely.buffer(wide, THIN * raster.step, join_style="mitre")
+    return bool(back.area >= LEAST_PART * raster.size * raster.step**2)
+
+
+def _sides_of(cells: list[shapely.Polygon]) -> Float:
+    """The sides (N, 2, 2) px of cells, each from corner to corner of any of them."""
+    sides = shapely.union_all(shapely.boundary(np.array(cells, object)), grid_size=partition.GRID)
+    corners = [shapely.get_coordinates(side) for side in shapely.get_parts(sides)]
+    return np.array([pair for each in corners for pair in pairwise(each)])
+
+
+def _at_corners(outline: Float, sides: Float, tree: shapely.STRtree, step: float) -> Float:
+    """An outline (V, 2) px whose ends, which lie on sides (N, 2, 2), go to the ends of these where they are near."""
+    moved = outline.copy()
+    for end in (0, -1):
+        side = sides[tree.nearest(shapely.Point(outline[end]))]
+        off = np.linalg.norm(side - outline[end], axis=1)
+        if off.min() < AT_CORNER * step:
+            moved[end] = side[off.argmin()]
+    return moved
+
+
+def _straight(outline: Float, step: float) -> Float:
+    """An outline (V, 2) px with few corners and without steps."""
+    corners = shapely.get_coordinates(shapely.simplify(shapely.LineString(outline), STRAIGHT * step))
+    while True:
+        edges = np.diff(corners, axis=0)
+        length = np.linalg.norm(edges, axis=1)
+        turn = np.sign(edges[:-1, 0] * edges[1:, 1] - edges[:-1, 1] * edges[1:, 0])
+        short = [k for k in range(1, len(edges) - 1) if turn[k - 1] * turn[k] < 0 and length[k] < ZIGZAG * step]
+        if not short:
+            return corners if not np.array_equal(corners[0], corners[-1]) else corners[:1]
+        k = min(short, key=lambda each: length[each])
+        corners = np.concatenate([corners[:k], [(corners[k] + corners[k + 1]) / 2], corners[k + 2 :]])

@@ -1,0 +1,113 @@
+"""Cells cut along the outline of the sky, by masks drawn by hand on a photo of 960 x 720 px, 2 px a sample."""
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
+
+from linecad.model.regions import partition
+from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.raster import take_raster
+from linecad.model.regions.skyline import cut_at, find_sky, near_outline
+
+PHOTO = shapely.box(-0.5, -0.5, 959.5, 719.5)
+HEIGHT = 150  # samples of sky from the top
+
+
+@pytest.fixture(scope="module")
+def raster(house):
+    return take_raster(house.lines, house.camera, house.rotation, None)
+
+
+@pytest.fixture(scope="module")
+def drawn(raster):
+    """A function of places (row, column) that are sky as far down as HEIGHT, or not: the sky of that mask."""
+
+    def draw(*things, height=HEIGHT):
+        mask = np.zeros(raster.shape, bool)
+        mask[:height] = True
+        for thing in things:
+            mask[thing] = False
+        return find_sky(Heaven(mask.ravel(), is_sky=True, is_ceiling=False), raster)
+
+    return draw
+
+
+def sky_of(cells, sky):
+    """The cells that are sky for the most part, as one."""
+    return shapely.union_all([cell for cell in cells if shapely.intersection(cell, sky).area > 0.5 * cell.area])
+
+
+def test_a_ceiling_is_no_sky(raster):
+    heaven = Heaven(np.ones(raster.size, bool), is_sky=False, is_ceiling=True)
+    assert find_sky(heaven, raster).is_empty
+
+
+def test_the_sky_goes_to_the_borders_of_the_photo_and_a_margin_beyond_what_is_sure(drawn):
+    sky = drawn()
+    assert sky.covers(shapely.box(-0.5, -0.5, 959.5, 300))
+    assert sky.bounds[3] == pytest.approx(2 * HEIGHT + 2, abs=2)
+
+
+def test_a_bird_and_a_spire_are_in_the_sky_and_a_chimney_is_not(drawn):
+    bird, spire = np.s_[40:44, 60:66], np.s_[80:150, 200:203]
+    chimney = np.s_[80:150, 300:330]
+    sky = drawn(bird, spire, chimney)
+    assert sky.covers(shapely.Point(126, 84)) and sky.covers(shapely.Point(403, 200))
+    assert not sky.covers(shapely.Point(630, 250))
+
+
+def test_a_cell_of_sky_and_wall_is_cut_between_them(raster, drawn):
+    tower = np.s_[60:150, 180:300]
+    sky = drawn(tower)
+    cells = cut_at([PHOTO], sky, raster)
+    assert len(cells) == 2
+    seen = sky_of(cells, sky)
+    assert seen.symmetric_difference(shapely.intersection(sky, PHOTO)).area < 0.01 * PHOTO.area
+    assert not seen.covers(shapely.Point(480, 200))
+
+
+def test_what_is_thin_is_not_cut_off(raster, drawn):
+    sky = drawn()
+    above = shapely.box(-0.5, -0.5, 959.5, 296)  # a line 3 px above the outline, and another one below
+    below = shapely.box(-0.5, 296, 959.5, 719.5)
+    assert cut_at([above, below], sky, raster) == [above, below]
+
+
+def test_the_outline_goes_to_a_corner_that_is_near(raster, drawn):
+    sky = drawn()
+    below = 2 * HEIGHT + 8.0
+    lines = [shapely.LineString([(-0.5, below), (400, below)]), shapely.LineString([(400, -0.5), (400, 719.5)])]
+    cells = partition.cells_between([PHOTO.boundary, *lines])
+    assert len(cells) == 3
+    cut = cut_at(cells, sky, raster)
+    assert len(cut) == 4
+    corners = np.concatenate([shapely.get_coordinates(cell) for cell in cut])
+    near = np.linalg.norm(corners - [400, below], axis=1) < 12
+    assert np.ptp(corners[near], axis=0) == pytest.approx([0, 0], abs=1e-5)  # no step at the line's end
+
+
+def test_no_sky_leaves_the_cells(raster):
+    assert cut_at([PHOTO], shapely.Polygon(), raster) == [PHOTO]
+    assert not near_outline(shapely.Polygon(), raster).any()
+
+
+def test_borders_may_follow_the_outline(raster, drawn):
+    near = near_outline(drawn(), raster)
+    assert near[HEIGHT : HEIGHT + 3, 5:-5].all()
+    assert not near[: HEIGHT - 10, 5:-5].any() and not near[HEIGHT + 10 :].any()
+
+
+@given(st.lists(st.integers(20, 200), min_size=4, max_size=12), st.integers(0, 100))
+def test_cells_still_fill_the_photo(raster, heights, at):
+    """A skyline of towers of any height, one beside the other."""
+    mask = np.zeros(raster.shape, bool)
+    for number, column in enumerate(np.array_split(np.arange(raster.shape[1]), len(heights))):
+        mask[: heights[number], column] = True
+    sky = find_sky(Heaven(mask.ravel(), is_sky=True, is_ceiling=False), raster)
+    upright = shapely.LineString([(9.6 * at, -0.5), (9.6 * at, 719.5)])
+    cells = cut_at(partition.cells_between([PHOTO.boundary, upright]), sky, raster)
+    assert sum(cell.area for cell in cells) == pytest.approx(PHOTO.area)
+    assert shapely.union_all(cells).area == pytest.approx(PHOTO.area)
+    assert all(cell.is_valid for cell in cells)
