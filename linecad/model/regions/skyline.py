@@ -18,11 +18,11 @@ from linecad.model.regions.raster import Raster
 MARGIN = 1.5  # samples between what is sky for sure and its end
 SPIRE = 3.5  # samples; what is nowhere wider than twice that does not reach into the sky: a vane, an antenna
 LEAST_HOLE = 0.005  # of the photo; a smaller thing in the sky is no part of the scene
-LEAST_PART = 0.0012  # of the photo, of a cell: less is not cut off
+LEAST_PART = 0.0008  # of the photo, of a cell: less is not cut off
 THIN = 2.5  # samples; what is nowhere wider than twice that is not cut off
 STRAIGHT = 3.0  # samples, by which the outline may be straightened
-ZIGZAG = 24.0  # samples; a shorter edge between two that turn against each other is left out
-AT_CORNER = 8.0  # samples, within which the outline goes to a corner of a cell
+ZIGZAG = 20.0  # samples; a shorter edge between two that turn against each other is left out
+AT_CORNER = 5.0  # samples, within which the outline goes to a corner of a cell
 
 
 def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
@@ -32,7 +32,8 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
     # A row more above and a column to either side: the sky goes on beyond the photo.
     mask = cv2.copyMakeBorder(heaven.seed.reshape(raster.shape).astype(np.uint8), 1, 0, 1, 1, cv2.BORDER_REPLICATE)
     rings, nested = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    parts, holes = [], []
+    parts: list[shapely.Geometry] = []
+    holes: list[shapely.Geometry] = []
     for ring, (_, _, _, outer) in zip(rings, nested[0], strict=True) if len(rings) else ():
         if len(ring) > 2:
             shape = shapely.make_valid(shapely.Polygon((ring[:, 0].astype(np.float64) - 0.5) * raster.step - 0.5))
@@ -40,7 +41,8 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
     large = [hole for hole in holes if hole.area >= LEAST_HOLE * raster.size * raster.step**2]
     sky = shapely.difference(shapely.union_all(parts), shapely.union_all(large))
     wide = shapely.buffer(sky, (MARGIN + SPIRE) * raster.step, quad_segs=4)
-    return shapely.buffer(wide, -SPIRE * raster.step, quad_segs=4)
+    narrow: shapely.Geometry = shapely.buffer(wide, -SPIRE * raster.step, quad_segs=4)
+    return narrow
 
 
 def near_outline(sky: shapely.Geometry, raster: Raster) -> Bool:
@@ -114,6 +116,7 @@ def _straight(outline: Float, step: float) -> Float:
         turn = np.sign(edges[:-1, 0] * edges[1:, 1] - edges[:-1, 1] * edges[1:, 0])
         short = [k for k in range(1, len(edges) - 1) if turn[k - 1] * turn[k] < 0 and length[k] < ZIGZAG * step]
         if not short:
-            return corners if not np.array_equal(corners[0], corners[-1]) else corners[:1]
+            straight: Float = corners[:1] if np.array_equal(corners[0], corners[-1]) else corners
+            return straight
         k = min(short, key=lambda each: length[each])
         corners = np.concatenate([corners[:k], [(corners[k] + corners[k + 1]) / 2], corners[k + 2 :]])
