@@ -6,7 +6,6 @@ ground around it and reaches up to the wall behind it.
 """
 
 from dataclasses import replace
-from typing import Any
 
 import cv2
 import numpy as np
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.raster import SHADES, Raster
+from linecad.model.regions.raster import SHADES, Raster, traced
 
 STRANGE = (2.0, 2.75, 3.5)  # spreads of the ground's colours, from which on it is not the ground; none fits all photos
 KNOWN = 0.5  # share of what is found already, of a part that is not looked at again
@@ -152,18 +151,6 @@ def _before_walls(raster: Raster, ground: Bool) -> Bool:
 
 def outlines(mask: Bool, step: float) -> list[shapely.Geometry]:
     """Polygons, px, around the parts of a mask (H, W) of samples of `step` px, with their larger holes."""
-    rings, nested = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    found: list[shapely.Geometry] = []
-    for number, ring in enumerate(rings):
-        if nested[0, number, 3] < 0 and len(ring) > 2:
-            inner = [hole for other, hole in enumerate(rings) if nested[0, other, 3] == number and len(hole) > 2]
-            holes = [hole for hole in inner if cv2.contourArea(hole) >= HOLE * mask.size]
-            around = shapely.Polygon(_pixels(ring, step), [_pixels(hole, step) for hole in holes])
-            found.append(shapely.make_valid(shapely.simplify(around.buffer(0), SMOOTH * step)))
-    return found
-
-
-def _pixels(ring: NDArray[Any], step: float) -> Float:
-    """Pixels (N, 2) at the middles of samples (N, 1, 2)."""
-    pixels: Float = (ring[:, 0].astype(np.float64) + 0.5) * step - 0.5
-    return pixels
+    return [
+        shapely.make_valid(shapely.simplify(around.buffer(0), SMOOTH * step)) for around in traced(mask, step, HOLE)
+    ]

@@ -98,11 +98,15 @@ def find_labels(
     """
     camera, segments = view.camera, find_segments(lines, surfaces, raster, view)
     sky = find_sky(heaven, raster)
+
+    def cells_of(border: Float) -> list[shapely.Polygon]:
+        return cut_at(told.cut(border), sky, raster)
+
     costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
     forced = told.over(costs, surfaces, raster)
     drawn = _drawn(segments, raster) | near_outline(sky, raster)
     border, _ = partition.extended(segments, camera.width, camera.height, raster.step)
-    found = _labels(cut_at(told.cut(border), sky, raster), forced, drawn, surfaces, raster)
+    found = _labels(cells_of(border), forced, drawn, surfaces, raster)
     shown = np.unique(found.label[found.label < len(surfaces)])
     costs, surfaces = costs[:, [*shown.tolist(), SKY, CLUTTER]], [surfaces[number] for number in shown.tolist()]
     label = np.searchsorted(shown, found.label) + (found.label == found.clutter)
@@ -116,7 +120,7 @@ def find_labels(
         meets = _meets_of_neighbours(found, shown, sides, find_meets(lines, surfaces, view))
         every, count = np.concatenate([meets, segments]), len(meets)
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answer = _labels(cut_at(told.cut(border), sky, raster), forced, drawn, surfaces, raster)
+        answer = _labels(cells_of(border), forced, drawn, surfaces, raster)
         taken = _shown_sides(answer, sides, told.samples("clutter", raster))
         if len(taken) == len(sides):
             break
@@ -126,7 +130,7 @@ def find_labels(
         used = np.unique(rows[_bordering(answers[-1], border, run * camera.width) & (rows >= 0)])
         every, count = every[used], int((used < count).sum())
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answers.append(_labels(cut_at(told.cut(border), sky, raster), forced, drawn, surfaces, raster))
+        answers.append(_labels(cells_of(border), forced, drawn, surfaces, raster))
     best = _proven(min(answers, key=lambda answer: answer.price), raster)
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 

@@ -6,9 +6,11 @@ across whatever the photo's size, so that lengths in samples mean the same in ev
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import cv2
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int, true_places
@@ -196,3 +198,24 @@ def _votes(photo: Picture, shape: tuple[int, int], step: float, camera: Camera, 
     sample = (row // FINER) * shape[1] + column // FINER
     votes = np.bincount(sample * (none + 1) + votes_for, minlength=shape[0] * shape[1] * (none + 1))
     return votes.reshape(-1, none + 1).astype(np.float64)
+
+
+def traced(mask: Bool, step: float, least_hole: float) -> list[shapely.Polygon]:
+    """Polygons, px, through the outermost samples of the parts of a mask (H, W) of samples of `step` px.
+
+    With their holes of a share `least_hole` of the mask or more. Thin parts touch themselves, and are not valid.
+    """
+    rings, nested = cv2.findContours(mask.astype(np.uint8), cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
+    found = []
+    for number, ring in enumerate(rings):
+        if nested[0, number, 3] < 0 and len(ring) > 2:
+            inner = [hole for other, hole in enumerate(rings) if nested[0, other, 3] == number and len(hole) > 2]
+            holes = [hole for hole in inner if cv2.contourArea(hole) >= least_hole * mask.size]
+            found.append(shapely.Polygon(_middles(ring, step), [_middles(hole, step) for hole in holes]))
+    return found
+
+
+def _middles(ring: NDArray[Any], step: float) -> Float:
+    """Pixels (N, 2) at the middles of samples (N, 1, 2)."""
+    pixels: Float = (ring[:, 0].astype(np.float64) + 0.5) * step - 0.5
+    return pixels

@@ -13,7 +13,7 @@ import shapely
 from linecad.arrays import Bool, Float
 from linecad.model.regions import partition
 from linecad.model.regions.evidence import Heaven
-from linecad.model.regions.raster import Raster
+from linecad.model.regions.raster import Raster, traced
 
 MARGIN = 1.5  # samples between what is sky for sure and its end
 SPIRE = 3.5  # samples; what is nowhere wider than twice that does not reach into the sky: a vane, an antenna
@@ -30,16 +30,9 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
     if not heaven.is_sky:
         return shapely.Polygon()
     # A row more above and a column to either side: the sky goes on beyond the photo.
-    mask = cv2.copyMakeBorder(heaven.seed.reshape(raster.shape).astype(np.uint8), 1, 0, 1, 1, cv2.BORDER_REPLICATE)
-    rings, nested = cv2.findContours(mask, cv2.RETR_CCOMP, cv2.CHAIN_APPROX_NONE)
-    parts: list[shapely.Geometry] = []
-    holes: list[shapely.Geometry] = []
-    for ring, (_, _, _, outer) in zip(rings, nested[0], strict=True) if len(rings) else ():
-        if len(ring) > 2:
-            shape = shapely.make_valid(shapely.Polygon((ring[:, 0].astype(np.float64) - 0.5) * raster.step - 0.5))
-            (parts if outer < 0 else holes).append(shape)
-    large = [hole for hole in holes if hole.area >= LEAST_HOLE * raster.size * raster.step**2]
-    sky = shapely.difference(shapely.union_all(parts), shapely.union_all(large))
+    mask = np.pad(heaven.seed.reshape(raster.shape), ((1, 0), (1, 1)), mode="edge")
+    parts = [shapely.make_valid(part) for part in traced(mask, raster.step, LEAST_HOLE)]
+    sky = shapely.transform(shapely.union_all(parts), lambda padded: padded - raster.step)
     wide = shapely.buffer(sky, (MARGIN + SPIRE) * raster.step, quad_segs=4)
     narrow: shapely.Geometry = shapely.buffer(wide, -SPIRE * raster.step, quad_segs=4)
     return narrow
@@ -75,6 +68,8 @@ def _outlines_in(cell: shapely.Polygon, sky: shapely.Geometry, raster: Raster) -
         part for part in partition.polygons_of(shapely.intersection(cell, sky))
         if _is_large(part, raster) and _is_large(shapely.difference(cell, part), raster)
     ]  # fmt: skip
+    if not parts:
+        return []
     across = shapely.intersection(shapely.boundary(sky), cell)
     lines = [line for line in shapely.get_parts(across) if isinstance(line, shapely.LineString)]
     merged = shapely.get_parts(shapely.line_merge(shapely.MultiLineString(lines)))
@@ -90,10 +85,9 @@ def _is_large(part: shapely.Geometry, raster: Raster) -> bool:
 
 
 def _sides_of(cells: list[shapely.Polygon]) -> Float:
-    """The sides (N, 2, 2) px of cells, each from corner to corner of any of them."""
-    sides = shapely.union_all(shapely.boundary(np.array(cells, object)), grid_size=partition.GRID)
-    corners = [shapely.get_coordinates(side) for side in shapely.get_parts(sides)]
-    return np.array([pair for each in corners for pair in pairwise(each)])
+    """The sides (N, 2, 2) px of cells; as cells have the corners of their neighbours, from corner to corner of any."""
+    rings = shapely.get_parts(shapely.boundary(np.array(cells, object)))
+    return np.array([pair for ring in rings for pair in pairwise(shapely.get_coordinates(ring))])
 
 
 def _at_corners(outline: Float, sides: Float, tree: shapely.STRtree, step: float) -> Float:

@@ -24,9 +24,9 @@ def raster(house):
 def drawn(raster):
     """A function of places (row, column) that are sky as far down as HEIGHT, or not: the sky of that mask."""
 
-    def draw(*things, height=HEIGHT):
+    def draw(*things):
         mask = np.zeros(raster.shape, bool)
-        mask[:height] = True
+        mask[:HEIGHT] = True
         for thing in things:
             mask[thing] = False
         return find_sky(Heaven(mask.ravel(), is_sky=True, is_ceiling=False), raster)
