@@ -19,6 +19,7 @@ OWN, GREY = FILLS = ("own", "grey")  # what is painted where something hides a f
 PLAIN = tuple(round(255 * value) for value in FACE)  # sRGB, of texels that the photo says nothing about
 _GROWN = 0.0075  # of the photo's width, by which hidden parts grow: their rings are about as far off
 _LEAST_GROWN = 2.0  # px; the width of an edge in a photo
+_THIN = 5  # px, from which what is left of a part beside nearer faces is more than the rounding of their borders
 _FADED = 2 / 3  # of what they grow by: the width of the way from the photo's colours to the filled ones
 _SAMPLES = 48  # a side of the small copy whose colours count
 _TEXELS = 4  # at most, down and across, whose mean is one of its colours
@@ -29,12 +30,17 @@ _REACH = 0.2  # of the patch: the distance at which a colour counts less by a fa
 _Pixels = NDArray[np.uint8]
 
 
-def cover_of(face: FlatFace, shape: Shape, view: View, to_photo: Float, size: tuple[int, int]) -> _Pixels:
-    """(rows, columns) of a patch: 255 where something hides the face in the photo, 0 where nothing does.
+def cover_of(
+    face: FlatFace, shape: Shape, behind: Bool, view: View, to_photo: Float, size: tuple[int, int]
+) -> _Pixels | None:
+    """(rows, columns) of a patch: 255 where a thing without a face hides it in the photo, else 0; None if none does.
 
-    `to_photo` (3, 3) takes column, row and 1 of a texel to the box of the face in the photo; `size` is columns, rows.
+    `behind` (B, C) tells where in its box the face is behind another one, `to_photo` (3, 3) takes column, row and 1 of
+    a texel to that box; `size` is columns, rows.
     """
-    seen = _cover_in_photo(face, shape, view)
+    seen = _cover_in_photo(face, shape, behind, view)
+    if not seen.any():
+        return None
     half = ((size[0] + 1) // 2, (size[1] + 1) // 2)  # a quarter of the time; the borders of a cover are wide
     x, y = size[0] / half[0], size[1] / half[1]
     grow = np.array([[x, 0.0, (x - 1) / 2], [0.0, y, (y - 1) / 2], [0.0, 0.0, 1.0]])  # about the middles of texels
@@ -42,7 +48,7 @@ def cover_of(face: FlatFace, shape: Shape, view: View, to_photo: Float, size: tu
     return np.asarray(cv2.resize(cover, size), np.uint8)
 
 
-def _cover_in_photo(face: FlatFace, shape: Shape, view: View) -> _Pixels:
+def _cover_in_photo(face: FlatFace, shape: Shape, behind: Bool, view: View) -> _Pixels:
     left, top, right, bottom = shape.box
     cover = np.zeros((bottom - top, right - left), np.uint8)
     grown = max(_GROWN * view.width, _LEAST_GROWN)
@@ -50,10 +56,27 @@ def _cover_in_photo(face: FlatFace, shape: Shape, view: View) -> _Pixels:
         seen = seen_part(ring, view)
         if len(seen):
             points = np.round((seen[:, :2] / seen[:, 2:] - [left, top]) * 2**SHIFT).astype(np.int32)
-            cv2.fillPoly(cover, [points], (255,), cv2.LINE_8, SHIFT)
-            cv2.polylines(cover, [points], True, (255,), round(2 * grown), cv2.LINE_8, SHIFT)
+            _add(cover, points, behind, grown)
     width = 2 * round(_FADED * grown / 2) + 1
     return np.asarray(cv2.blur(cover, (width, width), borderType=cv2.BORDER_REPLICATE), np.uint8)
+
+
+def _add(cover: _Pixels, ring: NDArray[np.int32], behind: Bool, grown: float) -> None:
+    """Fill a ring (V, 2), in the fixed point of SHIFT, and `grown` px about it, but for what is `behind` another face.
+
+    Of a pane its wall hides a strip: the ring of that is exact, and what is beside it is seen.
+    """
+    inside = np.zeros_like(cover)
+    cv2.fillPoly(inside, [ring], (255,), cv2.LINE_8, SHIFT)
+    of_faces = cv2.countNonZero(inside[behind])
+    if of_faces:
+        inside[behind] = 0
+        inside = np.asarray(cv2.morphologyEx(inside, cv2.MORPH_OPEN, np.ones((_THIN, _THIN), np.uint8)), np.uint8)
+        side = 2 * round(grown) + 1
+        cv2.dilate(inside, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side)), inside)
+    else:
+        cv2.polylines(inside, [ring], True, (255,), round(2 * grown), cv2.LINE_8, SHIFT)
+    cv2.max(cover, inside, cover)
 
 
 def fill_behind(colours: _Pixels, cover: _Pixels, known: Bool, fill: str = OWN) -> None:

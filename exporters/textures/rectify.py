@@ -86,7 +86,8 @@ def _paint(
     """RGB of a patch with its margin, and where something without a face hides it, 255; None where nothing does."""
     left, top, right, bottom = shape.box
     here = np.s_[top:bottom, left:right]
-    shown = np.where(hidden_in_photo(shape, nearest), np.uint8(0), np.uint8(255))
+    behind = hidden_in_photo(shape, nearest)
+    shown = np.where(behind, np.uint8(0), np.uint8(255))
     to_box = np.array([[1.0, 0.0, -left], [0.0, 1.0, -top], [0.0, 0.0, 1.0]])
     to_photo = to_box @ view.projection @ _to_space(face, patch)
     size = (patch.columns + 2 * MARGIN, patch.rows + 2 * MARGIN)
@@ -105,12 +106,13 @@ def _paint(
     )
     blurred = min(max(_BLURRED / step, 1.0), _MOST_BLURRED)
     pure, painted = _pure(known, blurred), np.asarray(warped, np.uint8)
-    cover = cover_of(face, shape, view, to_photo, size) if face.hidden else None
+    cover = cover_of(face, shape, behind, view, to_photo, size) if face.hidden else None
     clear = pure if cover is None else pure & (cover == 0)
     without_streaks(painted, clear, streaks(to_photo, size))
     if cover is not None:
         fill_behind(painted, cover, pure, fill)
-    return _continued(painted, pure, MARGIN + blurred + 1), cover
+    reach = MARGIN + blurred + 1 if face.opening is None else max(size)  # the jamb before a pane hides more of the same
+    return _continued(painted, pure, reach), cover
 
 
 def _to_space(face: FlatFace, patch: Patch) -> Float:

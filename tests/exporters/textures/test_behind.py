@@ -5,6 +5,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 import pytest
+import shapely
 
 from exporters.format_options import TEXTURES
 from exporters.formats import FORMATS, export
@@ -161,3 +162,39 @@ def test_every_format_with_textures_has_the_filled_ones(facade, hedge, photo, tm
     assert any(page.data in path.read_bytes() for path in tmp_path.rglob("*") if path.is_file())
     assert page.data != build_textures(facade(()), photo, 4096).pages[0].data
     assert page.data == build_textures(scene, photo, 4096).pages[0].data
+
+
+def test_what_its_own_wall_hides_of_a_pane_takes_nothing_of_the_rest(row):
+    photo = np.random.default_rng(3).integers(0, 256, (row.camera.height, row.camera.width, 3), np.uint8)
+    pane = next(face for plane in row.planes for face in plane.faces if face.id == 10)
+    wall = next(face for plane in row.planes for face in plane.faces if face.kind == "wall")
+    hole = wall.holes[2] * (pane.outline[0, 1] / wall.holes[2][0, 1])  # as it shows on the plane of the pane
+    flat = [shapely.Polygon(ring[:, [0, 2]]) for ring in (pane.outline, hole)]
+    behind = flat[0] - flat[1]
+    assert 0.02 < behind.area / flat[0].area < 0.5
+    strip = np.insert(np.array(behind.exterior.coords)[:-1], 1, pane.outline[0, 1], axis=1)
+    before, after = (patch_of(scene, photo, 10) for scene in (row, with_hidden(row, 10, strip)))
+    assert (before == after).all()
+    assert not is_colour(after, PLAIN, 0).any()
+    # A thing that hides the pane, beside its wall, still is not painted on it.
+    middle = pane.outline.mean(axis=0)
+    thing = middle + 0.5 * (pane.outline - middle)
+    assert (patch_of(with_hidden(row, 10, strip, thing), photo, 10) != before).any()
+
+
+def with_hidden(scene, identity, *hidden):
+    """A scene with hidden parts of one of its faces."""
+    planes = [
+        replace(plane, faces=tuple(replace(f, hidden=hidden) if f.id == identity else f for f in plane.faces))
+        for plane in scene.planes
+    ]
+    return replace(scene, planes=tuple(planes))
+
+
+def patch_of(scene, photo, identity):
+    """The pixels of a face's patch without its margin."""
+    model, view = build_model(scene), view_of(scene)
+    layout = build_layout(model, view, 4096)
+    pages, _ = paint_pages(model, layout, view, photo)
+    (patch,) = (each for face, each in zip(model.faces, layout.patches, strict=True) if face.id == identity)
+    return pages[patch.page][patch.top : patch.top + patch.rows, patch.left : patch.left + patch.columns]
