@@ -10,7 +10,7 @@ from linecad.line_graph import Status
 from solver.backends.scip import Watch, run, version
 from solver.bodies.local_search import climb, improve, margins
 from solver.bodies.program import build
-from solver.bodies.ties import Placement, Ties
+from solver.bodies.ties import ROUNDING, Placement, Ties
 from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_gap
 from solver.progress import Reporter, catch_interrupt
 
@@ -84,19 +84,36 @@ def _about(ties: Ties, log_scale: Float, reference: int) -> Float:
 
 
 def _refined(ties: Ties, log_scale: Float) -> Float:
-    """The middle of what counts: weighted least squares, kept where the counted ties still hold there.
+    """The middle of what counts: weighted least squares, as far as the counted ties still hold on the way there.
 
     The program knows intervals only, and its answer lies at their ends. Ties that yield come after all others: they
     shift as wholes what these hold together, and may cease to hold.
     """
-    counted = ties.counted(log_scale)
-    yields = np.asarray(ties.yields)
-    firm = ties.subset(~yields)
-    refined = log_scale + _step(ties.subset(counted & ~yields), log_scale, np.arange(len(log_scale)))
-    if firm.value(refined) < firm.value(log_scale):
-        refined = log_scale
+    counted, yields = ties.counted(log_scale), np.asarray(ties.yields)
+    firm = ties.subset(counted & ~yields)
+    refined, part = log_scale, np.arange(len(log_scale))
+    while True:
+        step = _step(firm, refined, part)
+        share, tie = _way(firm, refined, step)
+        refined = refined + share * step
+        if tie is None:
+            break
+        one, other = part[firm.bodies[tie]]  # at the end of this interval: its bodies go on together
+        part = np.where(part == other, one, part)
     part = ties.parts(counted & ~yields, len(log_scale))
     return refined + _step(ties.subset(counted & yields), refined, part)
+
+
+def _way(ties: Ties, log_scale: Float, step: Float) -> tuple[float, int | None]:
+    """The share of a step (B,) for which all ties still hold, and the tie at the end of whose interval it ends."""
+    first, second = ties.bodies.T
+    moved = step[first] - step[second]
+    missed = ties.log_ratio - (log_scale[first] - log_scale[second])
+    with np.errstate(divide="ignore"):
+        room = np.maximum(ties.tolerance + np.sign(moved) * missed, 0.0) / np.abs(moved)
+    room = np.where(np.abs(moved) > ROUNDING, room, np.inf)
+    tie = int(room.argmin()) if len(room) else 0
+    return (1.0, None) if not len(room) or room[tie] >= 1.0 else (float(room[tie]), tie)
 
 
 def _step(ties: Ties, log_scale: Float, part: Int) -> Float:

@@ -139,6 +139,17 @@ def test_scales_are_in_the_middle_of_what_counts(seed: int) -> None:
         assert ties.value(found.log_scale) == pytest.approx(found.objective), "what counts goes before its middle"
 
 
+def test_one_tie_at_the_end_of_its_interval_keeps_no_other_body_from_its_middle() -> None:
+    """Three ties in a ring miss each other by 0.03, the least worth of them by all it may; two place one more body."""
+    ring, two = [[0, 1], [1, 2], [2, 0]], [[3, 0], [3, 0]]
+    ratio, weight = [0.0, 0.03, 0.0, 0.1, 0.11], [10.0, 1.0, 10.0, 1.0, 3.0]
+    ties = Ties([*ring, *two], ratio, [0.02] * 5, weight, [-1] * 5)
+    found = place(ties, 4, 0, OPTIONS)
+    assert found.counted.all()
+    assert ties.misfit(found.log_scale)[:3].tolist() == pytest.approx([0.005, 0.02, 0.005], abs=1e-9)
+    assert found.log_scale[3] == pytest.approx(0.1075, abs=1e-9)
+
+
 def test_ties_that_yield_move_nothing_that_others_hold() -> None:
     firm = Ties([[0, 1]], [0.3], [0.02], [1.0], [-1])
     for ratio in (0.285, 0.3, 0.319):
