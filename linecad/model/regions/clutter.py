@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.model.regions.filling import Filled
+from linecad.model.regions.on_roofs import is_on_roof, samples_in
+from linecad.model.regions.partition import polygons_of
 from linecad.model.regions.raster import SHADES, Raster, traced
 
 STRANGE = (2.0, 2.75, 3.5)  # spreads of the ground's colours, from which on it is not the ground; none fits all photos
@@ -40,7 +42,8 @@ def with_hidden(filled: Filled, raster: Raster) -> Filled:
     shown = labels.label[labels.cell].reshape(raster.shape)
     ground = np.isin(shown, [k for k, surface in enumerate(labels.surfaces) if surface.kind == "ground"])
     before = find_things(raster.colour, ground, (shown < labels.sky) & ~ground) | _before_walls(raster, ground)
-    clutter = shapely.difference(filled.clutter, shapely.union_all(outlines(_of_walls(filled, raster), raster.step)))
+    behind = shapely.difference(filled.clutter, shapely.union_all(outlines(_of_walls(filled, raster), raster.step)))
+    clutter = shapely.union_all([part for part in polygons_of(behind) if not is_on_roof(part, filled.labels, raster)])
     return replace(filled, clutter=shapely.union_all([clutter, *outlines(before, raster.step)]))
 
 
@@ -48,10 +51,7 @@ def _of_walls(filled: Filled, raster: Raster) -> Bool:
     """Where (H, W) what was called clutter has the colours of the wall that it was filled in as: it is that wall."""
     labels = filled.labels
     label = labels.label[labels.cell]
-    row, column = np.divmod(np.arange(raster.size), raster.shape[1])
-    pixels = (np.column_stack([column, row]) + 0.5) * raster.step - 0.5
-    shapely.prepare(filled.clutter)
-    clutter = shapely.contains_xy(filled.clutter, pixels)
+    clutter = samples_in(filled.clutter, raster).ravel()
     found = np.zeros(raster.shape, bool)
     for number, surface in enumerate(labels.surfaces):
         own = label == number

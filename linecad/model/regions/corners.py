@@ -5,7 +5,7 @@ building begins there, at right angles, though it may have no line of its own: w
 and no wall that is farther away.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -16,12 +16,16 @@ from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines
 
 LEAST_HEIGHT = 0.05  # of the photo's height, of an upright border between two walls
+MOST_GAP = 0.05  # of the photo's width, of clutter between two walls that may be the side of the nearer one
 LEAST_SEEN = 0.002  # of the photo; a side that is hardly seen from beside is none
 STEP = 1.05  # times the depth of a wall's end, from which on what is beside it is behind it
+BEFORE = 0.02  # of the depth of a wall's end, by which borders of cells may miss it
+MORE = 0.25  # of how far a side goes back, that it may go farther
 SAME = 1.5  # samples, within which borders are one upright
 IN_PLANE = 0.03  # of the offset; cornices are that far before their wall
 APART = 1.2  # times the offset of a side, of a wall behind that faces as it does; one nearer is that side itself
 GOES_ON = 0.05  # share of the lines of a wall that may lie beyond its end
+SIDE_PRICE = 1 / 3  # of a side, where one end and one wall behind it say where it is
 SIDE_COST = 0.75  # of a side, which has no lines to be near to; that of a ground
 ABOVE_COST, MOST_ABOVE = 4.0, 1.5  # for each height of a wall by which its side is higher
 BEHIND_COST = 0.5  # of a wall that would be seen through a side
@@ -37,6 +41,7 @@ class Known:
     surfaces: list[Surface]
     lines: Lines
     raster: Raster
+    gap: Bool | None = None  # (S,) what is clutter, though `shown` has it as a wall; None: nothing is
 
     def box(self, number: int) -> Float:
         """Low and high components (2, K) of the lines of a surface, or of what a depth map shows of it."""
@@ -45,6 +50,27 @@ class Known:
             return known.copy()
         ends = components(self.lines.ends[self.surfaces[number].lines], self.raster.turns)
         return np.asarray(np.percentile(ends.reshape(-1, ends.shape[2]), [1, 99], axis=0))
+
+    def without_gaps(self) -> "Known":
+        """The same where narrow clutter between two walls is the farther one: it is beside the end of the nearer."""
+        shown = self.shown.reshape(self.raster.shape).copy()
+        clutter, most = len(self.surfaces) + 1, MOST_GAP * self.raster.shape[1]
+        walls = np.array([*(each.kind == "wall" for each in self.surfaces), False, False])
+        padded = np.pad(shown == clutter, ((0, 0), (1, 1)))
+        row, start = np.nonzero(padded[:, 1:] & ~padded[:, :-1])
+        _, end = np.nonzero(~padded[:, 1:] & padded[:, :-1])
+        inside = (start > 0) & (end < shown.shape[1]) & (end - start <= most)
+        row, start, end = row[inside], start[inside], end[inside]
+        left, right = shown[row, start - 1], shown[row, end]
+        between = walls[left] & walls[right] & (left != right)
+        for at, low, high, one, other in np.column_stack([row, start, end, left, right])[between].tolist():
+            first, second = (self._depth_at(number, at, (low + high) // 2) for number in (one, other))
+            shown[at, low:high] = one if first > second else other
+        return replace(self, shown=shown.ravel(), gap=shown.ravel() != self.shown)
+
+    def _depth_at(self, number: int, row: int, column: int) -> float:
+        surface, ray = self.surfaces[number], self.raster.rays[row * self.raster.shape[1] + column]
+        return float(surface.offset / ray[surface.axis]) if ray[surface.axis] else np.inf
 
     def on_lines(self, number: int) -> Bool:
         """Which points (T,) lie on the lines of a surface."""
@@ -84,15 +110,26 @@ class Side:
 
 
 def find_sides(ends: list[End], known: Known) -> list[Side]:
-    """The sides that begin at ends of walls and that the camera sees."""
-    sides = [_side(end, known) for end in ends if end.inwards * end.place > 0]
-    return [
-        side for side in sides
-        if side.hides.mean() > LEAST_SEEN and (
-            known.surfaces[side.behind].axis != side.surface.axis
-            or known.surfaces[side.behind].offset / side.surface.offset > APART
-        )
-    ]  # fmt: skip
+    """The sides that begin at ends of walls and that the camera sees, one for all walls that are behind one end."""
+    sides: list[Side] = []
+    for end in ends:
+        if end.inwards * end.place <= 0:
+            continue
+        side, behind = _side(end, known), known.surfaces[end.other]
+        is_itself = behind.axis == side.surface.axis and behind.offset / side.surface.offset <= APART
+        if is_itself or side.hides.mean() <= LEAST_SEEN:
+            continue
+        same = [at for at, other in enumerate(sides) if other.wall == end.wall and _is_one(other.surface, side.surface)]
+        if not same:
+            sides.append(side)
+            continue
+        larger = max(sides[same[0]], side, key=lambda each: each.hides.sum())
+        sides[same[0]] = replace(larger, hides=sides[same[0]].hides | side.hides)
+    return sides
+
+
+def _is_one(one: Surface, other: Surface) -> bool:
+    return one.axis == other.axis and abs(one.offset / other.offset - 1) < IN_PLANE
 
 
 def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
@@ -105,6 +142,8 @@ def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
             if surface.kind == "wall" and through.any():
                 least = 0.0 if _is_tied(number, side.wall, through, known) else UNBELIEVED
                 costs[through, number] = np.maximum(costs[through, number] + BEHIND_COST, least)
+        if known.gap is not None:
+            costs[side.hides & known.gap & ~known.raster.plants, -1] += BEHIND_COST
     return np.column_stack([costs[:, :-2], *(side.cost for side in sides), costs[:, -2:]])
 
 
@@ -181,12 +220,14 @@ def _side(end: End, known: Known) -> Side:
     box[:, wall.axis] = np.sort([wall.offset, behind.offset if behind.axis == wall.axis else far[np.abs(far).argmax()]])
     ground = next((each.offset for each in known.surfaces if each.kind == "ground"), box[0, UP])
     box[:, UP] = ground, max(box[1, UP], end.top)
-    surface = Surface("wall", axis, float(box[0, axis]), np.zeros(0, np.int64), None, box)
+    surface = Surface("wall", axis, float(box[0, axis]), np.zeros(0, np.int64), None, box, SIDE_PRICE)
     depth = _depth(surface, raster)
     back, height = raster.rays[:, wall.axis] * np.sign(wall.offset) * depth, raster.rays[:, UP] * depth
     most = abs(behind.offset) * STEP if behind.axis == wall.axis else np.inf
-    reached = (depth > 0) & (back > abs(wall.offset)) & (back < most) & (height > ground)
-    hides = reached & (known.shown == end.other)
+    reached = (depth > 0) & (back > (1 - BEFORE) * abs(wall.offset)) & (back < most) & (height > ground)
+    if behind.axis == wall.axis:
+        most = min(most, abs(behind.offset) + MORE * (abs(behind.offset) - abs(wall.offset)))
+    hides = reached & (back > abs(wall.offset)) & (back < most) & (known.shown == end.other)
     above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / (box[1, UP] - ground), 0.0, MOST_ABOVE))
     cost = np.where(reached, SIDE_COST + above, NEVER)
     return Side(surface, cost, end.wall, end.other, hides)

@@ -17,6 +17,7 @@ from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, expand
 from linecad.model.regions.evidence import sums
 from linecad.model.regions.labelling import UNIT, Labels
+from linecad.model.regions.on_roofs import is_on_roof
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.roofs import Roof, notes_on
@@ -25,8 +26,10 @@ from linecad.model.regions.wall_ends import Ends, ends_of_walls
 from linecad.scene import Camera
 
 SURROUNDED = 0.5  # share of the outline of clutter that is along surfaces
+ON_ROOF = 0.2  # the same of what stands out against the sky on a building
 LEAST_AREA = 0.0015  # of the photo, of a region that becomes a face
 NEVER = 10**7  # cost of a label that a cell may not take
+LAST = 5 * 10**6  # of clutter, where something hides what is behind it: more than of any surface that is reached
 TOUCH = 1e-3  # px
 UNREACHED, BEYOND = 10.0, 50.0  # cost a sample, from which on a good part of a cell lies where a surface is not seen
 SLACK = 0.01  # of its offset, by which samples may be beyond
@@ -60,7 +63,8 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     camera = view.camera
     clutter = shapely.union_all([region for number, region in found.regions if number == found.clutter])
     ends = ends_of_walls(found, raster, view)
-    open_regions = _to_fill(found, camera) + [part for each in ends.values() for part in each.beyond]
+    on_roofs = _on_roofs(found, raster)
+    open_regions = _to_fill(found, camera) + on_roofs + [part for each in ends.values() for part in each.beyond]
     if not open_regions:
         return Filled(found, clutter)
     uprights = [upright for each in ends.values() for upright in each.uprights]
@@ -80,14 +84,16 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     count = np.maximum(np.bincount(cell, minlength=len(cells)), 1)[:, None]
     # What a surface does not reach it does not show, however little else there is.
     reached = own[inside] < UNREACHED * count[inside]
-    whole[inside] = np.where(reached, np.minimum(np.rint(own[inside] * UNIT), NEVER), NEVER)
+    whole[inside] = np.where(reached, np.minimum(np.rint(own[inside] * UNIT), LAST - 1), NEVER)
+    if on_roofs:
+        whole[_inside(cells, on_roofs), found.sky] = NEVER
     small = inside & (label < found.sky)
     whole[small, label[small]] = NEVER
-    whole[inside, found.clutter] = NEVER - 1  # where nothing is reached, it stays what it is
+    whole[inside, found.clutter] = LAST  # where nothing is reached, it stays what it is
     started = np.where(inside, whole.argmin(axis=1), label)
     borders = neighbours(cells)
     label = expand(whole, borders, started, [*range(len(found.surfaces)), found.sky, found.clutter])
-    proof = prove(Program(whole, borders, 0, 0), label)
+    proof = prove(Program(whole, borders, np.zeros(0, np.int64)), label)
     gap = max(found.gap, proof.gap)
     filled = replace(found, cells=cells, cell=cell, label=proof.label, costs=whole, borders=borders, gap=gap)
     return Filled(filled, clutter)
@@ -109,13 +115,24 @@ def _not_beyond(found: Labels, ends: dict[int, Ends], raster: Raster) -> Float:
 
 def _to_fill(found: Labels, camera: Camera) -> list[shapely.Polygon]:
     """Clutter that is surrounded by surfaces, and regions too small for a face, px."""
-    walls = shapely.union_all([region for number, region in found.regions if number < found.sky])
-    least = LEAST_AREA * camera.width * camera.height
+    walls, least = _seen(found), LEAST_AREA * camera.width * camera.height
     return [
         region for number, region in found.regions
         if (number < found.sky and region.area < least)
         or (number == found.clutter and _shared(region, walls) >= SURROUNDED)
     ]  # fmt: skip
+
+
+def _on_roofs(found: Labels, raster: Raster) -> list[shapely.Polygon]:
+    """Clutter that stands on a building against the sky, px."""
+    walls = _seen(found)
+    clutter = [region for number, region in found.regions if number == found.clutter]
+    return [region for region in clutter if _shared(region, walls) >= ON_ROOF and is_on_roof(region, found, raster)]
+
+
+def _seen(found: Labels) -> shapely.Geometry:
+    """All surfaces, px."""
+    return shapely.union_all([region for number, region in found.regions if number < found.sky])
 
 
 def _shared(region: shapely.Polygon, others: shapely.Geometry) -> float:

@@ -66,6 +66,10 @@ class Labels:
         """The label of what has no plane."""
         return len(self.surfaces) + 1
 
+    def is_side(self, label: int) -> bool:
+        """Whether a label is a wall that begins where another one ends: it may be as narrow as that is thick."""
+        return label < self.sky and self.surfaces[label].price < 1
+
     @cached_property
     def regions(self) -> list[tuple[int, shapely.Polygon]]:
         """Every connected union of cells with one label, px, with corners only where its outline turns."""
@@ -112,6 +116,7 @@ def find_labels(
     label = np.searchsorted(shown, found.label) + (found.label == found.clutter)
     known = Known(label[found.cell], surfaces, lines, raster)
     costs = with_feet(costs, known, firm)
+    known = known.without_gaps()
     sides = find_sides(find_ends(known), known)
     while True:
         all_costs = with_sides(costs, sides, known)
@@ -127,7 +132,9 @@ def find_labels(
         sides = taken
     answers = [answer]
     for run in RUNS:
-        used = np.unique(rows[_bordering(answers[-1], border, run * camera.width) & (rows >= 0)])
+        used = np.unique(
+            rows[_bordering(answers[-1], border, run * camera.width, RUNS[0] * camera.width) & (rows >= 0)]
+        )
         every, count = every[used], int((used < count).sum())
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
         answers.append(_labels(cells_of(border), forced, drawn, surfaces, raster))
@@ -149,8 +156,7 @@ def _shown_sides(found: Labels, sides: list[Side], covered: Bool) -> list[Side]:
 
 def _proven(found: Labels, raster: Raster) -> Labels:
     """The labels, or cheaper ones of the same cells, with their gap to the cheapest."""
-    price = round(SURFACE * raster.size * UNIT)
-    proof = prove(Program(found.costs, found.borders, len(found.surfaces), price), found.label)
+    proof = prove(Program(found.costs, found.borders, _prices(found.surfaces, raster)), found.label)
     if proof.label is found.label:
         return replace(found, gap=proof.gap)
     return replace(found, label=_like_neighbours(found.cells, found.cell, proof.label), gap=proof.gap)
@@ -182,7 +188,7 @@ def _labels(cells: list[shapely.Polygon], costs: Float, drawn: Bool, surfaces: l
     label = expand(_whole(own), borders, label, candidates)
     whole = _whole(own + colour_costs(raster, cell, label, own.shape[1]))
     label = expand(whole, borders, label, candidates)
-    label = _without_doubtful(whole, borders, label, len(surfaces), SURFACE * raster.size * UNIT)
+    label = _without_doubtful(whole, borders, label, _prices(surfaces, raster))
     return Labels(surfaces, cells, cell, _like_neighbours(cells, cell, label), costs, whole, borders)
 
 
@@ -231,49 +237,56 @@ def _borders(cell: Int, drawn: Bool, raster: Raster) -> Borders:
     return Borders(cells, _whole(BORDER * np.bincount(index, np.concatenate(costs), len(cells))))
 
 
-def _without_doubtful(costs: Int, borders: Borders, label: Int, surfaces: int, price: float) -> Int:
-    """Labels without the surfaces that are not worth their price, the least worth of them first."""
+def _prices(surfaces: list[Surface], raster: Raster) -> Int:
+    """(K,) what it costs to show each surface, in whole units."""
+    return _whole(SURFACE * raster.size * np.array([surface.price for surface in surfaces], np.float64))
+
+
+def _without_doubtful(costs: Int, borders: Borders, label: Int, price: Int) -> Int:
+    """Labels without the surfaces that are not worth their price (K,), the least worth of them first."""
     costs = costs.copy()
     never = int(costs.max(initial=0)) + 1
     while True:
         worth = []
         shown = np.unique(label)
-        for number in shown[shown < surfaces].tolist():
+        for number in shown[shown < len(price)].tolist():
             own = label == number
             others = shown[shown != number]
             if len(others):
                 worth.append((int((costs[own][:, others].min(axis=1) - costs[own, number]).sum()), number))
         best = energy(costs, borders, label)
         for gain, number in sorted(worth)[:FEWEST_WINS]:
-            if gain > DOUBTFUL * price:
+            if gain > DOUBTFUL * price[number]:
                 continue
             without = costs.copy()
             without[:, number] = never
             others = shown[shown != number]
             moved = np.where(label == number, others[without[:, others].argmin(axis=1)], label)
             moved = expand(without, borders, moved, others.tolist())
-            if energy(without, borders, moved) < best + price:
+            if energy(without, borders, moved) < best + price[number]:
                 label, costs = moved, without
                 break
         else:
             return label
 
 
-def _bordering(found: Labels, lines: Float, least: float) -> Bool:
-    """Which lines (M, 2, 2) have a piece of `least` px or more that separates two labels."""
+def _bordering(found: Labels, lines: Float, least: float, least_of_sides: float) -> Bool:
+    """Which lines (M, 2, 2) have a piece of `least` px or more that separates two labels, or one of a side less."""
     edges = np.concatenate(
-        [
-            np.stack([corners[:-1], corners[1:]], axis=1)
-            for _, region in found.regions
-            for corners in (shapely.get_coordinates(ring) for ring in (region.exterior, *region.interiors))
-        ]
+        [_edges(region, least_of_sides if found.is_side(n) else least) for n, region in found.regions]
     )
-    edges = edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) >= least]
     along = lines[:, 1] - lines[:, 0]
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
     across = np.stack([-along[:, 1], along[:, 0]], axis=1)
     off = np.abs(((edges[:, None] - lines[None, :, :1]) * across[None, :, None]).sum(axis=3)).max(axis=2)
     return np.asarray((off < ON_BORDER).any(axis=0)) if len(edges) else np.zeros(len(lines), bool)
+
+
+def _edges(region: shapely.Polygon, least: float) -> Float:
+    """(E, 2, 2) the edges of a region, of `least` px or more."""
+    rings = [shapely.get_coordinates(ring) for ring in (region.exterior, *region.interiors)]
+    edges = np.concatenate([np.stack([corners[:-1], corners[1:]], axis=1) for corners in rings])
+    return np.asarray(edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) >= least])
 
 
 def united(cells: list[shapely.Polygon]) -> list[shapely.Polygon]:

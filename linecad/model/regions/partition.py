@@ -124,7 +124,7 @@ def _crossings(lines: Float, middle: Float, along: Float) -> Float:
     """Where an image line through `middle` (2,), of unit direction `along`, crosses lines (M, 2, 2): px from there."""
     start, direction = lines[:, 0] - middle, lines[:, 1] - lines[:, 0]
     turn = along[0] * direction[:, 1] - along[1] * direction[:, 0]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         place = (start[:, 0] * direction[:, 1] - start[:, 1] * direction[:, 0]) / turn
         share = (start[:, 0] * along[1] - start[:, 1] * along[0]) / turn
     on_line = np.isfinite(place) & (share >= -1e-9) & (share <= 1 + 1e-9)

@@ -34,18 +34,17 @@ class Proof:
 
 @dataclass(frozen=True, eq=False)
 class Program:
-    """Costs (C, L) of labels, their borders, and what each of the first `surfaces` labels costs if any cell has it."""
+    """Costs (C, L) of labels, their borders, and what each of the first K labels costs if any cell has it."""
 
     costs: Int
     borders: Borders
-    surfaces: int
-    price: int
+    price: Int  # (K,)
 
     def cost(self, label: Int) -> int:
         """What labels (C,) cost above the cheapest one of each cell."""
         shown = np.unique(label)
         above = energy(self.costs - self.costs.min(axis=1, keepdims=True), self.borders, label)
-        return above + self.price * int((shown < self.surfaces).sum())
+        return above + int(self.price[shown[shown < len(self.price)]].sum())
 
 
 def prove(program: Program, label: Int) -> Proof:
@@ -78,7 +77,7 @@ def _possible(program: Program) -> Bool:
     costs, (one, other) = program.costs, program.borders.cells.T
     count = len(costs)
     around = sum(np.bincount(side, program.borders.cost, count) for side in (one, other))
-    price = np.where(np.arange(costs.shape[1]) < program.surfaces, program.price, 0)
+    price = np.pad(program.price, (0, costs.shape[1] - len(program.price)))
     most = (costs + price).min(axis=1) + around
     return np.asarray(costs <= most[:, None])
 
@@ -91,7 +90,7 @@ def _rows(program: Program, possible: Bool) -> tuple[Float, LinearConstraint]:
     pair, label = np.nonzero(possible[program.borders.cells[:, 0]])
     start, end = number[program.borders.cells[pair].T, label]
     row_of_pair = np.arange(len(pair)) + count
-    shown = np.flatnonzero(own < program.surfaces)
+    shown = np.flatnonzero(own < len(program.price))
     row_of_shown = np.arange(len(shown)) + count + len(pair)
     first_pair, first_surface = len(cell), len(cell) + len(pair)
     both = end >= 0
@@ -105,11 +104,9 @@ def _rows(program: Program, possible: Bool) -> tuple[Float, LinearConstraint]:
     ]
     rows, columns = (np.concatenate([entry[each] for entry in entries]) for each in (0, 1))
     values = np.concatenate([np.full(len(entry[0]), entry[2]) for entry in entries])
-    size = (count + len(pair) + len(shown), first_surface + program.surfaces)
+    size = (count + len(pair) + len(shown), first_surface + len(program.price))
     above = program.costs - program.costs.min(axis=1, keepdims=True)
-    costs = np.concatenate(
-        [above[possible], program.borders.cost[pair], np.full(program.surfaces, program.price)]
-    ).astype(np.float64)
+    costs = np.concatenate([above[possible], program.borders.cost[pair], program.price]).astype(np.float64)
     low = np.where(np.arange(size[0]) < count, 1.0, -np.inf)
     high = np.where(np.arange(size[0]) < count, 1.0, 0.0)
     return costs, LinearConstraint(coo_array((values, (rows, columns)), size).tocsr(), low, high)

@@ -66,7 +66,7 @@ def _outlines_in(cell: shapely.Polygon, sky: shapely.Geometry, raster: Raster) -
         return []
     parts = [
         part for part in partition.polygons_of(shapely.intersection(cell, sky))
-        if _is_large(part, raster) and _is_large(shapely.difference(cell, part), raster)
+        if _is_large(part, sky, raster) and _is_large(shapely.difference(cell, part), sky, raster)
     ]  # fmt: skip
     if not parts:
         return []
@@ -77,11 +77,17 @@ def _outlines_in(cell: shapely.Polygon, sky: shapely.Geometry, raster: Raster) -
     return [shapely.get_coordinates(line) for line in around if not line.is_closed]
 
 
-def _is_large(part: shapely.Geometry, raster: Raster) -> bool:
-    """Whether a part of a cell is worth a cell of its own."""
-    wide = shapely.buffer(part, -THIN * raster.step, join_style="mitre")
-    back = shapely.buffer(wide, THIN * raster.step, join_style="mitre")
-    return bool(back.area >= LEAST_PART * raster.size * raster.step**2)
+def _is_large(part: shapely.Geometry, sky: shapely.Geometry, raster: Raster) -> bool:
+    """Whether a part of a cell is worth a cell of its own: more than a rim along the outline of the sky.
+
+    A strip that runs up into the sky is as thin as a rim, but has a short piece of the outline.
+    """
+    least, thin = LEAST_PART * raster.size * raster.step**2, THIN * raster.step
+    wide = shapely.buffer(part, -thin, join_style="mitre")
+    if shapely.buffer(wide, thin, join_style="mitre").area >= least:
+        return True
+    outline = shapely.intersection(shapely.boundary(sky), part).length
+    return bool(part.area >= least and part.area >= 2 * thin * outline)
 
 
 def _sides_of(cells: list[shapely.Polygon]) -> Float:

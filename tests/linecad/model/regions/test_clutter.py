@@ -107,3 +107,25 @@ def test_what_was_called_clutter_is_the_wall_where_it_has_its_colours(house, hou
     kept = with_hidden(called, raster).clutter
     share = shapely.intersection(kept, shapely.box(*box)).area / shapely.box(*box).area
     assert share < 0.3 if is_wall else share > 0.95
+
+
+@pytest.mark.parametrize(("what", "is_hidden"), [("lantern", False), ("tree", True), ("van", True)])
+def test_what_stands_out_against_the_sky_and_is_no_plant_hides_nothing(house, house_regions, what, is_hidden):
+    labels, step = house_regions.labels, house.camera.width / 480
+    shown = labels.label[labels.cell].reshape(-1, 480)
+    ground = next(number for number, surface in enumerate(labels.surfaces) if surface.kind == "ground")
+    column = next(at for at in range(200, 400) if shown[0, at] == labels.sky and shown[-1, at] == ground)
+    border = (
+        np.flatnonzero(shown[:, column] != labels.sky)[0] if what != "van" else np.argmax(shown[:, column] == ground)
+    )
+    middle = np.array([column, border]) * step
+    left, top, right, bottom = np.rint([*(middle - 40), *(middle + 40)]).astype(int).tolist()
+    photo = house.photo.copy()
+    photo[top:bottom, left:right] = (150, 30, 140)
+    if what == "tree":
+        photo = leaves(house.photo, left, top, right, bottom)
+    raster = take_raster(house.lines, house.camera, house.rotation, photo)
+    thing = shapely.box(left, top, right, bottom)
+    kept = with_hidden(replace(house_regions, clutter=thing), raster).clutter
+    share = shapely.intersection(kept, thing).area / thing.area
+    assert share > 0.6 if is_hidden else share < 0.05

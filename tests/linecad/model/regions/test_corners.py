@@ -1,5 +1,7 @@
 """Sides of buildings that begin at ends of walls, by boxes before a wall, told by rays."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import assume, given, settings
@@ -7,7 +9,17 @@ from hypothesis import strategies as st
 
 from linecad.directions import directions_of, partner
 from linecad.geometry import central_camera, project
-from linecad.model.regions.corners import APART, NEVER, UNBELIEVED, End, Known, find_ends, find_sides, with_sides
+from linecad.model.regions.corners import (
+    APART,
+    MOST_GAP,
+    NEVER,
+    UNBELIEVED,
+    End,
+    Known,
+    find_ends,
+    find_sides,
+    with_sides,
+)  # fmt: skip
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Lines
@@ -116,6 +128,30 @@ def test_a_wall_whose_lines_go_on_does_not_end():
     at = known.raster.rays[:, 0] * 5 / known.raster.rays[:, 1]
     shown = np.where((known.shown == FRONT) & (at < 1), BACK, known.shown)  # half of it is hidden by nothing
     assert sides_of(Known(shown, known.surfaces, known.lines, known.raster)) == []
+
+
+def test_narrow_clutter_beside_the_end_of_a_wall_is_its_side_and_a_wide_tree_is_not():
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 5.6, -40, 40)])
+    (plain,) = sides_of(known)
+    clutter = len(known.surfaces) + 1
+    column = np.arange(known.raster.size) % known.raster.shape[1]
+    for more, count in ((0, 1), (int(1.5 * MOST_GAP * known.raster.shape[1]), 0)):
+        wide = column[plain.hides].max() - more
+        covered = (known.shown == BACK) & (column >= min(column[plain.hides].min(), wide)) & (column <= wide + more)
+        seen = replace(known, shown=np.where(covered, clutter, known.shown))
+        assert sides_of(seen) == []
+        sides = sides_of(seen.without_gaps())
+        assert [side.surface.offset for side in sides] == pytest.approx([plain.surface.offset] * count, abs=0.02)
+
+
+def test_one_end_before_two_walls_is_one_side():
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 7.0, -40, 40), (1, 7.2, -40, 40)], components=(0, 0, 0))
+    upper = known.raster.rays[:, 2] > 0.15 * known.raster.rays[:, 1]
+    known = replace(known, shown=np.where((known.shown == 1) & upper, 2, known.shown))
+    assert {(end.wall, end.other) for end in find_ends(known)} == {(0, 1), (0, 2)}
+    (side,) = sides_of(known)
+    assert np.isin(known.shown[side.hides], [1, 2]).all()
+    assert set(known.shown[side.hides].tolist()) == {1, 2}
 
 
 def test_sides_of_turned_walls_are_in_their_frame():

@@ -34,7 +34,7 @@ def raster(house):
 def filled(house, raster):
     """A function of a tree or other thing (x, y, x, y) px before the three bands of the photo, and what it is."""
 
-    def build(*things, meets=MEET, surfaces=SURFACES, hint=None):
+    def build(*things, meets=MEET, surfaces=SURFACES, hint=None, never=(), raster=raster):
         frame = shapely.box(-0.5, -0.5, 959.5, 719.5)
         bands = [(SKY, -0.5, EAVES), (WALL, EAVES, FOOT), (GROUND, FOOT, 719.5)]
         boxes = [(shapely.box(*box), label) for label, box in things]
@@ -55,6 +55,7 @@ def filled(house, raster):
         of_samples[label[cell] == OTHER, OTHER] = -1  # what it shows speaks for it
         if hint is not None:
             of_samples[label[cell] == CLUTTER, hint] = -1
+        of_samples[np.ix_(label[cell] == CLUTTER, never)] = 50
         borders = Borders(np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
         costs = np.zeros((len(cells), 5), np.int64)
         labels = Labels(surfaces, cells, cell, label, of_samples, costs, borders)
@@ -107,6 +108,13 @@ def test_a_wall_does_not_go_on_behind_a_tree_beyond_its_end(filled):
     assert in_room[WALL] == pytest.approx(shown + (600 - 500) * (FOOT - 250))
 
 
+def test_trees_beside_the_end_of_a_wall_stay_trees_however_long_they_border_on_it(filled):
+    tree, above = (-0.5, 160, 90, 500), (-0.5, EAVES, 90, 160)
+    found = filled((CLUTTER, tree), (SKY, above), never=[SKY, GROUND])
+    assert areas(found)[WALL] == pytest.approx((959.5 - 90) * (FOOT - EAVES))
+    assert areas(found)[CLUTTER] == pytest.approx(90.5 * (500 - 160))
+
+
 def test_a_wall_that_is_shown_nowhere_is_behind_no_tree(filled):
     tree = (600, 250, 660, 380)
     assert areas(filled((CLUTTER, tree), hint=OTHER)) == pytest.approx(areas(filled()))
@@ -118,6 +126,12 @@ def test_a_tree_before_the_sky_is_not_filled(filled):
     found = filled((CLUTTER, tree))
     assert areas(found)[CLUTTER] == pytest.approx(60 * 160)
     assert found.clutter.area == pytest.approx(60 * 160)
+
+
+def test_a_dome_before_the_sky_is_filled_as_the_wall_below_it(house, filled):
+    seen = take_raster(house.lines, house.camera, house.rotation, house.photo)
+    found = filled((CLUTTER, (300, 100, 360, 180)), raster=seen)
+    assert areas(found)[WALL] == pytest.approx(areas(filled())[WALL] + 60 * (EAVES - 100))
 
 
 def test_what_the_border_of_the_photo_cuts_off_is_not_filled(filled):

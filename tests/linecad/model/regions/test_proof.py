@@ -25,7 +25,8 @@ def programs(draw):
     border = draw(st.lists(st.integers(0, 9), min_size=len(pairs), max_size=len(pairs)))
     borders = Borders(np.array(pairs, np.int64).reshape(-1, 2), np.array(border, np.int64))
     start = draw(st.lists(st.integers(0, LABELS - 1), min_size=cells, max_size=cells))
-    return Program(np.array(costs), borders, draw(st.integers(0, 2)), draw(st.integers(0, 15))), np.array(start)
+    price = np.array(draw(st.lists(st.integers(0, 15), max_size=2)), np.int64)
+    return Program(np.array(costs), borders, price), np.array(start)
 
 
 @settings(max_examples=200)
@@ -49,15 +50,17 @@ def test_labels_that_are_the_best_stay_as_they_are(case):
 
 def test_the_cost_is_that_of_cells_above_their_cheapest_of_borders_and_of_each_surface_once():
     costs = np.array([[5, 15, 105], [0, 20, 200]])
-    program = Program(costs, Borders(np.array([[0, 1]]), np.array([1000])), 2, 5000)
-    assert program.cost(np.array([1, 1])) == 10 + 20 + 5000
-    assert program.cost(np.array([0, 1])) == 20 + 1000 + 2 * 5000
+    program = Program(costs, Borders(np.array([[0, 1]]), np.array([1000])), np.array([5000, 7000]))
+    assert program.cost(np.array([1, 1])) == 10 + 20 + 7000
+    assert program.cost(np.array([0, 1])) == 20 + 1000 + 5000 + 7000
     assert program.cost(np.array([2, 2])) == 100 + 200
 
 
 # Three cells around a corner, each of which may be two of three labels: half of each is cheaper than any whole answer.
 TRIANGLE = Program(
-    np.array([[0, 0, 30], [30, 0, 0], [0, 30, 0]]), Borders(np.array([[0, 1], [1, 2], [0, 2]]), np.full(3, 8)), 3, 0
+    np.array([[0, 0, 30], [30, 0, 0], [0, 30, 0]]),
+    Borders(np.array([[0, 1], [1, 2], [0, 2]]), np.full(3, 8)),
+    np.zeros(3, np.int64),
 )
 
 

@@ -76,6 +76,16 @@ def test_what_is_thin_is_not_cut_off(raster, drawn):
     assert cut_at([above, below], sky, raster) == [above, below]
 
 
+def test_a_strip_of_a_wall_that_runs_up_into_the_sky_is_cut(raster, drawn):
+    sky = drawn()
+    end = sky.bounds[3] + 2
+    wall = shapely.union_all([shapely.box(-0.5, end, 959.5, 719.5), shapely.box(300, -0.5, 308, end)])
+    beside = [shapely.box(-0.5, -0.5, 300, end), shapely.box(308, -0.5, 959.5, end)]
+    cells = cut_at([wall, *beside], sky, raster)
+    assert len(cells) == 4
+    assert sky_of(cells, sky).covers(shapely.box(301, 0, 307, 280))
+
+
 def test_the_outline_goes_to_a_corner_that_is_near(raster, drawn):
     sky = drawn()
     below = 2 * HEIGHT + 8.0
