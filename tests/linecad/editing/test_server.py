@@ -48,9 +48,12 @@ class TestState:
     def test_after_a_solve_it_tells_the_model(self, page, made_photo):
         state = page.solve()
         scene = reconstruct(made_photo, Options())
-        # What faces added is in the model, and nothing that a person can correct.
-        pieces = [len(scene.lines.segments_of(row)) for row in np.flatnonzero(~scene.lines.by_face)]
-        assert sum(line["ends"] is not None for line in state["lines"]) == sum(pieces)
+        # What faces added is in the model, also as a piece of a line, and nothing that a person can correct.
+        seen = {str(line["segment"]) for line in state["lines"] if line["ends"] is not None}
+        rows = np.flatnonzero(~scene.lines.by_face).tolist()
+        pieces = [{str(piece.tolist()) for piece in scene.lines.segments_of(row)} for row in rows]
+        assert seen <= set.union(*pieces)
+        assert all(own & seen for own in pieces)
         assert len(crossings(state, real=True)) == scene.intersections.real.sum()
         assert [plane["offset"] for plane in state["planes"]] == [plane.offset for plane in scene.planes]
         assert state["solve"]["state"] == "idle"
