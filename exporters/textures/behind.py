@@ -68,8 +68,7 @@ def _add(cover: _Pixels, ring: NDArray[np.int32], behind: Bool, grown: float) ->
     """
     inside = np.zeros_like(cover)
     cv2.fillPoly(inside, [ring], (255,), cv2.LINE_8, SHIFT)
-    of_faces = cv2.countNonZero(inside[behind])
-    if of_faces:
+    if inside[behind].any():
         inside[behind] = 0
         inside = np.asarray(cv2.morphologyEx(inside, cv2.MORPH_OPEN, np.ones((_THIN, _THIN), np.uint8)), np.uint8)
         side = 2 * round(grown) + 1

@@ -112,8 +112,8 @@ def _way(ties: Ties, log_scale: Float, step: Float) -> tuple[float, int | None]:
     with np.errstate(divide="ignore"):
         room = np.maximum(ties.tolerance + np.sign(moved) * missed, 0.0) / np.abs(moved)
     room = np.where(np.abs(moved) > ROUNDING, room, np.inf)
-    tie = int(room.argmin()) if len(room) else 0
-    return (1.0, None) if not len(room) or room[tie] >= 1.0 else (float(room[tie]), tie)
+    tie = int(room.argmin()) if len(room) else None
+    return (1.0, None) if tie is None or room[tie] >= 1.0 else (float(room[tie]), tie)
 
 
 def _step(ties: Ties, log_scale: Float, part: Int) -> Float:

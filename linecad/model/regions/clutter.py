@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.on_roofs import is_on_roof, samples_in
+from linecad.model.regions.on_roofs import is_on_roof
 from linecad.model.regions.partition import polygons_of
 from linecad.model.regions.raster import SHADES, Raster, traced
 
@@ -51,7 +51,7 @@ def _of_walls(filled: Filled, raster: Raster) -> Bool:
     """Where (H, W) what was called clutter has the colours of the wall that it was filled in as: it is that wall."""
     labels = filled.labels
     label = labels.label[labels.cell]
-    clutter = samples_in(filled.clutter, raster).ravel()
+    clutter = raster.inside(filled.clutter)
     found = np.zeros(raster.shape, bool)
     for number, surface in enumerate(labels.surfaces):
         own = label == number

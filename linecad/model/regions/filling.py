@@ -63,8 +63,8 @@ def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
     camera = view.camera
     clutter = shapely.union_all([region for number, region in found.regions if number == found.clutter])
     ends = ends_of_walls(found, raster, view)
-    on_roofs = _on_roofs(found, raster)
-    open_regions = _to_fill(found, camera) + on_roofs + [part for each in ends.values() for part in each.beyond]
+    between, on_roofs = _to_fill(found, raster, camera)
+    open_regions = between + on_roofs + [part for each in ends.values() for part in each.beyond]
     if not open_regions:
         return Filled(found, clutter)
     uprights = [upright for each in ends.values() for upright in each.uprights]
@@ -113,32 +113,16 @@ def _not_beyond(found: Labels, ends: dict[int, Ends], raster: Raster) -> Float:
     return costs
 
 
-def _to_fill(found: Labels, camera: Camera) -> list[shapely.Polygon]:
-    """Clutter that is surrounded by surfaces, and regions too small for a face, px."""
-    walls, least = _seen(found), LEAST_AREA * camera.width * camera.height
-    return [
-        region for number, region in found.regions
-        if (number < found.sky and region.area < least)
-        or (number == found.clutter and _shared(region, walls) >= SURROUNDED)
-    ]  # fmt: skip
-
-
-def _on_roofs(found: Labels, raster: Raster) -> list[shapely.Polygon]:
-    """Clutter that stands on a building against the sky, px."""
-    walls = _seen(found)
+def _to_fill(found: Labels, raster: Raster, camera: Camera) -> tuple[list[shapely.Polygon], list[shapely.Polygon]]:
+    """Clutter that surfaces surround, with regions too small for a face, px; and clutter that stands on a building."""
+    surfaces = [region for number, region in found.regions if number < found.sky]
     clutter = [region for number, region in found.regions if number == found.clutter]
-    return [region for region in clutter if _shared(region, walls) >= ON_ROOF and is_on_roof(region, found, raster)]
-
-
-def _seen(found: Labels) -> shapely.Geometry:
-    """All surfaces, px."""
-    return shapely.union_all([region for number, region in found.regions if number < found.sky])
-
-
-def _shared(region: shapely.Polygon, others: shapely.Geometry) -> float:
-    """Share of the outline of a region that others touch."""
-    outline = region.exterior
-    return float(shapely.intersection(outline, others.buffer(TOUCH)).length / outline.length)
+    walls, least = shapely.union_all(surfaces).buffer(TOUCH), LEAST_AREA * camera.width * camera.height
+    shared = [shapely.intersection(region.exterior, walls).length / region.exterior.length for region in clutter]
+    small = [region for region in surfaces if region.area < least]
+    surrounded = [region for region, share in zip(clutter, shared, strict=True) if share >= SURROUNDED]
+    standing = [region for region, share in zip(clutter, shared, strict=True) if share >= ON_ROOF]
+    return small + surrounded, [region for region in standing if is_on_roof(region, found, raster)]
 
 
 def _cut_along(

@@ -18,19 +18,11 @@ def is_on_roof(part: shapely.Polygon, labels: Labels, raster: Raster) -> bool:
     """
     if not np.ptp(raster.colour.reshape(-1, 3), axis=0).any():
         return False
-    inside = samples_in(part, raster)
+    inside = raster.inside(part).reshape(raster.shape)
     beside = labels.label[labels.cell].reshape(raster.shape)[_grown(inside) & ~inside]
     on_ground = any(labels.surfaces[number].kind == "ground" for number in np.unique(beside[beside < labels.sky]))
     is_plant = inside.any() and raster.plants[inside.ravel()].mean() > MOST_PLANTS
     return bool((beside == labels.sky).any() and not on_ground and not is_plant and not _at_border(inside))
-
-
-def samples_in(part: shapely.Geometry, raster: Raster) -> Bool:
-    """Mask (H, W) of the samples whose middles lie in a shape, px."""
-    row, column = np.divmod(np.arange(raster.size), raster.shape[1])
-    shapely.prepare(part)
-    inside: Bool = shapely.contains_xy(part, (np.column_stack([column, row]) + 0.5) * raster.step - 0.5)
-    return inside.reshape(raster.shape)
 
 
 def _grown(mask: Bool) -> Bool:

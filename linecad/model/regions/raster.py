@@ -101,6 +101,12 @@ class Raster:
         image = np.where(marked, 0, 1).astype(np.uint8).reshape(self.shape)
         return np.asarray(cv2.distanceTransform(image, cv2.DIST_L2, 5).ravel(), np.float64)
 
+    def inside(self, shape: shapely.Geometry) -> Bool:
+        """Mask (S,) of the samples whose middles lie in a shape, px."""
+        shapely.prepare(shape)
+        inside: Bool = shapely.contains_xy(shape, _pixels(self.shape, self.step))
+        return inside
+
     def samples_of(self, pixels: Float) -> Float:
         """Places (..., 2) on the raster, in samples, of pixels (..., 2)."""
         places: Float = (pixels + 0.5) / self.step - 0.5

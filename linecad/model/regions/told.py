@@ -70,7 +70,7 @@ class Told:
         found = np.zeros(raster.size, bool)
         for area in self.areas:
             if area.shows == word:
-                found |= _samples(area, raster)
+                found |= raster.inside(area.shape)
         return found
 
     @cached_property
@@ -111,7 +111,7 @@ class Told:
             number = column_of(area, surfaces)
             if number is None or (area.shows == "clutter" and not with_clutter):
                 continue
-            inside = _samples(area, raster)
+            inside = raster.inside(area.shape)
             if isinstance(area.shows, Surface):
                 found[:, number] = FALSE  # it ends at its edges
             found[inside] = FALSE
@@ -120,7 +120,7 @@ class Told:
 
     def _keep(self, before: Before, costs: Float, surfaces: list[Surface], raster: Raster) -> None:
         """Raise costs (S, K + 2) of other labels than were seen, away from the areas; but not of new surfaces."""
-        near = np.any([_samples(area, raster) for area in self.areas], axis=0)
+        near = np.any([raster.inside(area.shape) for area in self.areas], axis=0)
         away = raster.distance(near) > AROUND
         known = {_look(surface): number for number, surface in enumerate(before.surfaces)}
         walls = {id(area.shows) for area in self.areas}
@@ -135,7 +135,7 @@ class Told:
         for area in self.areas:
             if not isinstance(area.shows, Surface):
                 continue
-            inside = _samples(area, raster)
+            inside = raster.inside(area.shape)
             for column, surface in enumerate(surfaces):
                 if surface is area.shows or (surface.kind, surface.axis) != ("wall", area.shows.axis):
                     continue
@@ -151,7 +151,7 @@ class Told:
             return heaven
         seed = heaven.seed.copy()
         for area in self.areas:
-            seed[_samples(area, raster)] = area.shows == "sky"
+            seed[raster.inside(area.shape)] = area.shows == "sky"
         is_told = any(area.shows == "sky" for area in self.areas)
         return Heaven(seed, (heaven.is_sky or is_told) and bool(seed.any()), heaven.is_ceiling and not is_told)
 
@@ -174,15 +174,6 @@ def column_of(area: Area, surfaces: list[Surface]) -> int | None:
         if surface is area.shows or (area.shows == "ground" and surface.kind == "ground"):
             return number
     return None
-
-
-def _samples(area: Area, raster: Raster) -> Bool:
-    """Mask (S,) of the samples in an area."""
-    row, column = np.divmod(np.arange(raster.size), raster.shape[1])
-    pixels = (np.column_stack([column, row]) + 0.5) * raster.step - 0.5
-    shapely.prepare(area.shape)
-    inside: Bool = shapely.contains_xy(area.shape, pixels)
-    return inside
 
 
 def polygons(shape: shapely.Geometry) -> shapely.Geometry:

@@ -386,11 +386,12 @@ def test_an_export_is_the_file_that_linecad_export_writes(screen, tmp_path):
         assert download.value.suggested_filename == f"boxes.{name}"
         download.value.save_as(tmp_path / f"page.{name}")
     scene = read_scene(tmp_path / "page.json")
-    solved = [each["segment"] for each in screen.served.ask("state")["lines"] if each["ends"]]
+    lines = screen.served.ask("state")["lines"]
+    known, solved = ([each["segment"] for each in lines if each["ends"] or every] for every in (True, False))
     # What faces added is in the file, also as a piece of a line, and nothing that a person can correct.
     of_page = np.flatnonzero(~scene.lines.by_face).tolist()
     pieces = [[each.tolist() for each in scene.lines.segments_of(row)] for row in of_page]
-    assert all(any(each in own for own in pieces) for each in solved)
+    assert sorted(solved) == sorted(each for own in pieces for each in own if each in known)
     assert all(any(each in solved for each in own) for own in pieces)
     photo = read_photo(screen.served.photo, screen.served.photo.with_suffix(".json"), None)
     for name in ("dxf", "glb"):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from linecad.model.regions.on_roofs import is_on_roof, samples_in
+from linecad.model.regions.on_roofs import is_on_roof
 from linecad.model.regions.raster import COLUMNS, take_raster
 
 RED = (170, 30, 30)
@@ -44,12 +44,3 @@ def test_what_stands_on_the_ground_or_at_the_border_is_not(at, where):
 
 def test_without_a_photo_nothing_is_told(at):
     assert not at("eaves", None)
-
-
-def test_samples_in_a_shape_are_those_whose_middles_are(house):
-    raster = take_raster(house.lines, house.camera, house.rotation, None)
-    inside = samples_in(shapely.box(-0.5, -0.5, 100.5, 50.5), raster)
-    row, column = np.nonzero(inside)
-    assert (row.max() + 1) * raster.step == pytest.approx(51, abs=raster.step)
-    assert (column.max() + 1) * raster.step == pytest.approx(101, abs=raster.step)
-    assert inside.sum() == (row.max() + 1) * (column.max() + 1)

@@ -3,6 +3,7 @@
 import cv2
 import numpy as np
 import pytest
+import shapely
 
 from linecad.depth.normals import UNTOLD, Normals
 from linecad.geometry import project, world_rays
@@ -19,6 +20,14 @@ def test_samples_have_one_width_in_every_photo(raster):
     assert raster.step == 2
     assert raster.size == 360 * COLUMNS == len(raster.rays) == len(raster.gradient) == len(raster.votes)
     assert raster.samples_of(np.array([[0.5, 0.5], [958.5, 718.5]])).tolist() == [[0, 0], [479, 359]]
+
+
+def test_samples_in_a_shape_are_those_whose_middles_are(raster):
+    inside = raster.inside(shapely.box(-0.5, -0.5, 100.5, 50.5)).reshape(raster.shape)
+    row, column = np.nonzero(inside)
+    assert (row.max() + 1) * raster.step == pytest.approx(51, abs=raster.step)
+    assert (column.max() + 1) * raster.step == pytest.approx(101, abs=raster.step)
+    assert inside.sum() == (row.max() + 1) * (column.max() + 1)
 
 
 def test_rays_are_those_of_the_middles_of_samples(house, raster):
