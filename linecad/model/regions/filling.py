@@ -32,6 +32,7 @@ NEVER = 10**7  # cost of a label that a cell may not take
 LAST = 5 * 10**6  # of clutter, where something hides what is behind it: more than of any surface that is reached
 TOUCH = 1e-3  # px
 UNREACHED, BEYOND = 10.0, 50.0  # cost a sample, from which on a good part of a cell lies where a surface is not seen
+NOWHERE = shapely.Polygon()
 SLACK = 0.01  # of its offset, by which samples may be beyond
 
 
@@ -58,12 +59,16 @@ class Filled:
         return *self.told, proof, f"faces: {step}", *notes_on(self.roofs)
 
 
-def fill(found: Labels, meets: Float, raster: Raster, view: View) -> Filled:
-    """Labels of cells that are cut along `meets` (N, 2, 2) px of surfaces too, with clutter between them filled in."""
+def fill(found: Labels, meets: Float, raster: Raster, view: View, named: shapely.Geometry = NOWHERE) -> Filled:
+    """Labels of cells that are cut along `meets` (N, 2, 2) px of surfaces too, with clutter between them filled in.
+
+    What a person `named` clutter, px, is no part of a building: it stays what it is before the sky.
+    """
     camera = view.camera
     clutter = shapely.union_all([region for number, region in found.regions if number == found.clutter])
     ends = ends_of_walls(found, raster, view)
-    between, on_roofs = _to_fill(found, raster, camera)
+    between, standing = _to_fill(found, raster, camera)
+    on_roofs = [region for region in standing if shapely.intersection(region, named).area == 0]
     open_regions = between + on_roofs + [part for each in ends.values() for part in each.beyond]
     if not open_regions:
         return Filled(found, clutter)

@@ -58,7 +58,7 @@ def find_regions(
         found = find_labels(lines, surfaces, raster, heaven, view, firm, told)
     meets = find_meets(lines, found.surfaces, view).ends
     length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
-    filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view)
+    filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view, told.shapes("clutter"))
     filled = with_told(on_ground(filled, raster, view), told)
     if any(surface is trodden for surface in surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road

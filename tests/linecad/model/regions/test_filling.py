@@ -6,7 +6,7 @@ import shapely
 
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
-from linecad.model.regions.filling import fill
+from linecad.model.regions.filling import NOWHERE, fill
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
@@ -34,7 +34,7 @@ def raster(house):
 def filled(house, raster):
     """A function of a tree or other thing (x, y, x, y) px before the three bands of the photo, and what it is."""
 
-    def build(*things, meets=MEET, surfaces=SURFACES, hint=None, never=(), raster=raster):
+    def build(*things, meets=MEET, surfaces=SURFACES, hint=None, never=(), raster=raster, named=NOWHERE):
         frame = shapely.box(-0.5, -0.5, 959.5, 719.5)
         bands = [(SKY, -0.5, EAVES), (WALL, EAVES, FOOT), (GROUND, FOOT, 719.5)]
         boxes = [(shapely.box(*box), label) for label, box in things]
@@ -59,7 +59,7 @@ def filled(house, raster):
         borders = Borders(np.zeros((0, 2), np.int64), np.zeros(0, np.int64))
         costs = np.zeros((len(cells), 5), np.int64)
         labels = Labels(surfaces, cells, cell, label, of_samples, costs, borders)
-        return fill(labels, meets, raster, View(house.camera, house.rotation, None))
+        return fill(labels, meets, raster, View(house.camera, house.rotation, None), named)
 
     return build
 
@@ -132,6 +132,13 @@ def test_a_dome_before_the_sky_is_filled_as_the_wall_below_it(house, filled):
     seen = take_raster(house.lines, house.camera, house.rotation, house.photo)
     found = filled((CLUTTER, (300, 100, 360, 180)), raster=seen)
     assert areas(found)[WALL] == pytest.approx(areas(filled())[WALL] + 60 * (EAVES - 100))
+
+
+def test_a_dome_that_a_person_named_clutter_stays_it(house, filled):
+    seen = take_raster(house.lines, house.camera, house.rotation, house.photo)
+    dome = (300, 100, 360, 180)
+    found = filled((CLUTTER, dome), raster=seen, named=shapely.box(*dome))
+    assert areas(found)[CLUTTER] == pytest.approx(60 * 80)
 
 
 def test_what_the_border_of_the_photo_cuts_off_is_not_filled(filled):
