@@ -82,7 +82,8 @@ class _Squares:
             worst = _largest_in(self.variance, side + 2 * _ABOUT - _WINDOW + 1) + _LEAST_VARIANCE
             half = _ABOUT + side // 2
             middle = away[half : half + worst.shape[0], half : half + worst.shape[1]]
-            if worst.size and (side == _SQUARES[-1] or worst.min() <= most):
+            enough = most if side > _SQUARES[-1] else _EVEN**2 + _LEAST_VARIANCE
+            if worst.size and worst.min() <= enough:
                 row, column = divmod(int((worst * (1 + _FAR * middle)).argmin()), worst.shape[1])
                 return row + _ABOUT, column + _ABOUT, side
         return None

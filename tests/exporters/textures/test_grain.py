@@ -53,6 +53,14 @@ def test_a_face_without_an_even_square_gives_no_grain():
     assert (filled(colours, ~wanted, wanted) == WALL).all()
 
 
+def test_a_strip_in_which_no_square_fits_gives_no_grain():
+    colours, wanted = bricks(rows=180, columns=30)
+    colours[:20:3] = 250  # a cornice at its top
+    clear = ~wanted
+    clear[:, 9:] = False  # as wide as what must be plain, but not as that with what is about it
+    assert (filled(colours, clear, wanted) == WALL).all()
+
+
 @pytest.mark.parametrize("shape", [(1, 1), (3, 200), (7, 7)])
 def test_small_faces_stay_as_they_are(shape):
     colours = np.zeros((*shape, 3), np.uint8)
