@@ -12,6 +12,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, components, partner
 from linecad.model.regions.raster import Raster
+from linecad.model.regions.steps import Pair, find_step
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines
 
@@ -19,10 +20,13 @@ LEAST_HEIGHT = 0.05  # of the photo's height, of an upright border between two w
 MOST_GAP = 0.05  # of the photo's width, of clutter between two walls that may be the side of the nearer one
 LEAST_SEEN = 0.002  # of the photo; a side that is hardly seen from beside is none
 STEP = 1.05  # times the depth of a wall's end, from which on what is beside it is behind it
+NARROW = 1.15  # times the offset of a wall; a parallel one not farther behind its end makes a step
+AT_END = 0.1  # of its place, about the end of a wall, in which samples are as wide as there
 BEFORE = 0.02  # of the depth of a wall's end, by which borders of cells may miss it
 MORE = 0.25  # of how far a side goes back, that it may go farther
 SAME = 1.5  # samples, within which borders are one upright
 IN_PLANE = 0.03  # of the offset; cornices are that far before their wall
+RELIEF = 0.9  # times the offset of a wall, from which on what is parallel is its relief, or behind it
 APART = 1.2  # times the offset of a side, of a wall behind that faces as it does; one nearer is that side itself
 GOES_ON = 0.05  # share of the lines of a wall that may lie beyond its end
 SIDE_PRICE = 1 / 3  # of a side, where one end and one wall behind it say where it is
@@ -106,7 +110,15 @@ class Side:
     cost: Float  # (S,)
     wall: int  # the surface that ends there
     behind: int  # the one that is seen beside the end
-    hides: Bool  # (S,) where that is shown as yet
+    before: Bool  # (S, K) where it is before each surface
+    hides: Bool  # (S,) where what is behind it is shown as yet
+    reach: float = 0.0  # how far it goes back from its wall to a parallel one, per distance of its wall
+    is_bare: bool = False  # between parallel walls: hardly a line of either is there
+
+    @property
+    def is_step(self) -> bool:
+        """Whether it goes back to a parallel wall."""
+        return self.reach > 0
 
 
 def find_sides(ends: list[End], known: Known) -> list[Side]:
@@ -119,7 +131,7 @@ def find_sides(ends: list[End], known: Known) -> list[Side]:
         is_itself = behind.axis == side.surface.axis and behind.offset / side.surface.offset <= APART
         if is_itself or side.hides.mean() <= LEAST_SEEN:
             continue
-        same = [at for at, other in enumerate(sides) if other.wall == end.wall and _is_one(other.surface, side.surface)]
+        same = [at for at, other in enumerate(sides) if other.wall == end.wall and _is_one(other, side)]
         if not same:
             sides.append(side)
             continue
@@ -128,22 +140,24 @@ def find_sides(ends: list[End], known: Known) -> list[Side]:
     return sides
 
 
-def _is_one(one: Surface, other: Surface) -> bool:
-    return one.axis == other.axis and abs(one.offset / other.offset - 1) < IN_PLANE
+def _is_one(one: Side, other: Side) -> bool:
+    """Whether two sides of a wall are at one end of it, by how far the narrower goes back."""
+    apart = abs(one.surface.offset / other.surface.offset - 1)
+    return one.surface.axis == other.surface.axis and apart < max(IN_PLANE, min(one.reach, other.reach))
 
 
 def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
     """Costs (S, K + N + 2) of K surfaces, N sides, sky and clutter, from those (S, K + 2) without the sides."""
     costs = costs.copy(order="F")
     for side in sides:
-        depth = _depth(side.surface, known.raster)
-        for number, surface in enumerate(known.surfaces):
-            through = side.hides & (_depth(surface, known.raster) > STEP * depth)
-            if surface.kind == "wall" and through.any():
-                least = 0.0 if _is_tied(number, side.wall, through, known) else UNBELIEVED
+        for number, through in enumerate((side.before & side.hides[:, None]).T):
+            if through.any():
+                is_likely = not side.is_bare and _is_tied(number, side.wall, through, known)
+                least = 0.0 if is_likely else UNBELIEVED
                 costs[through, number] = np.maximum(costs[through, number] + BEHIND_COST, least)
-        if known.gap is not None:
-            costs[side.hides & known.gap & ~known.raster.plants, -1] += BEHIND_COST
+        is_gap = np.ones(known.raster.size, bool) if side.is_step else known.gap
+        if is_gap is not None:
+            costs[side.hides & is_gap & ~known.raster.plants, -1] += BEHIND_COST
     return np.column_stack([costs[:, :-2], *(side.cost for side in sides), costs[:, -2:]])
 
 
@@ -214,23 +228,64 @@ def _is_tied(number: int, wall: int, there: Bool, known: Known) -> bool:
 def _side(end: End, known: Known) -> Side:
     """The side that begins at the end of a wall and goes back, to the wall behind it where that is parallel."""
     wall, behind, raster = known.surfaces[end.wall], known.surfaces[end.other], known.raster
-    axis = int(partner(wall.axis))
+    axis, is_parallel = int(partner(wall.axis)), behind.axis == wall.axis
+    is_step = is_parallel and behind.offset / wall.offset < NARROW
     box, far = known.box(end.wall), known.box(end.other)[:, wall.axis]
-    box[:, axis] = _furthest(end, known)
-    box[:, wall.axis] = np.sort([wall.offset, behind.offset if behind.axis == wall.axis else far[np.abs(far).argmax()]])
+    step = find_step(_pair(end, known), end.inwards * end.place, raster) if is_step else None
+    box[:, axis] = _furthest(end, known) if step is None else end.inwards * step.place
+    box[:, wall.axis] = np.sort([wall.offset, behind.offset if is_parallel else far[np.abs(far).argmax()]])
     ground = next((each.offset for each in known.surfaces if each.kind == "ground"), box[0, UP])
     box[:, UP] = ground, max(box[1, UP], end.top)
     surface = Surface("wall", axis, float(box[0, axis]), np.zeros(0, np.int64), None, box, SIDE_PRICE)
     depth = _depth(surface, raster)
     back, height = raster.rays[:, wall.axis] * np.sign(wall.offset) * depth, raster.rays[:, UP] * depth
-    most = abs(behind.offset) * STEP if behind.axis == wall.axis else np.inf
+    most = abs(behind.offset) * STEP if is_parallel else np.inf
     reached = (depth > 0) & (back > (1 - BEFORE) * abs(wall.offset)) & (back < most) & (height > ground)
-    if behind.axis == wall.axis:
+    if is_parallel:
         most = min(most, abs(behind.offset) + MORE * (abs(behind.offset) - abs(wall.offset)))
-    hides = reached & (back > abs(wall.offset)) & (back < most) & (known.shown == end.other)
+    before = _before(depth, wall if is_step else None, known)
+    shown = known.shown == end.other
+    if is_step:
+        behind_it = np.column_stack([before, np.zeros(raster.size, bool), ~raster.plants])  # clutter as well
+        shown = behind_it[np.arange(raster.size), known.shown] & (height < box[1, UP])
+    hides = reached & (back > abs(wall.offset)) & (back < most) & shown
     above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / (box[1, UP] - ground), 0.0, MOST_ABOVE))
     cost = np.where(reached, SIDE_COST + above, NEVER)
-    return Side(surface, cost, end.wall, end.other, hides)
+    how = (0.0, False) if step is None else (behind.offset / wall.offset - 1, step.is_bare)
+    return Side(surface, cost, end.wall, end.other, before, hides, *how)
+
+
+def _before(depth: Float, wall: Surface | None, known: Known) -> Bool:
+    """Where (S, K) a side of some depth (S,) is before each surface; that of a step before all that its wall is.
+
+    What is parallel to the `wall` of a step is its relief, or that of the wall behind, and seen through its side.
+    """
+    before = np.zeros((known.raster.size, len(known.surfaces)), bool, order="F")
+    for number, surface in enumerate(known.surfaces):
+        if wall is not None and surface.axis == wall.axis:
+            before[:, number] = surface.offset / wall.offset > RELIEF
+        elif surface.kind == "wall" or (wall is not None and surface.kind != "ground"):
+            before[:, number] = _depth(surface, known.raster) > STEP * depth
+    return before
+
+
+def _pair(end: End, known: Known) -> Pair:
+    """The walls at the end of one of two that are parallel, along it from there inwards."""
+    wall, behind, raster = known.surfaces[end.wall], known.surfaces[end.other], known.raster
+    along = int(partner(wall.axis))
+    towards = raster.rays[:, wall.axis] * np.sign(wall.offset)
+    is_before = towards > 0
+    across = np.where(is_before, towards, 1.0)
+    at = np.where(is_before, end.inwards * raster.rays[:, along] / across, 0.0)
+    height = abs(wall.offset) * raster.rays[:, UP] / across
+    ground = next((each.offset for each in known.surfaces if each.kind == "ground"), -np.inf)
+    seen = is_before & (height > ground) & (height < end.top) & ~raster.plants
+    points = [raster.at[known.on_lines(number)] for number in (end.wall, end.other)]
+    near, far = (own[seen[own]] for own in points)
+    near_end = is_before & (np.abs(at * abs(wall.offset) - abs(end.place)) < AT_END * abs(end.place))
+    widths = np.abs(np.diff(at.reshape(raster.shape), axis=1))
+    sample = float(np.median(widths[near_end.reshape(raster.shape)[:, :-1]]))
+    return Pair(abs(wall.offset), abs(behind.offset), at, seen, near, far, sample)
 
 
 def _furthest(end: End, known: Known) -> float:

@@ -24,7 +24,7 @@ from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, d
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import Meets, View, find_meets, find_segments, limit_of_depth
-from linecad.model.regions.skyline import cut_at, find_sky, near_outline
+from linecad.model.regions.skyline import cut_at, find_plants, find_sky, near_outline
 from linecad.model.regions.surfaces import Surface
 from linecad.model.regions.told import NOTHING, Told
 from linecad.scene import Lines
@@ -103,8 +103,9 @@ def find_labels(
     camera, segments = view.camera, find_segments(lines, surfaces, raster, view)
     sky = find_sky(heaven, raster)
 
-    def cells_of(border: Float) -> list[shapely.Polygon]:
-        return cut_at(told.cut(border), sky, raster)
+    def cells_of(border: Float, steps: Bool | None = None) -> list[shapely.Polygon]:
+        cells = cut_at(told.cut(border), sky, raster)
+        return cells if steps is None else cut_at(cells, find_plants(raster), raster, steps)
 
     costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
     forced = told.over(costs, surfaces, raster)
@@ -119,14 +120,16 @@ def find_labels(
     known = known.without_gaps()
     sides = find_sides(find_ends(known), known)
     while True:
+        of_steps = [side.hides for side in sides if side.is_step]
+        steps = np.any(of_steps, axis=0) if of_steps else None
         all_costs = with_sides(costs, sides, known)
         surfaces = [*known.surfaces, *(side.surface for side in sides)]
         forced = told.over(all_costs, surfaces, raster)
         meets = _meets_of_neighbours(found, shown, sides, find_meets(lines, surfaces, view))
         every, count = np.concatenate([meets, segments]), len(meets)
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answer = _labels(cells_of(border), forced, drawn, surfaces, raster)
-        taken = _shown_sides(answer, sides, told.samples("clutter", raster))
+        answer = _labels(cells_of(border, steps), forced, drawn, surfaces, raster)
+        taken = _shown_sides(answer, sides, told.samples("clutter", raster) | raster.plants)
         if len(taken) == len(sides):
             break
         sides = taken
@@ -137,7 +140,7 @@ def find_labels(
         )
         every, count = every[used], int((used < count).sum())
         border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answers.append(_labels(cells_of(border), forced, drawn, surfaces, raster))
+        answers.append(_labels(cells_of(border, steps), forced, drawn, surfaces, raster))
     best = _proven(min(answers, key=lambda answer: answer.price), raster)
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
@@ -149,7 +152,7 @@ def _shown_sides(found: Labels, sides: list[Side], covered: Bool) -> list[Side]:
     """
     label, shown = found.label[found.cell], []
     for row, side in enumerate(sides, len(found.surfaces) - len(sides)):
-        beside = label[side.hides & (label != side.wall) & ~covered]
+        beside = label[side.hides & ~covered & ((label != side.wall) | side.is_step)]
         shown += [side] if (beside == row).sum() > LEAST_SHOWN * len(beside) else []
     return shown
 

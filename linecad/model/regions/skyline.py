@@ -38,6 +38,14 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
     return narrow
 
 
+def find_plants(raster: Raster) -> shapely.Geometry:
+    """The parts of the photo that trees, hedges and bushes cover, px."""
+    mask = np.pad(raster.plants.reshape(raster.shape), 1, mode="edge")  # they go on beyond the photo
+    parts = [shapely.make_valid(part) for part in traced(mask, raster.step, LEAST_HOLE)]
+    plants = shapely.MultiPolygon(partition.polygons_of(shapely.union_all(parts)))
+    return shapely.transform(plants, lambda padded: padded - raster.step)
+
+
 def near_outline(sky: shapely.Geometry, raster: Raster) -> Bool:
     """Mask (H, W) of the samples in which a border may be that follows the outline."""
     image = np.zeros(raster.shape, np.uint8)
@@ -48,9 +56,18 @@ def near_outline(sky: shapely.Geometry, raster: Raster) -> Bool:
     return image > 0
 
 
-def cut_at(cells: list[shapely.Polygon], sky: shapely.Geometry, raster: Raster) -> list[shapely.Polygon]:
-    """The cells, those that show much of the sky and much else cut along its outline."""
-    outlines = [outline for cell in cells for outline in _outlines_in(cell, sky, raster)]
+def cut_at(
+    cells: list[shapely.Polygon], sky: shapely.Geometry, raster: Raster, where: Bool | None = None
+) -> list[shapely.Polygon]:
+    """The cells, those that show much of the sky, or of plants, and much else cut along its outline.
+
+    Only cells with samples of a mask (S,) `where` are cut, if one is given.
+    """
+    cut_here = cells
+    if where is not None:
+        own = partition.draw(cells, raster.shape, raster.step)[where]
+        cut_here = [cells[number] for number in np.unique(own)]
+    outlines = [outline for cell in cut_here for outline in _outlines_in(cell, sky, raster)]
     if not outlines:
         return cells
     sides = _sides_of(cells)

@@ -12,6 +12,7 @@ from linecad.geometry import central_camera, project
 from linecad.model.regions.corners import (
     APART,
     MOST_GAP,
+    NARROW,
     NEVER,
     UNBELIEVED,
     End,
@@ -28,16 +29,16 @@ CAMERA = Camera(480, 360, central_camera(300.0, 480, 360), "file")
 AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
 TURNS = (0.4,)
 GROUND, TOP = -1.5, 2.5
-FRONT, BACK, GROUND_ROW, SKY = 0, 1, 2, 3
+FRONT, BACK, GROUND_ROW, CLUTTER = 0, 1, 2, 4
 
 
-def photo_of(walls, turns=(), components=(0, 0)):
-    """Walls (axis, offset, from, to) as surfaces, each with the two level lines along it, and the ground; a raster."""
+def photo_of(walls, turns=(), components=(0, 0), heights=(GROUND, TOP)):
+    """Walls (axis, offset, from, to) as surfaces, each with level lines at all heights, and the ground; a raster."""
     vectors = directions_of(turns)
     ends, axes = [], []
     for axis, offset, low, high in walls:
         along = int(partner(axis))
-        for height in (GROUND, TOP):
+        for height in heights:
             ends.append([offset * vectors[axis] + at * vectors[along] + [0, 0, height] for at in (low, high)])
             axes.append(along)
     ends = np.array(ends)
@@ -45,22 +46,23 @@ def photo_of(walls, turns=(), components=(0, 0)):
     count = len(ends)
     lines = Lines(
         id=np.arange(count), axis=np.array(axes), segment=segment, ends=ends, is_boundary=np.zeros(count, bool),
-        component=np.repeat(components, 2), confidence=np.full(count, "proven"),
+        component=np.repeat(components, len(heights)), confidence=np.full(count, "proven"),
     )  # fmt: skip
     surfaces = [
-        Surface("wall", axis, offset, np.array([2 * k, 2 * k + 1]), k) for k, (axis, offset, *_) in enumerate(walls)
+        Surface("wall", axis, offset, len(heights) * k + np.arange(len(heights)), k)
+        for k, (axis, offset, *_) in enumerate(walls)
     ]
     surfaces.append(Surface("ground", 2, GROUND, np.zeros(0, np.int64), None))
     return surfaces, lines, take_raster(lines, CAMERA, AHEAD, None, turns=turns)
 
 
-def known_of(walls, turns=(), components=(0, 0)):
+def known_of(walls, turns=(), components=(0, 0), heights=(GROUND, TOP)):
     """What is known where the nearest of some walls, the ground or else the sky is shown."""
-    surfaces, lines, raster = photo_of(walls, turns, components)
-    nearest, shown = np.full(raster.size, np.inf), np.full(raster.size, SKY)
+    surfaces, lines, raster = photo_of(walls, turns, components, heights)
+    nearest, shown = np.full(raster.size, np.inf), np.full(raster.size, len(walls) + 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         level = np.where(raster.rays[:, 2] < 0, GROUND / raster.rays[:, 2], np.inf)
-        shown[np.isfinite(level)], nearest = GROUND_ROW, np.minimum(nearest, level)
+        shown[np.isfinite(level)], nearest = len(walls), np.minimum(nearest, level)
         for row, (axis, offset, low, high) in enumerate(walls):
             depth = offset / raster.rays[:, axis]
             at = raster.rays[:, int(partner(axis))] * depth
@@ -130,18 +132,41 @@ def test_a_wall_whose_lines_go_on_does_not_end():
     assert sides_of(Known(shown, known.surfaces, known.lines, known.raster)) == []
 
 
-def test_narrow_clutter_beside_the_end_of_a_wall_is_its_side_and_a_wide_tree_is_not():
-    known = known_of([(1, 5.0, 1.0, 3.0), (1, 5.6, -40, 40)])
-    (plain,) = sides_of(known)
-    clutter = len(known.surfaces) + 1
+def step_of(taken_for, back=5.6):
+    """Two parallel walls with a side between them at 1.0 that is taken for something; and the samples of that side."""
+    walls = [(1, 5.0, 1.0, 3.0), (1, back, -40, 1.0), (0, 1.0, 5.0, back)]
+    known = known_of(walls, components=(0, 0, 0), heights=(GROUND, 0.0, 0.7, 1.4, TOP))
+    strip = known.shown == 2
+    shown = np.where(strip, taken_for, known.shown - (known.shown > 2))
+    return replace(known, shown=shown, surfaces=[*known.surfaces[:2], *known.surfaces[3:]]), strip
+
+
+@settings(deadline=None, max_examples=20)
+@given(st.sampled_from([FRONT, BACK, CLUTTER]), st.floats(5.4, 5.0 * NARROW - 0.05))
+def test_the_side_of_a_step_is_found_whatever_it_is_taken_for(taken_for, back):
+    known, strip = step_of(taken_for, back)
+    (side,) = sides_of(known.without_gaps())
+    assert side.is_step
+    assert side.surface.offset == pytest.approx(1.0, abs=0.03)
+    assert (side.hides & strip).sum() > 0.6 * strip.sum()  # a strip of 5 samples, found to a sample
+    assert side.hides.sum() < 1.6 * strip.sum()
+    costs = np.full((known.raster.size, len(known.surfaces) + 2), 0.1)
+    dearer = with_sides(costs, [side], known)[side.hides][:, [FRONT, BACK, -1]] > 0.1
+    assert dearer.all()
+
+
+def test_clutter_between_walls_is_no_end_of_one_before_gaps_are_closed():
+    known, _ = step_of(CLUTTER)
+    assert sides_of(known) == []
+
+
+def test_a_tree_between_walls_is_no_side():
+    known, strip = step_of(BACK)
     column = np.arange(known.raster.size) % known.raster.shape[1]
-    for more, count in ((0, 1), (int(1.5 * MOST_GAP * known.raster.shape[1]), 0)):
-        wide = column[plain.hides].max() - more
-        covered = (known.shown == BACK) & (column >= min(column[plain.hides].min(), wide)) & (column <= wide + more)
-        seen = replace(known, shown=np.where(covered, clutter, known.shown))
-        assert sides_of(seen) == []
-        sides = sides_of(seen.without_gaps())
-        assert [side.surface.offset for side in sides] == pytest.approx([plain.surface.offset] * count, abs=0.02)
+    most = int(1.5 * MOST_GAP * known.raster.shape[1])
+    tree = (known.shown == BACK) & (column <= column[strip].max()) & (column > column[strip].max() - most)
+    hidden = replace(known, shown=np.where(tree, CLUTTER, known.shown))
+    assert sides_of(hidden.without_gaps()) == []
 
 
 def test_one_end_before_two_walls_is_one_side():

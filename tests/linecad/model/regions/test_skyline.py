@@ -1,4 +1,4 @@
-"""Cells cut along the outline of the sky, by masks drawn by hand on a photo of 960 x 720 px, 2 px a sample."""
+"""Cells cut along the outline of the sky and of plants, by masks drawn by hand on a photo of 960 x 720, 2 a sample."""
 
 import numpy as np
 import pytest
@@ -9,10 +9,11 @@ from hypothesis import strategies as st
 from linecad.model.regions import partition
 from linecad.model.regions.evidence import Heaven
 from linecad.model.regions.raster import take_raster
-from linecad.model.regions.skyline import MARGIN, cut_at, find_sky, near_outline
+from linecad.model.regions.skyline import MARGIN, cut_at, find_plants, find_sky, near_outline
 
 PHOTO = shapely.box(-0.5, -0.5, 959.5, 719.5)
 HEIGHT = 150  # samples of sky from the top
+HEDGE = 440  # px, the row from which on plants hide all
 
 
 @pytest.fixture(scope="module")
@@ -32,6 +33,16 @@ def drawn(raster):
         return find_sky(Heaven(mask.ravel(), is_sky=True, is_ceiling=False), raster)
 
     return draw
+
+
+@pytest.fixture(scope="module")
+def overgrown(house):
+    """The raster of a photo with leaves in all its lower rows."""
+    rng = np.random.default_rng(4)
+    leaves = np.stack([rng.integers(*span, (240, 320)) for span in ((10, 90), (60, 190), (10, 60))], axis=2)
+    photo = house.photo.copy()
+    photo[HEDGE:] = np.repeat(np.repeat(leaves, 3, axis=0), 3, axis=1)[HEDGE:]
+    return take_raster(house.lines, house.camera, house.rotation, photo)
 
 
 def sky_of(cells, sky):
@@ -102,6 +113,26 @@ def test_the_outline_goes_to_a_corner_that_is_near(raster, drawn):
 def test_no_sky_leaves_the_cells(raster):
     assert cut_at([PHOTO], shapely.Polygon(), raster) == [PHOTO]
     assert not near_outline(shapely.Polygon(), raster).any()
+
+
+def test_plants_go_to_the_borders_of_the_photo(overgrown):
+    plants = find_plants(overgrown)
+    assert plants.covers(shapely.box(-0.5, HEDGE + 20, 959.5, 719.5))
+    assert plants.bounds[1] == pytest.approx(HEDGE, abs=20)
+
+
+def test_where_nothing_grows_there_are_no_plants(raster):
+    assert find_plants(raster).is_empty
+
+
+def test_only_cells_of_a_mask_are_cut_at_plants(overgrown):
+    left, right = shapely.box(-0.5, -0.5, 400, 719.5), shapely.box(400, -0.5, 959.5, 719.5)
+    where = np.zeros(overgrown.shape, bool)
+    where[100:110, 50:60] = True
+    cells = cut_at([left, right], find_plants(overgrown), overgrown, where.ravel())
+    assert len(cells) == 3
+    assert sum(shapely.covers(cell, shapely.Point(700, 100)) and cell.area == right.area for cell in cells) == 1
+    assert sorted(cell.bounds[3] < HEDGE + 20 for cell in cells if cell.bounds[2] <= 400) == [False, True]
 
 
 def test_borders_may_follow_the_outline(raster, drawn):
