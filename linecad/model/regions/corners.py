@@ -29,6 +29,7 @@ IN_PLANE = 0.03  # of the offset; cornices are that far before their wall
 RELIEF = 0.9  # times the offset of a wall, from which on what is parallel is its relief, or behind it
 APART = 1.2  # times the offset of a side, of a wall behind that faces as it does; one nearer is that side itself
 GOES_ON = 0.05  # share of the lines of a wall that may lie beyond its end
+GOES_ON_STEP = 0.1  # the same before a wall a little behind: its lines decide with those of the other where it ends
 SIDE_PRICE = 1 / 3  # of a side, where one end and one wall behind it say where it is
 SIDE_COST = 0.75  # of a side, which has no lines to be near to; that of a ground
 ABOVE_COST, MOST_ABOVE = 4.0, 1.5  # for each height of a wall by which its side is higher
@@ -215,7 +216,14 @@ def _ends_there(end: End, known: Known) -> bool:
     wall, raster = known.surfaces[end.wall], known.raster
     own = known.on_lines(end.wall)
     reach = raster.line_rays[own, int(partner(wall.axis))] * raster.line_depth[own] - end.place
-    return bool((reach * end.inwards < -IN_PLANE * abs(wall.offset)).mean() < GOES_ON)
+    most = GOES_ON_STEP if _is_step(end, known) else GOES_ON
+    return bool((reach * end.inwards < -IN_PLANE * abs(wall.offset)).mean() < most)
+
+
+def _is_step(end: End, known: Known) -> bool:
+    """Whether a wall ends a little before a parallel one."""
+    wall, behind = known.surfaces[end.wall], known.surfaces[end.other]
+    return behind.axis == wall.axis and behind.offset / wall.offset < NARROW
 
 
 def _is_tied(number: int, wall: int, there: Bool, known: Known) -> bool:
@@ -229,13 +237,13 @@ def _side(end: End, known: Known) -> Side:
     """The side that begins at the end of a wall and goes back, to the wall behind it where that is parallel."""
     wall, behind, raster = known.surfaces[end.wall], known.surfaces[end.other], known.raster
     axis, is_parallel = int(partner(wall.axis)), behind.axis == wall.axis
-    is_step = is_parallel and behind.offset / wall.offset < NARROW
+    is_step = _is_step(end, known)
     box, far = known.box(end.wall), known.box(end.other)[:, wall.axis]
     step = find_step(_pair(end, known), end.inwards * end.place, raster) if is_step else None
     box[:, axis] = _furthest(end, known) if step is None else end.inwards * step.place
     box[:, wall.axis] = np.sort([wall.offset, behind.offset if is_parallel else far[np.abs(far).argmax()]])
-    ground = next((each.offset for each in known.surfaces if each.kind == "ground"), box[0, UP])
-    box[:, UP] = ground, max(box[1, UP], end.top)
+    ground = next((each.offset for each in known.surfaces if each.kind == "ground"), -np.inf)
+    box[:, UP] = ground if np.isfinite(ground) else box[0, UP], max(box[1, UP], end.top)
     surface = Surface("wall", axis, float(box[0, axis]), np.zeros(0, np.int64), None, box, SIDE_PRICE)
     depth = _depth(surface, raster)
     back, height = raster.rays[:, wall.axis] * np.sign(wall.offset) * depth, raster.rays[:, UP] * depth
@@ -249,7 +257,7 @@ def _side(end: End, known: Known) -> Side:
         behind_it = np.column_stack([before, np.zeros(raster.size, bool), ~raster.plants])  # clutter as well
         shown = behind_it[np.arange(raster.size), known.shown] & (height < box[1, UP])
     hides = reached & (back > abs(wall.offset)) & (back < most) & shown
-    above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / (box[1, UP] - ground), 0.0, MOST_ABOVE))
+    above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / np.ptp(box[:, UP]), 0.0, MOST_ABOVE))
     cost = np.where(reached, SIDE_COST + above, NEVER)
     how = (0.0, False) if step is None else (behind.offset / wall.offset - 1, step.is_bare)
     return Side(surface, cost, end.wall, end.other, before, hides, *how)

@@ -155,6 +155,26 @@ def test_the_side_of_a_step_is_found_whatever_it_is_taken_for(taken_for, back):
     assert dearer.all()
 
 
+def test_the_side_of_a_step_goes_down_as_far_as_the_photo_where_no_ground_is_known():
+    known, _ = step_of(BACK)
+    (side,) = sides_of(known)
+    below = known.raster.rays[:, 2] < -0.5 * known.raster.rays[:, 1]  # in the ground, before the nearer wall
+    assert below.any()
+    assert (side.cost[below] == NEVER).all()
+    groundless = replace(known, surfaces=known.surfaces[:2], shown=np.where(known.shown > 1, CLUTTER - 1, known.shown))
+    (side,) = sides_of(groundless)
+    assert (side.cost[below] < 1).any()
+
+
+@pytest.mark.parametrize(("back", "count"), [(5.6, 1), (9.0, 0)])
+def test_a_few_lines_may_go_on_beyond_a_step_and_not_before_a_wall_far_behind(back, count):
+    known = known_of([(1, 5.0, 0.69, 3.0), (1, back, -40, 40)])
+    at = known.raster.rays[:, 0] * 5 / known.raster.rays[:, 1]
+    shown = np.where((known.shown == FRONT) & (at < 1.0), BACK, known.shown)  # 7 % of its lines lie in what it hides
+    ends = find_ends(replace(known, shown=shown))
+    assert len([end for end in ends if end.inwards > 0]) == count
+
+
 def test_clutter_between_walls_is_no_end_of_one_before_gaps_are_closed():
     known, _ = step_of(CLUTTER)
     assert sides_of(known) == []
