@@ -21,12 +21,11 @@ MOST_GAP = 0.05  # of the photo's width, of clutter between two walls that may b
 LEAST_SEEN = 0.002  # of the photo; a side that is hardly seen from beside is none
 STEP = 1.05  # times the depth of a wall's end, from which on what is beside it is behind it
 NARROW = 1.15  # times the offset of a wall; a parallel one not farther behind its end makes a step
-AT_END = 0.1  # of its place, about the end of a wall, in which samples are as wide as there
 BEFORE = 0.02  # of the depth of a wall's end, by which borders of cells may miss it
 MORE = 0.25  # of how far a side goes back, that it may go farther
 SAME = 1.5  # samples, within which borders are one upright
 IN_PLANE = 0.03  # of the offset; cornices are that far before their wall
-RELIEF = 0.9  # times the offset of a wall, from which on what is parallel is its relief, or behind it
+NO_NEARER = 0.9  # times the offset of a wall; what is parallel and nearer, a wing or a porch, may hide its side
 APART = 1.2  # times the offset of a side, of a wall behind that faces as it does; one nearer is that side itself
 GOES_ON = 0.05  # share of the lines of a wall that may lie beyond its end
 GOES_ON_STEP = 0.1  # the same before a wall a little behind: its lines decide with those of the other where it ends
@@ -47,6 +46,11 @@ class Known:
     lines: Lines
     raster: Raster
     gap: Bool | None = None  # (S,) what is clutter, though `shown` has it as a wall; None: nothing is
+
+    @property
+    def ground(self) -> float:
+        """The height of the ground, which is negative; -inf where none is known."""
+        return next((surface.offset for surface in self.surfaces if surface.kind == "ground"), -np.inf)
 
     def box(self, number: int) -> Float:
         """Low and high components (2, K) of the lines of a surface, or of what a depth map shows of it."""
@@ -91,6 +95,7 @@ class End:
     place: float  # component along the wall
     inwards: float  # 1 where the wall is at larger components, else -1
     top: float  # height up to which both border on each other
+    sample: float  # width of a sample there, along the wall
 
 
 @dataclass(frozen=True, eq=False)
@@ -113,12 +118,12 @@ class Side:
     behind: int  # the one that is seen beside the end
     before: Bool  # (S, K) where it is before each surface
     hides: Bool  # (S,) where what is behind it is shown as yet
-    reach: float = 0.0  # how far it goes back from its wall to a parallel one, per distance of its wall
-    is_bare: bool = False  # between parallel walls: hardly a line of either is there
+    reach: float = 0.0  # of a step: how far it goes back, per distance of its wall
+    is_bare: bool = False  # of a step: hardly a line of either wall is there, between lines of both
 
     @property
     def is_step(self) -> bool:
-        """Whether it goes back to a parallel wall."""
+        """Whether it goes back to a parallel wall a little behind."""
         return self.reach > 0
 
 
@@ -136,15 +141,17 @@ def find_sides(ends: list[End], known: Known) -> list[Side]:
         if not same:
             sides.append(side)
             continue
-        larger = max(sides[same[0]], side, key=lambda each: each.hides.sum())
-        sides[same[0]] = replace(larger, hides=sides[same[0]].hides | side.hides)
+        first = sides[same[0]]
+        surest = max(first, side, key=lambda each: (each.is_step, each.hides.sum()))  # lines say where a step is
+        sides[same[0]] = replace(surest, hides=first.hides | side.hides)
     return sides
 
 
 def _is_one(one: Side, other: Side) -> bool:
-    """Whether two sides of a wall are at one end of it, by how far the narrower goes back."""
+    """Whether two sides of a wall are at one end of it: a border may be as far off as a step is wide."""
     apart = abs(one.surface.offset / other.surface.offset - 1)
-    return one.surface.axis == other.surface.axis and apart < max(IN_PLANE, min(one.reach, other.reach))
+    reach = min((side.reach for side in (one, other) if side.is_step), default=0.0)
+    return one.surface.axis == other.surface.axis and apart < max(IN_PLANE, reach)
 
 
 def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
@@ -208,7 +215,7 @@ def _ends_at(surfaces: list[Surface], pair: tuple[int, int], inner: Float, outer
         return []  # what ends below the eye is a van or a fence
     place = float(np.median(middle[same[best]]))
     inwards = float(np.sign(np.median(places[0] - places[1])))
-    return [End(*pair, place, inwards, top)]
+    return [End(*pair, place, inwards, top, width)]
 
 
 def _ends_there(end: End, known: Known) -> bool:
@@ -242,13 +249,13 @@ def _side(end: End, known: Known) -> Side:
     step = find_step(_pair(end, known), end.inwards * end.place, raster) if is_step else None
     box[:, axis] = _furthest(end, known) if step is None else end.inwards * step.place
     box[:, wall.axis] = np.sort([wall.offset, behind.offset if is_parallel else far[np.abs(far).argmax()]])
-    ground = next((each.offset for each in known.surfaces if each.kind == "ground"), -np.inf)
-    box[:, UP] = ground if np.isfinite(ground) else box[0, UP], max(box[1, UP], end.top)
+    box[:, UP] = known.ground if np.isfinite(known.ground) else box[0, UP], max(box[1, UP], end.top)
+    tall = max(float(np.ptp(box[:, UP])), IN_PLANE * abs(wall.offset))
     surface = Surface("wall", axis, float(box[0, axis]), np.zeros(0, np.int64), None, box, SIDE_PRICE)
     depth = _depth(surface, raster)
     back, height = raster.rays[:, wall.axis] * np.sign(wall.offset) * depth, raster.rays[:, UP] * depth
     most = abs(behind.offset) * STEP if is_parallel else np.inf
-    reached = (depth > 0) & (back > (1 - BEFORE) * abs(wall.offset)) & (back < most) & (height > ground)
+    reached = (depth > 0) & (back > (1 - BEFORE) * abs(wall.offset)) & (back < most) & (height > known.ground)
     if is_parallel:
         most = min(most, abs(behind.offset) + MORE * (abs(behind.offset) - abs(wall.offset)))
     before = _before(depth, wall if is_step else None, known)
@@ -257,21 +264,22 @@ def _side(end: End, known: Known) -> Side:
         behind_it = np.column_stack([before, np.zeros(raster.size, bool), ~raster.plants])  # clutter as well
         shown = behind_it[np.arange(raster.size), known.shown] & (height < box[1, UP])
     hides = reached & (back > abs(wall.offset)) & (back < most) & shown
-    above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / np.ptp(box[:, UP]), 0.0, MOST_ABOVE))
+    above = np.where(hides, 0.0, np.clip(ABOVE_COST * (height - box[1, UP]) / tall, 0.0, MOST_ABOVE))
     cost = np.where(reached, SIDE_COST + above, NEVER)
     how = (0.0, False) if step is None else (behind.offset / wall.offset - 1, step.is_bare)
     return Side(surface, cost, end.wall, end.other, before, hides, *how)
 
 
 def _before(depth: Float, wall: Surface | None, known: Known) -> Bool:
-    """Where (S, K) a side of some depth (S,) is before each surface; that of a step before all that its wall is.
+    """Where (S, K) a side of some depth (S,) is before each surface.
 
-    What is parallel to the `wall` of a step is its relief, or that of the wall behind, and seen through its side.
+    What is parallel to the `wall` of a step, but for what is nearer, is one of its walls or their cornices, which end
+    at the side too.
     """
     before = np.zeros((known.raster.size, len(known.surfaces)), bool, order="F")
     for number, surface in enumerate(known.surfaces):
         if wall is not None and surface.axis == wall.axis:
-            before[:, number] = surface.offset / wall.offset > RELIEF
+            before[:, number] = surface.offset / wall.offset > NO_NEARER
         elif surface.kind == "wall" or (wall is not None and surface.kind != "ground"):
             before[:, number] = _depth(surface, known.raster) > STEP * depth
     return before
@@ -286,14 +294,10 @@ def _pair(end: End, known: Known) -> Pair:
     across = np.where(is_before, towards, 1.0)
     at = np.where(is_before, end.inwards * raster.rays[:, along] / across, 0.0)
     height = abs(wall.offset) * raster.rays[:, UP] / across
-    ground = next((each.offset for each in known.surfaces if each.kind == "ground"), -np.inf)
-    seen = is_before & (height > ground) & (height < end.top) & ~raster.plants
+    seen = is_before & (height > known.ground) & (height < end.top) & ~raster.plants
     points = [raster.at[known.on_lines(number)] for number in (end.wall, end.other)]
     near, far = (own[seen[own]] for own in points)
-    near_end = is_before & (np.abs(at * abs(wall.offset) - abs(end.place)) < AT_END * abs(end.place))
-    widths = np.abs(np.diff(at.reshape(raster.shape), axis=1))
-    sample = float(np.median(widths[near_end.reshape(raster.shape)[:, :-1]]))
-    return Pair(abs(wall.offset), abs(behind.offset), at, seen, near, far, sample)
+    return Pair(abs(wall.offset), abs(behind.offset), at, seen, near, far, end.sample / abs(wall.offset))
 
 
 def _furthest(end: End, known: Known) -> float:

@@ -105,7 +105,7 @@ def find_labels(
 
     def cells_of(border: Float, steps: Bool | None = None) -> list[shapely.Polygon]:
         cells = cut_at(told.cut(border), sky, raster)
-        return cells if steps is None else cut_at(cells, find_plants(raster), raster, steps)
+        return cells if steps is None else cut_at(cells, plants, raster, steps)
 
     costs = sample_costs(raster, lines, surfaces, heaven, limit_of_depth(raster))
     forced = told.over(costs, surfaces, raster)
@@ -119,6 +119,7 @@ def find_labels(
     costs = with_feet(costs, known, firm)
     known = known.without_gaps()
     sides = find_sides(find_ends(known), known)
+    plants = find_plants(raster) if any(side.is_step for side in sides) else shapely.Polygon()
     while True:
         of_steps = [side.hides for side in sides if side.is_step]
         steps = np.any(of_steps, axis=0) if of_steps else None
@@ -146,9 +147,10 @@ def find_labels(
 
 
 def _shown_sides(found: Labels, sides: list[Side], covered: Bool) -> list[Side]:
-    """The sides, last of the surfaces, that the photo shows in most of where they may be and their wall is not.
+    """The sides, last of the surfaces, that the photo shows in most of where they may be.
 
-    What is `covered` (S,) says nothing about what is behind it.
+    What is `covered` (S,) says nothing about what is behind it, nor does the wall that ends there, which may be before
+    it, but for steps: their walls are known to end.
     """
     label, shown = found.label[found.cell], []
     for row, side in enumerate(sides, len(found.surfaces) - len(sides)):

@@ -1,4 +1,4 @@
-"""Where the sky ends: cells of the photo cut along its outline, which no line of the scene follows.
+"""Where the sky ends, and plants: cells of the photo cut along outlines that no line of the scene follows.
 
 Trees, domes and chimneys stand before the sky without a line along their outlines. A cell that shows both would be all
 wall or all sky.

@@ -17,7 +17,9 @@ WINDOW = 2.0  # widths of the strip on either side of the border between both wa
 SLACK = 0.02  # share of the points on lines there, that may be on the wrong side more than at the best place
 CORNER = 1.0  # samples, by which a line along a corner may be beyond it
 BESIDE = 2  # samples on either side of a corner, whose colours are compared
+LEAST_CHANGE = 10.0  # of colours at both corners together, in bytes; less is the grain of the walls
 CHANGES = 0.9  # of the most that colours change; of places where they do, the one nearest to the border is taken
+SEEN = 0.2  # of what is seen beside it, of a strip that can be bare
 BARE = 0.25  # times as many lines as beside it has a strip that is neither wall
 
 
@@ -52,13 +54,14 @@ def find_step(pair: Pair, border: float, raster: Raster) -> Step:
     wrong = np.searchsorted(near, places - off) + len(far) - np.searchsorted(far, places + off)
     possible = np.flatnonzero(wrong <= wrong.min() + SLACK * (len(near) + len(far)))
     change = _changes(pair, places / pair.near, raster) + _changes(pair, places / pair.far, raster)
+    change = np.where(change > LEAST_CHANGE, change, 0.0)
     most = possible[change[possible] >= CHANGES * change[possible].max()]
     place = float(places[most[np.abs(places[most] - border).argmin()]])
     return Step(place, _is_bare(pair, place))
 
 
 def _changes(pair: Pair, at: Float, raster: Raster) -> Float:
-    """How much the colour changes across uprights (P,), CIE L*a*b* in bytes."""
+    """How much the colour changes across uprights (P,), CIE L*a*b* in bytes; 0 where not both sides are seen."""
     low = float(at.min()) - (BESIDE + 1) * pair.sample
     count = int((at.max() - low) / pair.sample) + 2 * BESIDE + 2
     bins = np.floor(np.clip((pair.at - low) / pair.sample, -1, count)).astype(np.int64)
@@ -67,24 +70,27 @@ def _changes(pair: Pair, at: Float, raster: Raster) -> Float:
     seen = np.bincount(bins[own], minlength=count)
     sums = np.column_stack([np.bincount(bins[own], each, count) for each in colour.T])
     total, number = np.cumsum(np.vstack([np.zeros(3), sums]), axis=0), np.cumsum([0, *seen])
-    middle = np.rint((at - low) / pair.sample).astype(np.int64)
-
-    def mean(start: Int, stop: Int) -> Float:
-        values: Float = (total[stop] - total[start]) / np.maximum(number[stop] - number[start], 1)[:, None]
-        return values
-
-    return np.asarray(np.linalg.norm(mean(middle, middle + BESIDE) - mean(middle - BESIDE, middle), axis=1))
+    middle = np.floor((at - low) / pair.sample + 0.5).astype(np.int64)
+    halves = ((middle - BESIDE, middle), (middle, middle + BESIDE))
+    counts = [number[stop] - number[start] for start, stop in halves]
+    means = [
+        (total[stop] - total[start]) / np.maximum(count, 1)[:, None]
+        for (start, stop), count in zip(halves, counts, strict=True)
+    ]
+    return np.where(np.minimum(*counts) > 0, np.linalg.norm(means[1] - means[0], axis=1), 0.0)
 
 
 def _is_bare(pair: Pair, place: float) -> bool:
     inner, outer = place / pair.far, place / pair.near
     width = outer - inner
 
-    def density(points: Int, low: float, high: float) -> float:
+    def shown(points: Int, low: float, high: float) -> tuple[int, int]:
+        """How many samples are seen, and points of lines in them."""
         inside = (pair.at[points] >= low) & (pair.at[points] < high)
-        area = (pair.seen & (pair.at >= low) & (pair.at < high)).sum()
-        return float(inside.sum() / max(area, 1))
+        return int((pair.seen & (pair.at >= low) & (pair.at < high)).sum()), int(inside.sum())
 
-    both = np.concatenate([pair.near_points, pair.far_points])
-    beside = density(pair.near_points, outer, outer + width), density(pair.far_points, inner - width, inner)
-    return density(both, inner, outer) < BARE * min(beside)
+    area, points = shown(np.concatenate([pair.near_points, pair.far_points]), inner, outer)
+    beside = shown(pair.near_points, outer, outer + width), shown(pair.far_points, inner - width, inner)
+    if area < SEEN * max(own for own, _ in beside) or min(own for own, _ in beside) == 0:
+        return False
+    return points / area < BARE * min(count / own for own, count in beside)

@@ -15,7 +15,6 @@ from linecad.model.regions.corners import (
     NARROW,
     NEVER,
     UNBELIEVED,
-    End,
     Known,
     find_ends,
     find_sides,
@@ -104,7 +103,7 @@ def test_a_side_ends_where_lines_of_its_wall_end_though_the_border_is_elsewhere(
     known = known_of([(1, 5.0, 1.0, 3.0), (1, 9.0, -40, 40)])
     end = min(find_ends(known), key=lambda end: end.place)
     assert end.place == pytest.approx(1.0, abs=0.03)
-    (side,) = find_sides([End(end.wall, end.other, 1.3, end.inwards, end.top)], known)
+    (side,) = find_sides([replace(end, place=1.3)], known)
     assert side.surface.offset == pytest.approx(1.0, abs=0.03)
 
 
@@ -132,9 +131,14 @@ def test_a_wall_whose_lines_go_on_does_not_end():
     assert sides_of(Known(shown, known.surfaces, known.lines, known.raster)) == []
 
 
-def step_of(taken_for, back=5.6):
-    """Two parallel walls with a side between them at 1.0 that is taken for something; and the samples of that side."""
+def step_of(taken_for, back=5.6, mirrored=False):
+    """Two parallel walls with a side between them at 1.0 that is taken for something; and the samples of that side.
+
+    Mirrored, all is on the left of the camera.
+    """
     walls = [(1, 5.0, 1.0, 3.0), (1, back, -40, 1.0), (0, 1.0, 5.0, back)]
+    if mirrored:
+        walls = [(1, 5.0, -3.0, -1.0), (1, back, -1.0, 40), (0, -1.0, 5.0, back)]
     known = known_of(walls, components=(0, 0, 0), heights=(GROUND, 0.0, 0.7, 1.4, TOP))
     strip = known.shown == 2
     shown = np.where(strip, taken_for, known.shown - (known.shown > 2))
@@ -142,12 +146,12 @@ def step_of(taken_for, back=5.6):
 
 
 @settings(deadline=None, max_examples=20)
-@given(st.sampled_from([FRONT, BACK, CLUTTER]), st.floats(5.4, 5.0 * NARROW - 0.05))
-def test_the_side_of_a_step_is_found_whatever_it_is_taken_for(taken_for, back):
-    known, strip = step_of(taken_for, back)
+@given(st.sampled_from([FRONT, BACK, CLUTTER]), st.floats(5.4, 5.0 * NARROW - 0.05), st.booleans())
+def test_the_side_of_a_step_is_found_whatever_it_is_taken_for(taken_for, back, mirrored):
+    known, strip = step_of(taken_for, back, mirrored)
     (side,) = sides_of(known.without_gaps())
     assert side.is_step
-    assert side.surface.offset == pytest.approx(1.0, abs=0.03)
+    assert side.surface.offset == pytest.approx(-1.0 if mirrored else 1.0, abs=0.03)
     assert (side.hides & strip).sum() > 0.6 * strip.sum()  # a strip of 5 samples, found to a sample
     assert side.hides.sum() < 1.6 * strip.sum()
     costs = np.full((known.raster.size, len(known.surfaces) + 2), 0.1)
@@ -173,6 +177,21 @@ def test_a_few_lines_may_go_on_beyond_a_step_and_not_before_a_wall_far_behind(ba
     shown = np.where((known.shown == FRONT) & (at < 1.0), BACK, known.shown)  # 7 % of its lines lie in what it hides
     ends = find_ends(replace(known, shown=shown))
     assert len([end for end in ends if end.inwards > 0]) == count
+
+
+def test_an_end_straight_before_the_camera_shows_no_side():
+    assert sides_of(known_of([(1, 5.0, 0.05, 3.0), (1, 5.5, -40, 0.05)])) == []
+
+
+def test_one_end_before_a_wall_a_little_behind_and_one_far_behind_is_a_step():
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 5.6, -40, 1.0), (1, 9.0, -40, 40)], components=(0, 0, 0))
+    beside = known.raster.rays[:, 0] < 1.0 / 5.0 * known.raster.rays[:, 1]
+    upper = known.raster.rays[:, 2] > 0.15 * known.raster.rays[:, 1]
+    wall = np.where(upper, 2, BACK)
+    known = replace(known, shown=np.where(beside & np.isin(known.shown, [BACK, 2]), wall, known.shown))
+    assert {end.other for end in find_ends(known) if end.inwards > 0} == {BACK, 2}
+    step = [side for side in sides_of(known) if side.surface.offset < 2]
+    assert [side.is_step for side in step] == [True]
 
 
 def test_clutter_between_walls_is_no_end_of_one_before_gaps_are_closed():

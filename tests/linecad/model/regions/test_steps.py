@@ -58,16 +58,38 @@ def test_where_lines_leave_room_and_no_colour_changes_the_border_stays(raster, o
     assert found.place == pytest.approx(TRUE * off, abs=SAMPLE * FAR)
 
 
+@given(st.floats(0.97, 1.03), st.integers(0, 20))
+def test_grain_is_no_change_of_colour(raster, off, seed):
+    noise = np.random.default_rng(seed).integers(118, 139, (*raster.shape, 3)).astype(np.uint8)
+    found = find_step(pair_of(raster, INNER - 0.06, OUTER + 0.06), TRUE * off, replace(raster, colour=noise))
+    assert found.place == pytest.approx(TRUE * off, abs=SAMPLE * FAR)
+
+
+@given(st.floats(0.97, 1.03))
+def test_the_edge_of_a_tree_is_no_corner(raster, off):
+    pair = pair_of(raster, INNER - 0.06, OUTER + 0.06)
+    behind_tree = (pair.at > OUTER + 0.01) & (pair.at < OUTER + 0.05)
+    hidden = replace(pair, seen=pair.seen & ~behind_tree)
+    found = find_step(hidden, TRUE * off, coloured(raster, pair, [INNER, OUTER]))
+    assert found.place == pytest.approx(TRUE, abs=1.5 * SAMPLE * FAR)
+
+
 def test_few_lines_that_go_on_do_not_move_the_end(raster):
     pair = pair_of(raster)
-    cornice = np.flatnonzero((np.arange(raster.size) < raster.shape[1]) & (pair.at > INNER))  # in one row
-    found = find_step(replace(pair, near_points=np.concatenate([pair.near_points, cornice])), TRUE, raster)
+    cornice = np.flatnonzero((np.arange(raster.size) < 2 * raster.shape[1]) & (pair.at > INNER - 0.02))  # in two rows
+    found = find_step(replace(pair, near_points=np.concatenate([pair.near_points, cornice])), 1.05 * TRUE, raster)
     assert found.place == pytest.approx(TRUE, abs=2 * SAMPLE * FAR)
 
 
 @pytest.mark.parametrize(("inner", "outer", "is_bare"), [(INNER, OUTER, True), (OUTER, OUTER, False)])
 def test_a_strip_without_lines_between_walls_full_of_them_is_bare(raster, inner, outer, is_bare):
     assert find_step(pair_of(raster, inner, outer), TRUE, raster).is_bare == is_bare
+
+
+def test_a_strip_behind_a_hedge_is_not_bare(raster):
+    pair = pair_of(raster)
+    hidden = replace(pair, seen=pair.seen & ~((pair.at > INNER) & (pair.at < OUTER)))
+    assert not find_step(hidden, TRUE, raster).is_bare
 
 
 def test_a_strip_beside_a_wall_without_lines_is_not_bare(raster):
