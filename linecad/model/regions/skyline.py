@@ -31,8 +31,7 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
         return shapely.Polygon()
     # A row more above and a column to either side: the sky goes on beyond the photo.
     mask = np.pad(heaven.seed.reshape(raster.shape), ((1, 0), (1, 1)), mode="edge")
-    parts = [shapely.make_valid(part) for part in traced(mask, raster.step, LEAST_HOLE)]
-    sky = shapely.transform(shapely.union_all(parts), lambda padded: padded - raster.step)
+    sky = _padded_shape(mask, raster.step)
     wide = shapely.buffer(sky, (MARGIN + SPIRE) * raster.step, quad_segs=4)
     narrow: shapely.Geometry = shapely.buffer(wide, -SPIRE * raster.step, quad_segs=4)
     return narrow
@@ -41,9 +40,13 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
 def find_plants(raster: Raster) -> shapely.Geometry:
     """The parts of the photo that trees, hedges and bushes cover, px."""
     mask = np.pad(raster.plants.reshape(raster.shape), 1, mode="edge")  # they go on beyond the photo
-    parts = [shapely.make_valid(part) for part in traced(mask, raster.step, LEAST_HOLE)]
-    plants = shapely.MultiPolygon(partition.polygons_of(shapely.union_all(parts)))
-    return shapely.transform(plants, lambda padded: padded - raster.step)
+    return shapely.MultiPolygon(partition.polygons_of(_padded_shape(mask, raster.step)))
+
+
+def _padded_shape(mask: Bool, step: float) -> shapely.Geometry:
+    """The shape, px of the photo, of a mask with a row more above and a column more to the left than the samples."""
+    parts = [shapely.make_valid(part) for part in traced(mask, step, LEAST_HOLE)]
+    return shapely.transform(shapely.union_all(parts), lambda padded: padded - step)
 
 
 def near_outline(sky: shapely.Geometry, raster: Raster) -> Bool:
