@@ -4,14 +4,13 @@ Costs are in units of one sample that is as unlikely as a wall's own without a l
 surfaces, then SKY and CLUTTER, which is what has no plane: trees, cars, people.
 """
 
-from dataclasses import dataclass
-
 import cv2
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.normals import UNTOLD
 from linecad.directions import MAIN, UP, across, components, frame_axes, frame_of, partner
+from linecad.model.regions.heaven import SMOOTH, Heaven
 from linecad.model.regions.mapped import cost_outside, costs_by_map
 from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
@@ -48,60 +47,11 @@ OF_CLUTTER = np.array([0.11, 0.11, 0.11, 0.67])
 OF_EDGE = 0.3  # weight of the votes: the pixels of one edge are no witnesses apart
 SKY_EDGE = 0.15  # cost of an edge in the sky
 
-SMOOTH = 0.30  # gradient of the sky
-LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
-MOST_LINES = 0.02  # share of samples on lines inside the sky
-BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
-WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
-EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
-DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.7
 
 COLOUR_WEIGHT = 0.25
 MOST_BY_COLOUR = 2.0  # log-odds
 SHARE_OF_ALL = 0.05  # of the photo's colours in those of a label, for what it has not shown yet
-
-
-@dataclass(frozen=True, eq=False)
-class Heaven:
-    """What is above the lines."""
-
-    seed: Bool  # (S,) sky for sure: smooth, open to the top of the photo, of its colour
-    is_sky: bool  # by its colour
-    is_ceiling: bool
-
-
-def look_up(raster: Raster) -> Heaven:
-    """Whether the smooth parts at the top of the photo are sky or ceiling."""
-    up = raster.rays[:, 2] > 0
-    smooth = ((raster.gradient < SMOOTH) & up).reshape(raster.shape).astype(np.uint8)
-    _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
-    on_line = raster.marked(np.ones(len(raster.at), bool)).reshape(raster.shape)
-    pieces = []
-    for number in np.unique(piece[0][piece[0] > 0]).tolist():
-        own = piece == number
-        inside = cv2.erode(own.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
-        if own.sum() >= LEAST_PIECE * raster.size and inside.any() and on_line[inside].mean() <= MOST_LINES:
-            pieces.append(own)
-    nothing = np.zeros(raster.size, bool)
-    if not pieces:
-        return Heaven(nothing, is_sky=False, is_ceiling=False)
-    colours = [np.median(raster.colour[own], axis=0) for own in pieces]
-    brightest = max(light for light, _, _ in colours)
-    rest = up.reshape(raster.shape) & ~np.any(pieces, axis=0)
-    usual = float(np.median(raster.colour[rest][:, 0])) if rest.any() else 0.0
-    light_enough = [
-        (own, light, blue) for own, (light, _, blue) in zip(pieces, colours, strict=True)
-        if light >= DARKEST * brightest and (blue < BLUE or light >= BRIGHT or light > BRIGHTER * usual)
-    ]  # fmt: skip
-    coldest = min((blue for _, _, blue in light_enough), default=WARM)
-    is_evening = coldest >= WARM
-    sky = [
-        own for own, light, blue in light_enough
-        if blue < WARM or light >= BRIGHT or (is_evening and light > EVENING * usual)
-    ]  # fmt: skip
-    seed = np.any(sky or pieces, axis=0).ravel()
-    return Heaven(seed if sky else nothing, bool(sky), is_ceiling=not sky and seed.mean() > LEAST_CEILING)
 
 
 def depths(raster: Raster, surfaces: list[Surface]) -> Float:

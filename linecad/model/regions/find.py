@@ -10,9 +10,9 @@ from linecad.depth.normals import Normals
 from linecad.directions import Turns
 from linecad.model.regions.as_told import uncovered, with_told
 from linecad.model.regions.clutter import with_hidden
-from linecad.model.regions.evidence import look_up
 from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
+from linecad.model.regions.heaven import look_up
 from linecad.model.regions.kerbs import on_kerbs
 from linecad.model.regions.labelling import find_labels
 from linecad.model.regions.mapped import MappedDepths, laid_on, with_mapped

@@ -20,7 +20,8 @@ from linecad.model.regions import partition
 from linecad.model.regions.below import with_feet
 from linecad.model.regions.corners import Known, Side, find_ends, find_sides, with_sides
 from linecad.model.regions.cuts import Borders, energy, expand
-from linecad.model.regions.evidence import CLUTTER, SKY, Heaven, colour_costs, direction_costs, sample_costs, sums
+from linecad.model.regions.evidence import CLUTTER, SKY, colour_costs, direction_costs, sample_costs, sums
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import Meets, View, find_meets, find_segments, limit_of_depth

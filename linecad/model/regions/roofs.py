@@ -15,7 +15,7 @@ from linecad.arrays import Float, Int
 from linecad.directions import UP, Turns, components, directions_of
 from linecad.geometry import angles_to, lengths, vanishing_points
 from linecad.model.regions import partition
-from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.profiles import FOOT, Profile, Shown, Wall, look_over, walls_of
 from linecad.model.regions.raster import Raster

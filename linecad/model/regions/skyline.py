@@ -12,7 +12,7 @@ import shapely
 
 from linecad.arrays import Bool, Float
 from linecad.model.regions import partition
-from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.raster import Raster, traced
 
 MARGIN = 1.5  # samples between what is sky for sure and its end
@@ -21,7 +21,8 @@ LEAST_HOLE = 0.005  # of the photo; a smaller thing in the sky is no part of the
 LEAST_PART = 0.0008  # of the photo, of a cell: less is not cut off
 THIN = 2.5  # samples; what is nowhere wider than twice that is not cut off
 STRAIGHT = 3.0  # samples, by which the outline may be straightened
-ZIGZAG = 20.0  # samples; a shorter edge between two that turn against each other is left out
+ZIGZAG = 16.0  # samples; a shorter edge between two that turn against each other is left out
+BUMP = 30.0  # samples; what reaches into the sky between two such edges that are shorter is left out: a chimney
 AT_CORNER = 5.0  # samples, within which the outline goes to a corner of a cell
 
 
@@ -75,7 +76,7 @@ def cut_at(
         return cells
     sides = _sides_of(cells)
     tree = shapely.STRtree(shapely.linestrings(sides))
-    bends = [_straight(_at_corners(outline, sides, tree, raster.step), raster.step) for outline in outlines]
+    bends = [_straight(_at_corners(outline, sides, tree, raster.step), sky, raster.step) for outline in outlines]
     cut = [shapely.LineString(bend) for bend in bends if len(bend) > 1]
     return partition.cells_between([*shapely.boundary(np.array(cells, object)), *cut])
 
@@ -127,16 +128,28 @@ def _at_corners(outline: Float, sides: Float, tree: shapely.STRtree, step: float
     return moved
 
 
-def _straight(outline: Float, step: float) -> Float:
-    """An outline (V, 2) px with few corners and without steps."""
+def _straight(outline: Float, sky: shapely.Geometry, step: float) -> Float:
+    """An outline (V, 2) px with few corners and without steps, and without what reaches a little into the sky."""
     corners = shapely.get_coordinates(shapely.simplify(shapely.LineString(outline), STRAIGHT * step))
     while True:
         edges = np.diff(corners, axis=0)
         length = np.linalg.norm(edges, axis=1)
         turn = np.sign(edges[:-1, 0] * edges[1:, 1] - edges[:-1, 1] * edges[1:, 0])
-        short = [k for k in range(1, len(edges) - 1) if turn[k - 1] * turn[k] < 0 and length[k] < ZIGZAG * step]
-        if not short:
+        steps = [k for k in range(1, len(edges) - 1) if turn[k - 1] * turn[k] < 0]
+        bumps = [k for k in steps if k + 2 in steps and _is_bump(corners[k : k + 4], sky, step)]
+        short = [k for k in steps if length[k] < ZIGZAG * step]
+        if bumps:
+            k = min(bumps, key=lambda each: length[each] + length[each + 2])
+            corners = np.concatenate([corners[: k + 1], corners[k + 3 :]])
+        elif short:
+            k = min(short, key=lambda each: length[each])
+            corners = np.concatenate([corners[:k], [(corners[k] + corners[k + 1]) / 2], corners[k + 2 :]])
+        else:
             straight: Float = corners[:1] if np.array_equal(corners[0], corners[-1]) else corners
             return straight
-        k = min(short, key=lambda each: length[each])
-        corners = np.concatenate([corners[:k], [(corners[k] + corners[k + 1]) / 2], corners[k + 2 :]])
+
+
+def _is_bump(corners: Float, sky: shapely.Geometry, step: float) -> bool:
+    """Whether what four corners (4, 2) px of an outline bound reaches into the sky, and not far."""
+    sides = np.linalg.norm(np.diff(corners, axis=0), axis=1)[[0, 2]]
+    return bool(sides.max() < BUMP * step) and not shapely.contains_xy(sky, *corners.mean(axis=0))

@@ -15,7 +15,8 @@ import shapely
 from linecad.arrays import Bool, Float, Int
 from linecad.corrections.edits import Shown
 from linecad.model.regions import partition
-from linecad.model.regions.evidence import CLUTTER, SKY, Heaven
+from linecad.model.regions.evidence import CLUTTER, SKY
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.surfaces import RELIEF, Surface, apart
 from linecad.scene import Camera

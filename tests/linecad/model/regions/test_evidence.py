@@ -8,10 +8,8 @@ import pytest
 
 from linecad.model.regions.evidence import (
     BESIDE_COST,
-    BRIGHTER,
     CLUTTER,
     CLUTTER_COST,
-    EVENING,
     GREEN_COST,
     NEAR_COST,
     NEVER,
@@ -20,21 +18,20 @@ from linecad.model.regions.evidence import (
     THROUGH_COST,
     TURNED_COST,
     WALLED_COST,
-    Heaven,
     colour_costs,
     depths,
     direction_costs,
-    look_up,
     sample_costs,
     sums,
 )  # fmt: skip
+from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.raster import COLUMNS, take_raster
 from linecad.model.regions.segments import limit_of_depth
 from linecad.model.regions.surfaces import Surface, find_surfaces
 
 NO_LINES = np.zeros(0, np.int64)
 NO_HEAVEN = Heaven(np.zeros(360 * COLUMNS, bool), is_sky=False, is_ceiling=False)
-BLUE_SKY, WHITE, BROWN = (120, 170, 235), (215, 212, 200), (120, 90, 70)
+WHITE, BROWN = (215, 212, 200), (120, 90, 70)
 
 
 @pytest.fixture(scope="module")
@@ -50,94 +47,6 @@ def surfaces(house):
 def sample(x, y):
     """The sample at a pixel."""
     return (y // 2) * COLUMNS + x // 2
-
-
-def under(top, house, rough=()):
-    """The raster of a photo whose upper third has one colour and whose rest is rough, as are patches (x, y, w, h)."""
-    rng = np.random.default_rng(0)
-    photo = rng.integers(40, 160, (720, 960, 3)).astype(np.uint8)
-    photo = cv2.resize(photo[::4, ::4], (960, 720), interpolation=cv2.INTER_NEAREST)
-    noisy = photo.copy()
-    photo[:240] = top
-    for x, y, width, height in rough:
-        photo[y : y + height, x : x + width] = noisy[y : y + height, x : x + width]
-    return take_raster(house.lines, house.camera, house.rotation, photo)
-
-
-def test_what_is_blue_and_smooth_on_top_is_sky(house):
-    heaven = look_up(under(BLUE_SKY, house))
-    assert (heaven.is_sky, heaven.is_ceiling) == (True, False)
-    seed = heaven.seed.reshape(360, COLUMNS)
-    assert seed[10:110, 10:-10].mean() > 0.5
-    assert not seed[125:].any()
-
-
-def test_light_plaster_beside_the_sky_is_no_sky(house):
-    """The plain wall above the shops of a street was its sky, and had no face."""
-    raster = under(BLUE_SKY, house)
-    colour = raster.colour.copy()
-    colour[:120, 240:] = (220, 129, 138)
-    colour[:120, 238:242] = (128, 128, 128)  # an edge between the two
-    gradient = raster.gradient.reshape(raster.shape).copy()
-    gradient[:120, 238:242] = 1.0
-    both = replace(raster, colour=colour, gradient=gradient.ravel())
-    seed = look_up(both).seed.reshape(raster.shape)
-    assert seed[10:110, 10:230].mean() > 0.9
-    assert not seed[:, 242:].any()
-    colour[:120, 240:] = (250, 129, 138)
-    bright = look_up(replace(both, colour=colour)).seed.reshape(raster.shape)
-    assert bright[10:110, 250:].mean() > 0.9  # a cloud
-
-
-@pytest.mark.parametrize(("light", "is_sky"), [(230, True), (145, False)])
-def test_a_warm_sky_is_much_lighter_than_what_is_before_it(light, is_sky, house):
-    """Ceilings of rooms were the sky of an evening."""
-    raster = under(BLUE_SKY, house)
-    colour = raster.colour.copy()
-    usual = np.median(colour[150:, :, 0])
-    assert usual * BRIGHTER < 145 < usual * EVENING < 230
-    colour[:120] = (light, 129, 138)
-    heaven = look_up(replace(raster, colour=colour))
-    assert (heaven.is_sky, heaven.is_ceiling) == (is_sky, not is_sky)
-
-
-def test_what_is_as_light_as_walls_and_not_blue_is_a_ceiling(house):
-    # Light walls, lines apart.
-    photo = np.full((720, 960, 3), WHITE, np.uint8)
-    photo[240:720:12] = (150, 148, 140)
-    photo[:240] = (180, 176, 165)
-    lines = replace(house.lines, segment=house.lines.segment + np.array([0, 250]))
-    heaven = look_up(take_raster(lines, house.camera, house.rotation, photo))
-    assert (heaven.is_sky, heaven.is_ceiling) == (False, True)
-    assert not heaven.seed.any()
-
-
-def test_what_is_rough_on_top_is_neither(house):
-    heaven = look_up(under(BLUE_SKY, house, rough=[(0, 0, 960, 240)]))
-    assert (heaven.is_sky, heaven.is_ceiling) == (False, False)
-    assert not heaven.seed.any()
-
-
-def test_the_ground_is_no_sky_whatever_its_colour(house):
-    photo = np.full((720, 960, 3), BLUE_SKY, np.uint8)
-    rng = np.random.default_rng(0)
-    photo[:360] = cv2.resize(rng.integers(40, 160, (90, 240, 3)).astype(np.uint8), (960, 360), interpolation=0)
-    heaven = look_up(take_raster(house.lines, house.camera, house.rotation, photo))
-    assert (heaven.is_sky, heaven.is_ceiling) == (False, False)
-
-
-def test_a_smooth_part_with_lines_in_it_is_no_sky(house):
-    # The walls of the house are above the horizon in part, and as smooth as they can be.
-    photo = np.full((720, 960, 3), BLUE_SKY, np.uint8)
-    across = np.array([[[u, v], [u + 60, v]] for v in range(10, 355, 10) for u in range(0, 900, 60)], float)
-    count = len(across)
-    lines = replace(
-        house.lines, id=np.arange(count), axis=np.zeros(count, int), segment=across,
-        ends=np.resize(house.lines.ends, (count, 2, 3)), is_boundary=np.zeros(count, bool),
-        component=np.zeros(count, int), confidence=np.full(count, "proven"), by_depth_map=(), role=(),
-        by_face=(), pieces=(),
-    )  # fmt: skip
-    assert not look_up(take_raster(lines, house.camera, house.rotation, photo)).is_sky
 
 
 def test_depths_are_those_of_rays_on_surfaces(raster, surfaces):

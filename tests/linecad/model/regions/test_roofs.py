@@ -14,8 +14,8 @@ from linecad.geometry import central_camera, project
 from linecad.model.faces import find_faces, with_roofs
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
-from linecad.model.regions.evidence import Heaven
 from linecad.model.regions.filling import Filled
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.profiles import Shown, Wall
 from linecad.model.regions.raster import take_raster

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.model.regions import partition
-from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.skyline import MARGIN, cut_at, find_plants, find_sky, near_outline
 
@@ -78,6 +78,19 @@ def test_a_cell_of_sky_and_wall_is_cut_between_them(raster, drawn):
     seen = sky_of(cells, sky)
     assert seen.symmetric_difference(shapely.intersection(sky, PHOTO)).area < 0.01 * PHOTO.area
     assert not seen.covers(shapely.Point(480, 200))
+
+
+def test_a_chimney_is_left_out_of_the_outline_of_its_ridge(raster, drawn):
+    """The ridge sloped from the middle of the chimney on, with sky below it on either side."""
+    sky = drawn(np.s_[HEIGHT - 20 : HEIGHT, 200:240])
+    ridge = sky_of(cut_at([PHOTO], sky, raster), sky)
+    assert ridge.symmetric_difference(shapely.box(-0.5, -0.5, 959.5, 2 * (HEIGHT + MARGIN))).area < 0.003 * PHOTO.area
+
+
+def test_a_gap_between_two_towers_is_cut(raster, drawn):
+    sky = drawn(np.s_[110:HEIGHT, :200], np.s_[110:HEIGHT, 240:])
+    seen = sky_of(cut_at([PHOTO], sky, raster), sky)
+    assert seen.symmetric_difference(shapely.intersection(sky, PHOTO)).area < 0.002 * PHOTO.area
 
 
 def test_what_is_thin_is_not_cut_off(raster, drawn):

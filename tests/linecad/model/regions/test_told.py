@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from linecad.model.regions import partition
-from linecad.model.regions.evidence import Heaven
+from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.surfaces import Surface
 from linecad.model.regions.told import FALSE, KEPT, NOTHING, Before, Told

@@ -1,0 +1,150 @@
+"""What is above the lines of the scene: sky, with its clouds, up to where it ends, or a ceiling.
+
+Smooth parts at the top of the photo of the sky's colours are the seed. From there the sky is what looks more like it
+than like the rest of the photo (GrabCut: Rother, Kolmogorov and Blake, SIGGRAPH 2004), as far as no line of the scene
+is crossed. What looks the same elsewhere in the photo is plaster.
+"""
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from linecad.arrays import Bool, Float, Int
+from linecad.directions import UP
+from linecad.model.regions.raster import Picture, Raster
+
+SMOOTH = 0.30  # gradient of the sky
+LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
+MOST_LINES = 0.02  # share of samples on lines inside the sky
+BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
+WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
+EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
+DARKEST = 0.75  # times the lightness of its brightest part, of the sky
+ROUNDS = 1  # of GrabCut; with more of them the sky leaks into what is as white
+ALIKE = np.array([16, 3, 4])  # of L*, a* and b*, within which the smooth parts of the photo look the same
+WIRE, LEAST_BEYOND = 4, 20  # samples across what may part the sky, and of a part beyond
+MOST_ALIKE = 0.6  # samples that look like a part of the sky and are none, for each one of it
+
+
+@dataclass(frozen=True, eq=False)
+class Heaven:
+    """What is above the lines."""
+
+    seed: Bool  # (S,) sky for sure, but for a sample at its end
+    is_sky: bool  # by its colour
+    is_ceiling: bool
+
+
+def look_up(raster: Raster) -> Heaven:
+    """Whether what is at the top of the photo is sky or ceiling, and how far it reaches."""
+    pieces, smooth = _smooth_pieces(raster)
+    nothing = np.zeros(raster.size, bool)
+    if not pieces:
+        return Heaven(nothing, is_sky=False, is_ceiling=False)
+    skies = _of_sky(pieces, raster)
+    if not skies:
+        seed = np.any(pieces, axis=0)
+        return Heaven(nothing, is_sky=False, is_ceiling=bool(seed.mean() > LEAST_CEILING))
+    sky = _grown(skies, smooth, raster)
+    return Heaven(sky.ravel(), bool(sky.any()), is_ceiling=False)
+
+
+def _smooth_pieces(raster: Raster) -> tuple[list[Bool], Bool]:
+    """The smooth parts (H, W) that are open to the top of the photo, and all that is smooth (H, W) and not open to it.
+
+    All above the horizon. Of the open ones the small ones are left out, and those that lines cross.
+    """
+    smooth = ((raster.gradient < SMOOTH) & _is_up(raster)).reshape(raster.shape).astype(np.uint8)
+    _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
+    on_line = _on_lines(raster)
+    pieces = []
+    for number in np.unique(piece[0][piece[0] > 0]).tolist():
+        own = piece == number
+        inside = cv2.erode(own.astype(np.uint8), np.ones((5, 5), np.uint8)) > 0
+        if own.sum() >= LEAST_PIECE * raster.size and inside.any() and on_line[inside].mean() <= MOST_LINES:
+            pieces.append(own)
+    return pieces, np.asarray((piece > 0) & ~np.isin(piece, piece[0]))
+
+
+def _is_up(raster: Raster) -> Bool:
+    """(S,) above the horizon."""
+    return np.asarray(raster.rays[:, UP] > 0)
+
+
+def _on_lines(raster: Raster) -> Bool:
+    """(H, W) on any line of the scene."""
+    return raster.marked(np.ones(len(raster.at), bool)).reshape(raster.shape)
+
+
+def _of_sky(pieces: list[Bool], raster: Raster) -> list[Bool]:
+    """Those smooth parts that have colours of the sky."""
+    colours = [np.median(raster.colour[own], axis=0) for own in pieces]
+    brightest = max(light for light, _, _ in colours)
+    rest = _is_up(raster).reshape(raster.shape) & ~np.any(pieces, axis=0)
+    usual = float(np.median(raster.colour[rest][:, 0])) if rest.any() else 0.0
+    light_enough = [
+        (own, light, blue) for own, (light, _, blue) in zip(pieces, colours, strict=True)
+        if light >= DARKEST * brightest and (blue < BLUE or light >= BRIGHT or light > BRIGHTER * usual)
+    ]  # fmt: skip
+    coldest = min((blue for _, _, blue in light_enough), default=WARM)
+    is_evening = coldest >= WARM
+    return [
+        own for own, light, blue in light_enough
+        if blue < WARM or light >= BRIGHT or (is_evening and light > EVENING * usual)
+    ]  # fmt: skip
+
+
+def _grown(skies: list[Bool], smooth: Bool, raster: Raster) -> Bool:
+    """The sky (H, W) about those of its smooth parts that do not look like other smooth (H, W) parts of the photo."""
+    while skies:
+        seed = np.any(skies, axis=0)
+        sky = _like(seed, raster)
+        others = raster.colour[smooth & ~sky].astype(np.float64)
+        unlike = [own for own in skies if _alike(raster.colour[own], others) <= MOST_ALIKE * own.sum()]
+        if len(unlike) == len(skies):
+            inner = cv2.erode(sky.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=1) > 0
+            return np.asarray(seed | inner)
+        skies = unlike
+    return np.zeros(raster.shape, bool)
+
+
+def _alike(own: Picture, others: Float) -> int:
+    """How many of other colours (N, 3) look like some (M, 3)."""
+    return int((np.abs(others - np.median(own, axis=0)) < ALIKE).all(axis=1).sum())
+
+
+def _like(seed: Bool, raster: Raster) -> Bool:
+    """What is connected with a seed (H, W) of the sky, no line between, and more like it than like the rest."""
+    on_line = _on_lines(raster) & ~seed
+    is_rest = on_line | ~_is_up(raster).reshape(raster.shape)
+    if seed.all() or not is_rest.any():
+        return seed
+    told = np.where(is_rest, cv2.GC_BGD, cv2.GC_PR_BGD).astype(np.uint8)
+    told[seed] = cv2.GC_FGD
+    cv2.setRNGSeed(0)
+    picture = cv2.cvtColor(raster.colour, cv2.COLOR_Lab2BGR)
+    cv2.grabCut(picture, told, (0, 0, 1, 1), np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
+    sky = (told == cv2.GC_FGD) | (told == cv2.GC_PR_FGD)
+    count, part = cv2.connectedComponents(sky.astype(np.uint8), connectivity=4)
+    return _beyond_wires(np.isin(part, np.unique(part[seed])), part, count, raster)
+
+
+def _beyond_wires(sky: Bool, part: Int, count: int, raster: Raster) -> Bool:
+    """A sky (H, W) with those other parts (H, W), of `count`, that look the same on both sides of what is between."""
+    area, colour = np.bincount(part.ravel(), minlength=count), raster.colour.astype(np.float64)
+    near = np.ones((2 * WIRE + 1, 2 * WIRE + 1), np.uint8)
+    free = set(np.flatnonzero(area >= LEAST_BEYOND).tolist()) - {0, *np.unique(part[sky]).tolist()}
+    while True:
+        beside = cv2.dilate(sky.astype(np.uint8), near) > 0
+        found = []
+        for number in sorted(free & set(np.unique(part[beside & ~sky]).tolist())):
+            own = part == number
+            rim = sky & (cv2.dilate((own & beside).astype(np.uint8), near) > 0)
+            off = np.median(colour[own & beside], axis=0) - np.median(colour[rim], axis=0)
+            if (np.abs(off) < ALIKE / 2).all():
+                found.append(number)
+        if not found:
+            return sky
+        free -= set(found)
+        sky = sky | np.isin(part, found)
