@@ -187,6 +187,15 @@ def test_what_is_hidden_of_the_wall_is_hidden_of_the_pane():
     assert flat(plane, of_wall).area == pytest.approx(1.5 * 2 - 0.25)
 
 
+def test_what_is_hidden_of_the_pane_alone_is_not_hidden_of_the_wall():
+    bird = rectangle(1.4, 1.6, 1.0, 1.2)
+    (plane,), _ = with_openings((wall_of(hidden=[bird]),), (WINDOW,))
+    wall, pane = plane.faces
+    assert wall.hidden == ()
+    (of_pane,) = pane.hidden
+    assert flat(plane, of_pane).equals(shapely.box(1.4, 1.0, 1.6, 1.2))
+
+
 @given(st.data())
 def test_walls_and_panes_cover_what_the_wall_covered(data):
     number = st.floats(-7, 7)
