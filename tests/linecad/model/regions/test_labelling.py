@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from linecad.model.regions.cuts import Borders, energy
-from linecad.model.regions.evidence import look_up
+from linecad.model.regions.heaven import look_up
 from linecad.model.regions.labelling import CORNER, UNIT, Labels, find_labels, united
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
