@@ -108,8 +108,8 @@ def _outside(hidden: tuple[Float, ...], rectangle: shapely.Polygon, wall: Plane,
             kept.append(ring)
             continue
         left = shapely.get_parts(shapely.difference(part, rectangle))
-        areas = [each for each in left if isinstance(each, shapely.Polygon) and not each.is_empty]
-        kept += [_lifted(each.exterior, wall, turns) for each in areas]
+        polygons = [each for each in left if isinstance(each, shapely.Polygon) and not each.is_empty]
+        kept += [_lifted(each.exterior, wall, turns) for each in polygons]
     return tuple(kept)
 
 

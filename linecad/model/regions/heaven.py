@@ -2,7 +2,7 @@
 
 Smooth parts at the top of the photo of the sky's colours are the seed. From there the sky is what looks more like it
 than like the rest of the photo (GrabCut: Rother, Kolmogorov and Blake, SIGGRAPH 2004), as far as no line of the scene
-is crossed. What looks the same elsewhere in the photo is plaster.
+is crossed but for wires. A small part that looks like what is smooth below it is plaster.
 """
 
 from dataclasses import dataclass
@@ -22,8 +22,9 @@ WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where anothe
 EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 ROUNDS = 1  # of GrabCut; with more of them the sky leaks into what is as white
-ALIKE = np.array([16, 3, 4])  # of L*, a* and b*, within which the smooth parts of the photo look the same
+ALIKE = np.array([16, 3, 4])  # of L*, a* and b*, within which smooth parts look the same; half of it beside a wire
 WIRE, LEAST_BEYOND = 4, 20  # samples across what may part the sky, and of a part beyond
+MOST_PLASTER = 0.02  # of the photo; a larger part, and one that is BLUE, is never taken for plaster
 MOST_ALIKE = 0.6  # samples that look like a part of the sky and are none, for each one of it
 
 
@@ -31,8 +32,8 @@ MOST_ALIKE = 0.6  # samples that look like a part of the sky and are none, for e
 class Heaven:
     """What is above the lines."""
 
-    seed: Bool  # (S,) sky for sure, but for a sample at its end
-    is_sky: bool  # by its colour
+    seed: Bool  # (S,) sky for sure: all of it but for a sample at its end
+    is_sky: bool  # whether there is any
     is_ceiling: bool
 
 
@@ -44,16 +45,15 @@ def look_up(raster: Raster) -> Heaven:
         return Heaven(nothing, is_sky=False, is_ceiling=False)
     skies = _of_sky(pieces, raster)
     if not skies:
-        seed = np.any(pieces, axis=0)
-        return Heaven(nothing, is_sky=False, is_ceiling=bool(seed.mean() > LEAST_CEILING))
-    sky = _grown(skies, smooth, raster)
+        return Heaven(nothing, is_sky=False, is_ceiling=bool(np.any(pieces, axis=0).mean() > LEAST_CEILING))
+    sky = _grown(skies, np.any(pieces, axis=0), smooth, raster)
     return Heaven(sky.ravel(), bool(sky.any()), is_ceiling=False)
 
 
 def _smooth_pieces(raster: Raster) -> tuple[list[Bool], Bool]:
     """The smooth parts (H, W) that are open to the top of the photo, and all that is smooth (H, W) and not open to it.
 
-    All above the horizon. Of the open ones the small ones are left out, and those that lines cross.
+    All above the horizon and without their rims. Of the open ones small ones are left out, and those that lines cross.
     """
     smooth = ((raster.gradient < SMOOTH) & _is_up(raster)).reshape(raster.shape).astype(np.uint8)
     _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
@@ -95,34 +95,41 @@ def _of_sky(pieces: list[Bool], raster: Raster) -> list[Bool]:
     ]  # fmt: skip
 
 
-def _grown(skies: list[Bool], smooth: Bool, raster: Raster) -> Bool:
-    """The sky (H, W) about those of its smooth parts that do not look like other smooth (H, W) parts of the photo."""
+def _grown(skies: list[Bool], at_top: Bool, below: Bool, raster: Raster) -> Bool:
+    """The sky (H, W) about those of its smooth parts that do not look like smooth parts `below` (H, W) of the photo.
+
+    What else is smooth `at_top` (H, W) is none.
+    """
     while skies:
         seed = np.any(skies, axis=0)
-        sky = _like(seed, raster)
-        others = raster.colour[smooth & ~sky].astype(np.float64)
-        unlike = [own for own in skies if _alike(raster.colour[own], others) <= MOST_ALIKE * own.sum()]
-        if len(unlike) == len(skies):
-            inner = cv2.erode(sky.astype(np.uint8), np.ones((3, 3), np.uint8), borderValue=1) > 0
-            return np.asarray(seed | inner)
-        skies = unlike
+        sky = _like(seed, at_top & ~seed, raster)
+        others = raster.colour[below & ~sky].astype(np.float64)
+        left = [own for own in skies if not _is_plaster(raster.colour[own], others, raster.size)]
+        if len(left) == len(skies):
+            return np.asarray(seed | (cv2.erode(sky.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0))
+        skies = left
     return np.zeros(raster.shape, bool)
 
 
-def _alike(own: Picture, others: Float) -> int:
-    """How many of other colours (N, 3) look like some (M, 3)."""
-    return int((np.abs(others - np.median(own, axis=0)) < ALIKE).all(axis=1).sum())
+def _is_plaster(own: Picture, others: Float, size: int) -> bool:
+    """Whether the colours (M, 3) of a small part are found again among others (N, 3), by the `size` of the photo."""
+    middle = np.median(own, axis=0)
+    if len(own) > MOST_PLASTER * size or middle[2] < BLUE:
+        return False
+    return int((np.abs(others - middle) < ALIKE).all(axis=1).sum()) > MOST_ALIKE * len(own)
 
 
-def _like(seed: Bool, raster: Raster) -> Bool:
-    """What is connected with a seed (H, W) of the sky, no line between, and more like it than like the rest."""
-    on_line = _on_lines(raster) & ~seed
-    is_rest = on_line | ~_is_up(raster).reshape(raster.shape)
-    if seed.all() or not is_rest.any():
+def _like(seed: Bool, is_none: Bool, raster: Raster) -> Bool:
+    """What is connected with a seed (H, W) of the sky, no line but wires between, and more like it than like the rest.
+
+    Some is known to be no sky (H, W).
+    """
+    if seed.all():
         return seed
+    is_rest = _on_lines(raster) | ~_is_up(raster).reshape(raster.shape) | is_none
     told = np.where(is_rest, cv2.GC_BGD, cv2.GC_PR_BGD).astype(np.uint8)
     told[seed] = cv2.GC_FGD
-    cv2.setRNGSeed(0)
+    cv2.setRNGSeed(0)  # the mixtures of colours start at random
     picture = cv2.cvtColor(raster.colour, cv2.COLOR_Lab2BGR)
     cv2.grabCut(picture, told, (0, 0, 1, 1), np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
     sky = (told == cv2.GC_FGD) | (told == cv2.GC_PR_FGD)
@@ -133,7 +140,7 @@ def _like(seed: Bool, raster: Raster) -> Bool:
 def _beyond_wires(sky: Bool, part: Int, count: int, raster: Raster) -> Bool:
     """A sky (H, W) with those other parts (H, W), of `count`, that look the same on both sides of what is between."""
     area, colour = np.bincount(part.ravel(), minlength=count), raster.colour.astype(np.float64)
-    near = np.ones((2 * WIRE + 1, 2 * WIRE + 1), np.uint8)
+    near = np.ones((2 * WIRE + 3, 2 * WIRE + 3), np.uint8)
     free = set(np.flatnonzero(area >= LEAST_BEYOND).tolist()) - {0, *np.unique(part[sky]).tolist()}
     while True:
         beside = cv2.dilate(sky.astype(np.uint8), near) > 0

@@ -22,7 +22,7 @@ LEAST_PART = 0.0008  # of the photo, of a cell: less is not cut off
 THIN = 2.5  # samples; what is nowhere wider than twice that is not cut off
 STRAIGHT = 3.0  # samples, by which the outline may be straightened
 ZIGZAG = 16.0  # samples; a shorter edge between two that turn against each other is left out
-BUMP = 30.0  # samples; what reaches into the sky between two such edges that are shorter is left out: a chimney
+BUMP = 30.0  # samples; what reaches into the sky and has no longer side is left out with both its edges: a chimney
 AT_CORNER = 5.0  # samples, within which the outline goes to a corner of a cell
 
 
@@ -129,14 +129,17 @@ def _at_corners(outline: Float, sides: Float, tree: shapely.STRtree, step: float
 
 
 def _straight(outline: Float, sky: shapely.Geometry, step: float) -> Float:
-    """An outline (V, 2) px with few corners and without steps, and without what reaches a little into the sky."""
+    """An outline (V, 2) px with few corners and without steps, and without what reaches a little into the sky.
+
+    Or into the plants, if it is theirs.
+    """
     corners = shapely.get_coordinates(shapely.simplify(shapely.LineString(outline), STRAIGHT * step))
     while True:
         edges = np.diff(corners, axis=0)
         length = np.linalg.norm(edges, axis=1)
         turn = np.sign(edges[:-1, 0] * edges[1:, 1] - edges[:-1, 1] * edges[1:, 0])
         steps = [k for k in range(1, len(edges) - 1) if turn[k - 1] * turn[k] < 0]
-        bumps = [k for k in steps if k + 2 in steps and _is_bump(corners[k : k + 4], sky, step)]
+        bumps = [k for k in steps if k + 2 in steps and k + 1 not in steps and _is_bump(corners[k : k + 4], sky, step)]
         short = [k for k in steps if length[k] < ZIGZAG * step]
         if bumps:
             k = min(bumps, key=lambda each: length[each] + length[each + 2])
@@ -150,6 +153,6 @@ def _straight(outline: Float, sky: shapely.Geometry, step: float) -> Float:
 
 
 def _is_bump(corners: Float, sky: shapely.Geometry, step: float) -> bool:
-    """Whether what four corners (4, 2) px of an outline bound reaches into the sky, and not far."""
-    sides = np.linalg.norm(np.diff(corners, axis=0), axis=1)[[0, 2]]
+    """Whether what four corners (4, 2) px of an outline bound reaches into the sky, and is small."""
+    sides = np.linalg.norm(np.diff(corners, axis=0), axis=1)
     return bool(sides.max() < BUMP * step) and not shapely.contains_xy(sky, *corners.mean(axis=0))

@@ -142,18 +142,22 @@ def test_no_line_is_crossed_to_what_is_as_light_but_of_another_colour(house):
     assert sky_over(painted(top), house, [[300, 500], [600, 500]])[102:118, :238].any()  # nothing else parts them
 
 
-def test_the_sky_goes_on_beyond_a_wire(house):
+@pytest.mark.parametrize(("wide", "goes_on"), [(1, True), (WIRE, True), (WIRE + 1, False)])
+def test_the_sky_goes_on_beyond_a_wire_and_no_beam(wide, goes_on, house):
     photo = painted(np.full((240, 960, 3), BLUE_SKY, np.uint8))
-    photo[118:122] = 40
+    photo[120 : 120 + 2 * wide] = 40
     seed = sky_over(photo, house, [[0, 120], [959, 120]])
-    assert seed[:116].mean() > 0.9
-    assert seed[64:116].mean() > 0.9
+    assert seed[:58].mean() > 0.9
+    assert (seed[64 + wide : 116].mean() > 0.9) == goes_on
+    assert seed[60 + wide :].any() == goes_on
 
 
-def test_what_is_wider_than_a_wire_parts_the_sky(house):
-    photo = painted(np.full((240, 960, 3), BLUE_SKY, np.uint8))
-    photo[100 : 100 + 2 * (2 * WIRE + 4)] = 40
-    assert not sky_over(photo, house, [[0, 110], [959, 110]])[70:].any()
+@pytest.mark.parametrize("colour", [BLUE_SKY, (252, 252, 252)])
+def test_the_sky_above_a_beam_is_sky_though_more_of_it_is_below(colour, house):
+    photo = painted(np.full((240, 960, 3), colour, np.uint8))
+    photo[60:90] = 40
+    seed = sky_over(photo, house, [[300, 500], [600, 500]])
+    assert seed[:28].mean() > 0.9
 
 
 def test_what_looks_the_same_elsewhere_in_the_photo_is_plaster(house):

@@ -82,9 +82,22 @@ def test_a_cell_of_sky_and_wall_is_cut_between_them(raster, drawn):
 
 def test_a_chimney_is_left_out_of_the_outline_of_its_ridge(raster, drawn):
     """The ridge sloped from the middle of the chimney on, with sky below it on either side."""
-    sky = drawn(np.s_[HEIGHT - 20 : HEIGHT, 200:240])
+    sky = drawn(np.s_[HEIGHT - 20 : HEIGHT, 200:225])
     ridge = sky_of(cut_at([PHOTO], sky, raster), sky)
     assert ridge.symmetric_difference(shapely.box(-0.5, -0.5, 959.5, 2 * (HEIGHT + MARGIN))).area < 0.003 * PHOTO.area
+
+
+@pytest.mark.parametrize(
+    "things",
+    [
+        [np.s_[HEIGHT - 25 : HEIGHT, 100:400]],  # an attic
+        [np.s_[HEIGHT - 25 * (4 - n) : HEIGHT, 100 + 25 * n : 300 - 25 * n] for n in range(4)],  # a gable in steps
+    ],
+)
+def test_what_is_no_chimney_stays_as_it_is(things, raster, drawn):
+    sky = drawn(*things)
+    seen = sky_of(cut_at([PHOTO], sky, raster), sky)
+    assert seen.symmetric_difference(shapely.intersection(sky, PHOTO)).area < 0.004 * PHOTO.area
 
 
 def test_a_gap_between_two_towers_is_cut(raster, drawn):
