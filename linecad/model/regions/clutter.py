@@ -16,7 +16,7 @@ from linecad.arrays import Bool, Float
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.on_roofs import is_on_roof
 from linecad.model.regions.partition import polygons_of
-from linecad.model.regions.raster import SHADES, Raster, traced
+from linecad.model.regions.raster import SHADES, Raster, grab, traced
 
 STRANGE = (2.0, 2.75, 3.5)  # spreads of the ground's colours, from which on it is not the ground; none fits all photos
 KNOWN = 0.5  # share of what is found already, of a part that is not looked at again
@@ -124,13 +124,9 @@ def _strangeness(colour: NDArray[np.uint8], ground: Bool) -> Float:
 
 def _whole(colour: NDArray[np.uint8], start: Bool, ground: Bool) -> Bool:
     """All (H, W) of a thing of which `start` (H, W) is a part, in a piece of the photo with some ground for sure."""
-    mask = np.full(start.shape, cv2.GC_PR_BGD, np.uint8)
-    mask[ground] = cv2.GC_BGD
-    mask[0], mask[:, 0], mask[:, -1] = cv2.GC_BGD, cv2.GC_BGD, cv2.GC_BGD
-    mask[start] = cv2.GC_FGD
-    cv2.setRNGSeed(0)  # the mixtures of colours start at random; the same photo gives the same things
-    cv2.grabCut(colour, mask, [0, 0, 0, 0], np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
-    thing = np.isin(mask, [cv2.GC_FGD, cv2.GC_PR_FGD]).astype(np.uint8)
+    rest = ground.copy()
+    rest[0], rest[:, 0], rest[:, -1] = True, True, True
+    thing = grab(colour, start, rest, ROUNDS).astype(np.uint8)
     thing = cv2.morphologyEx(thing, cv2.MORPH_OPEN, np.ones((3, 3), np.uint8)) | start.astype(np.uint8)
     _, part = cv2.connectedComponents(thing)
     whole = np.isin(part, part[start]).astype(np.uint8)

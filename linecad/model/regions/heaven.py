@@ -12,7 +12,7 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP
-from linecad.model.regions.raster import Picture, Raster
+from linecad.model.regions.raster import Picture, Raster, grab
 
 SMOOTH = 0.30  # gradient of the sky
 LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
@@ -127,14 +127,10 @@ def _like(seed: Bool, is_none: Bool, raster: Raster) -> Bool:
     if seed.all():
         return seed
     is_rest = _on_lines(raster) | ~_is_up(raster).reshape(raster.shape) | is_none
-    told = np.where(is_rest, cv2.GC_BGD, cv2.GC_PR_BGD).astype(np.uint8)
-    told[seed] = cv2.GC_FGD
-    cv2.setRNGSeed(0)  # the mixtures of colours start at random
-    picture = cv2.cvtColor(raster.colour, cv2.COLOR_Lab2BGR)
-    cv2.grabCut(picture, told, (0, 0, 1, 1), np.zeros((1, 65)), np.zeros((1, 65)), ROUNDS, cv2.GC_INIT_WITH_MASK)
-    sky = (told == cv2.GC_FGD) | (told == cv2.GC_PR_FGD)
+    picture = np.asarray(cv2.cvtColor(raster.colour, cv2.COLOR_Lab2BGR), np.uint8)
+    sky = grab(picture, seed, is_rest, ROUNDS)
     count, part = cv2.connectedComponents(sky.astype(np.uint8), connectivity=4)
-    return _beyond_wires(np.isin(part, np.unique(part[seed])), part, count, raster)
+    return _beyond_wires(np.isin(part, np.unique(part[seed])), part.astype(np.int64), count, raster)
 
 
 def _beyond_wires(sky: Bool, part: Int, count: int, raster: Raster) -> Bool:

@@ -225,3 +225,15 @@ def _middles(ring: NDArray[Any], step: float) -> Float:
     """Pixels (N, 2) at the middles of samples (N, 1, 2)."""
     pixels: Float = (ring[:, 0].astype(np.float64) + 0.5) * step - 0.5
     return pixels
+
+
+def grab(picture: Picture, start: Bool, rest: Bool, rounds: int) -> Bool:
+    """What of a picture (H, W, 3) looks more like `start` (H, W) than like all else, of which `rest` (H, W) is sure.
+
+    GrabCut: Rother, Kolmogorov and Blake, SIGGRAPH 2004. What is in both is of the start.
+    """
+    told = np.where(rest, cv2.GC_BGD, cv2.GC_PR_BGD).astype(np.uint8)
+    told[start] = cv2.GC_FGD
+    cv2.setRNGSeed(0)  # the mixtures of colours start at random; the same photo gives the same parts
+    cv2.grabCut(picture, told, (0, 0, 0, 0), np.zeros((1, 65)), np.zeros((1, 65)), rounds, cv2.GC_INIT_WITH_MASK)
+    return np.asarray((told == cv2.GC_FGD) | (told == cv2.GC_PR_FGD))
