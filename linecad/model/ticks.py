@@ -34,8 +34,8 @@ MOST_ROUNDS = 6  # lines that ended on a tick end elsewhere, and may be ticks by
 def without_ticks(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scene, FramedLines]:
     """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
 
-    Lines stay that a person said something about, and that alone connect others. Planes go that only ticks showed, and
-    components that were nothing else, but for component 0. `framed` are the lines of the scene, row by row: what they
+    Lines stay that a person said something about, and that alone connect others. Planes go that only ticks showed and
+    no opening is in, and components that were nothing else, but for component 0. `framed` are the lines of the scene, row by row: what they
     meet and miss is looked for among those of their frame.
     """
     outlines = outlines_of(scene.planes)
@@ -49,7 +49,7 @@ def without_ticks(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scen
         found = replace(found, lines=framed.in_world())
     if len(found.lines) == len(scene.lines):
         return scene, framed
-    shown = {plane.id for plane in scene.planes if not plane.lines}
+    shown = {plane.id for plane in scene.planes if not plane.lines} | {each.plane for each in scene.openings}
     planes = tuple(plane for plane in found.planes if plane.lines or plane.faces or plane.id in shown)
     crossings = replace(found.intersections, in_tree=_spanning(found, ~found.intersections.in_tree))
     lines = by_size(found.lines)

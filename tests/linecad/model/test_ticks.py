@@ -9,7 +9,7 @@ from linecad.directions import directions_of, frame_axes
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, in_frame
 from linecad.model.ticks import without_ticks
-from linecad.scene import Face, Plane, Scene, SolveReport
+from linecad.scene import Face, Opening, Plane, Scene, SolveReport
 
 X, Y, Z = range(3)
 DEPTH = 10.0
@@ -123,6 +123,14 @@ def test_a_plane_that_only_ticks_showed_goes_and_one_without_lines_stays(drawn):
     planes = (Plane(0, Y, DEPTH, (0, 1, 2), ()), Plane(1, X, 0.0, (2,), ()), Plane(2, Z, -3.0, (), ()))
     _, found = drawn([tick(0.07)], planes)
     assert [plane.id for plane in found.planes] == [0, 2]
+
+
+def test_a_plane_that_an_opening_is_in_stays_though_only_ticks_showed_it(drawn, camera, rotation):
+    planes = (Plane(0, Y, DEPTH, (0, 1, 2), ()), Plane(1, X, 0.0, (2,), ()))
+    scene = replace(drawn([tick(0.07)], planes)[0], openings=(Opening(0, 1, 8.0, 9.0, 1.0, 2.0, "window"),))
+    found = without_ticks(scene, one_frame(scene), Sight.of(camera, rotation, None))[0]
+    assert [plane.id for plane in found.planes] == [0, 1]
+    assert found.planes[1].lines == ()
 
 
 def test_a_tick_that_alone_connects_another_line_stays(drawn, crossings, camera, rotation):
