@@ -12,7 +12,7 @@ import numpy as np
 from linecad.arrays import Float, Int
 from linecad.depth.depth_map import DepthMap, Kind
 from linecad.errors import DepthMapError
-from linecad.ties.depth_samples import DepthSamples, log_scales
+from linecad.ties.depth_samples import DepthSamples, WallVotes, wall_votes
 
 LEAST_SAMPLES, LEAST_BODIES = 60, 2
 LEAST_FAR = 15  # samples that differ in depth from the middle of their body
@@ -36,6 +36,7 @@ class DepthReading:
     unevenness: float  # of the depth that walls span, how far off them the map is (`_Relief.unevenness`)
     spread: float  # log depth, the median by which samples are off the middle of their body
     log_scale: Float  # (B,) by which log the map asks each body to grow; NaN where it does not tell
+    votes: WallVotes  # of which that is the median
 
 
 def read_depth(depth: DepthMap, samples: DepthSamples) -> DepthReading | str:
@@ -73,7 +74,8 @@ def _best_reading(samples: DepthSamples, relief: "_Relief", kind: Kind) -> Depth
     known = np.isfinite(excess)
     off = np.abs(_off_middle(excess[known], samples.body[known]))
     spread = float(np.median(off)) if known.any() else float("inf")
-    return DepthReading(kind, shift, relief.unevenness(excess), spread, log_scales(samples, excess))
+    votes = wall_votes(samples, excess)
+    return DepthReading(kind, shift, relief.unevenness(excess), spread, votes.of_bodies(samples.bodies), votes)
 
 
 def _best_shift(samples: DepthSamples, relief: "_Relief") -> float:

@@ -87,12 +87,28 @@ def _sample(setting: Setting, depth: DepthMap, plane: BodyPlane) -> tuple[Float,
     return value[has], slant, log_depth
 
 
-def log_scales(samples: DepthSamples, excess: Float) -> Float:
-    """(B,) by which log the map asks each body to grow, for excesses (S,); NaN where it does not tell.
+@dataclass(frozen=True, eq=False)
+class WallVotes:
+    """What a map says of V walls of bodies, each of which has one vote, in the order of their bodies."""
 
-    A wall has one vote, where most of its samples agree; a body has the median of its walls'.
+    body: Int  # (V,)
+    log_scale: Float  # (V,) by which log the map asks the body to grow
+    weight: Float  # (V,) samples that agree, times their share of the wall's
+
+    def of_bodies(self, count: int) -> Float:
+        """(B,) the median of the votes of each of `count` bodies; NaN where it has none."""
+        at = np.full(count, np.nan)
+        for body in np.unique(self.body).tolist():
+            own = self.body == body
+            at[body] = weighted_median(self.log_scale[own], self.weight[own])
+        return at
+
+
+def wall_votes(samples: DepthSamples, excess: Float) -> WallVotes:
+    """The votes of those walls that tell most clearly of their bodies, for excesses (S,).
+
+    A wall votes for what most of its samples agree on.
     """
-    at = np.full(samples.bodies, np.nan)
     votes: dict[int, list[tuple[float, float, float, int]]] = {}
     known = np.isfinite(excess)
     starts = np.flatnonzero(np.diff(samples.wall, prepend=-1))
@@ -104,13 +120,13 @@ def log_scales(samples: DepthSamples, excess: Float) -> Float:
         votes.setdefault(int(samples.body[start]), []).append(
             (float(np.median(own[which])), len(which), len(which) / len(own), int(samples.lines[start]))
         )
-    for body, own_votes in votes.items():
+    told: list[tuple[float, float, float]] = []
+    for body, own_votes in sorted(votes.items()):
         agreeing = [vote for vote in own_votes if vote[2] >= LEAST_AGREEING]
-        value, count, share, _ = np.array(
-            [vote for vote in agreeing if vote[3] >= LEAST_LINES] or agreeing or own_votes
-        ).T
-        at[body] = weighted_median(value, count * share)
-    return at
+        clearest = [vote for vote in agreeing if vote[3] >= LEAST_LINES] or agreeing or own_votes
+        told += [(body, asked, count * share) for asked, count, share, _ in clearest]
+    body_of, asked_of, weight = np.array(told).reshape(-1, 3).T
+    return WallVotes(body_of.astype(np.int64), asked_of, weight)
 
 
 def weighted_median(values: Float, weight: Float) -> float:

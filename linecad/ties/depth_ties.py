@@ -14,8 +14,10 @@ from linecad.depth.depth_map import DepthMap
 from linecad.line_graph import LineGraph
 from linecad.scene import DepthMapReport
 from linecad.ties.candidates import Candidate
+from linecad.ties.depth_ground import ground_of_map
 from linecad.ties.depth_kind import DepthReading, read_depth
 from linecad.ties.depth_samples import sample_walls, weighted_median
+from linecad.ties.depth_words import WITHIN, BodyWords, words_of, worth_within
 from linecad.ties.setting import Setting
 from linecad.ties.weights import FULL_SIZE, log_odds_of
 from solver.bodies.ties import Placement, Ties
@@ -24,13 +26,11 @@ from solver.robust import agreeing_with
 WIDTHS = np.geomspace(0.004, 0.5, 60)  # log scale, half widths at half maximum of a body's error
 LEAST_WIDTH = 0.02  # what few bodies tell of it is not believed below: single walls are off by several widths
 WITHIN_BODIES = 0.5  # of the spread inside bodies, that the error of bodies has at least
-USUAL_WIDTH, SPREAD = 0.02, 1.0  # before anything is seen: the middle of published networks; log, standard deviation
+USUAL_WIDTH, SPREAD = 0.02, 0.5  # before anything is seen: the middle of published networks; log, standard deviation
 MOST_WIDTH = 0.06  # of a map of this photo
 ELSEWHERE = 0.4  # log ratio, mean by which wrong candidates are off
-WITHIN = 1.5  # widths, half of the interval in which a tie to the map holds
-DENSITY = 1.25  # of scales, a unit of log ratio, where nothing is known: BY_CHANCE over twice TOLERANCE
 CONTRADICTED = 0.045  # share of the crossings' weight that contradicts a fit, at which the map counts as it stands
-LEAST_WORTH = 2.5  # log-odds of a large body, below which the map places only what nothing else ties
+LEAST_WORTH = 2.3  # log-odds of a large body, below which the map places only what nothing else ties
 POWER, FEWEST, MOST = 2.0, 0.25, 1.0  # of that share; times that the map counts, which is never more than it is worth
 
 
@@ -42,6 +42,13 @@ class DepthWitness:
     width: float  # log scale: of the Cauchy error of a body
     worth: float  # log-odds of its word for a large body
     weight: float  # the same against ties of crossings that contradict each other more or less
+    words: BodyWords  # of each body
+    ground: float | None  # log height of the camera above it in the map's unit; None where the map shows none
+
+    @property
+    def trust(self) -> float:
+        """What its word counts against ties of crossings."""
+        return self.weight / self.worth
 
 
 def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) -> DepthWitness | str:
@@ -60,11 +67,12 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
     width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, estimate_width(reading.log_scale, candidates))
     if width > MOST_WIDTH:
         return f"it is {np.expm1(width):.0%} off the bodies of this photo, too much to place them"
-    inside, chance = 2 / np.pi * np.arctan(WITHIN), 2 * WITHIN * width * DENSITY
-    worth = float(np.log(inside / (1 - inside)) - np.log(chance / (1 - chance)))
+    worth = worth_within(2 / np.pi * np.arctan(WITHIN), width)
     contradicted = _contradicted(setting.graph, setting.log_depth)
     trust = float(np.clip((contradicted / CONTRADICTED) ** POWER, FEWEST, MOST))
-    return DepthWitness(reading, width, worth, worth * trust)
+    words = words_of(reading.votes, width, setting.bodies.count)
+    ground = ground_of_map(depth, reading.kind, reading.shift, setting.sight)
+    return DepthWitness(reading, width, worth, worth * trust, words, ground)
 
 
 def _contradicted(graph: LineGraph, log_depth: Float) -> float:
@@ -92,18 +100,26 @@ def estimate_width(log_scale: Float, candidates: list[Candidate]) -> float:
 
 
 def ties_to_map(witness: DepthWitness, size: Int) -> Ties:
-    """A tie of each body of `size` (B,) lines that the map tells of to the map, which is body B + 1; B is the ground.
+    """Ties to the map, which is body B + 1, of the bodies of `size` (B,) lines that it tells of, and of the ground, B.
 
     None where the map's word is worth less than LEAST_WORTH.
     """
-    told = np.flatnonzero(np.isfinite(witness.reading.log_scale))
+    words, count = witness.words, len(size)
+    told = np.flatnonzero(words.worth > 0)
+    log_scale, worth = words.log_scale[told], words.worth[told] * np.minimum(1.0, size[told] / FULL_SIZE)
+    if witness.ground is not None:
+        told, log_scale, worth = (
+            np.append(told, count),
+            np.append(log_scale, witness.ground),
+            np.append(worth, witness.worth),
+        )
     if witness.weight < LEAST_WORTH:
-        told = told[:0]
+        told, log_scale, worth = told[:0], log_scale[:0], worth[:0]
     return Ties(
-        bodies=np.column_stack([told, np.full(len(told), len(size) + 1)]),
-        log_ratio=witness.reading.log_scale[told],
+        bodies=np.column_stack([told, np.full(len(told), count + 1)]),
+        log_ratio=log_scale,
         tolerance=np.full(len(told), WITHIN * witness.width),
-        weight=witness.weight * np.minimum(1.0, size[told] / FULL_SIZE),
+        weight=witness.trust * worth,
         group=np.full(len(told), -1),
         yields=np.ones(len(told), bool),
     )
@@ -126,7 +142,7 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
 
     The map must tell of the reference.
     """
-    asked, count = witness.reading.log_scale, len(placement.log_scale)
+    asked, count = witness.words.log_scale, len(placement.log_scale)
     log_scale = placement.log_scale[: len(size)].copy()
     part = ties.parts(placement.counted, count)[: len(size)]
     told = np.isfinite(asked)

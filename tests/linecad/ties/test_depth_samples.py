@@ -7,7 +7,7 @@ import pytest
 
 from linecad.depth.depth_map import DepthMap
 from linecad.geometry import world_rays
-from linecad.ties.depth_samples import DepthSamples, log_scales, sample_walls, weighted_median
+from linecad.ties.depth_samples import DepthSamples, sample_walls, wall_votes, weighted_median
 
 MOVED = (0.3, -0.2, 0.1)  # log depth by which the bodies stand wrong
 EXACT = 2e-4  # log depth: samples are at whole pixels
@@ -60,9 +60,14 @@ def by_hand(*walls, bodies):
     )
 
 
+def log_scales(samples, kind="z", shift=0.0):
+    """By which log a map asks each body to grow."""
+    return wall_votes(samples, samples.excess(kind, shift)).of_bodies(samples.bodies)
+
+
 def asked_of(*walls, bodies):
     samples = by_hand(*walls, bodies=bodies)
-    return log_scales(samples, samples.excess("z"))
+    return log_scales(samples)
 
 
 @pytest.mark.parametrize("scale", [0.2, 1.0, 30.0])
@@ -75,7 +80,7 @@ def test_an_exact_map_asks_each_body_for_its_true_scale(
     added = shift / (plain.values[plain.valid].min() * scale)  # a share of the largest inverse depth
     samples = sample_walls(moved, depth)
     assert len(samples) > 100
-    asked = log_scales(samples, samples.excess(kind, -added))
+    asked = log_scales(samples, kind, -added)
     np.testing.assert_allclose(asked, np.log(scale) - np.array(MOVED), atol=EXACT)
 
 
@@ -108,8 +113,8 @@ def test_what_bleeds_on_the_lines_themselves_changes_nothing(avenue_walls, moved
                 values[row + y, column + x] = 99.0
     after = sample_walls(moved, changed(plain, values=values))
     assert 0 < (after.value != before.value).mean() < 0.3, "only where another line crosses"
-    asked = log_scales(after, after.excess("z"))
-    np.testing.assert_allclose(asked, log_scales(before, before.excess("z")), atol=EXACT)
+    asked = log_scales(after)
+    np.testing.assert_allclose(asked, log_scales(before), atol=EXACT)
 
 
 def test_invalid_pixels_are_not_asked(moved, plain):
@@ -129,7 +134,7 @@ def test_walls_that_the_map_does_not_show_are_not_told(avenue_walls, moved, plai
     first = seen.graph.segments.ends[seen.part == 0]
     valid[:, : int(first[..., 0].max()) + 30] = False
     samples = sample_walls(moved, changed(plain, valid=valid))
-    asked = log_scales(samples, samples.excess("z"))
+    asked = log_scales(samples)
     assert np.isnan(asked).tolist() == [True, False, False]
     np.testing.assert_allclose(asked[1:], [0.2, -0.1], atol=EXACT)
 
@@ -138,7 +143,7 @@ def test_a_map_without_any_depth_tells_nothing(moved, plain):
     samples = sample_walls(moved, changed(plain, valid=np.zeros(plain.valid.shape, bool)))
     assert len(samples) == 0
     assert samples.bodies == 3
-    assert np.isnan(log_scales(samples, samples.excess("z"))).all()
+    assert np.isnan(log_scales(samples)).all()
 
 
 @pytest.mark.parametrize("turned", ["yaw", "pitch"])
@@ -180,7 +185,7 @@ def test_bodies_without_a_wall_are_not_told(
     seen = build_town(first, uprights, camera=small_camera)
     depth = build_depth_map(seen.sight, [build_facade(1, 10.0, (-6.0, 6.0), (-4.0, 4.0))])
     samples = sample_walls(build_setting(seen), depth)
-    assert np.isnan(log_scales(samples, samples.excess("z"))).tolist() == [False, True]
+    assert np.isnan(log_scales(samples)).tolist() == [False, True]
 
 
 def test_samples_that_agree_speak_for_their_wall():

@@ -8,6 +8,7 @@ import pytest
 import linecad.ties.depth_ties
 from linecad.ties.candidates import Candidate
 from linecad.ties.depth_kind import DepthReading
+from linecad.ties.depth_samples import WallVotes
 from linecad.ties.depth_ties import (
     DepthWitness,
     estimate_width,
@@ -16,6 +17,7 @@ from linecad.ties.depth_ties import (
     report_of,
     ties_to_map,
 )
+from linecad.ties.depth_words import BodyWords
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from solver.bodies.search import place
 from solver.bodies.ties import Ties
@@ -44,8 +46,12 @@ def evidence(rng, width, bodies=60, wrong=0.2):
     return truth + width * rng.standard_cauchy(bodies), found
 
 
-def witness(log_scale, width=0.02, weight=4.0):
-    return DepthWitness(DepthReading("z", 0.0, 0.0, 0.0, np.array(log_scale, float)), width, 4.0, weight)
+def witness(log_scale, width=0.02, weight=4.0, worth=4.0, ground=None):
+    """That a map asks bodies for so much, each by one wall."""
+    asked = np.array(log_scale, float)
+    told = np.isfinite(asked)
+    reading = DepthReading("z", 0.0, 0.0, 0.0, asked, WallVotes(np.flatnonzero(told), asked[told], np.ones(told.sum())))
+    return DepthWitness(reading, width, 4.0, weight, BodyWords(asked, np.where(told, worth, 0.0)), ground)
 
 
 def followed(log_scale, ties=NONE, size=None, reference=0, **fields):
@@ -168,6 +174,27 @@ def test_each_body_has_one_tie_to_the_map():
     assert len(set(ties.tolerance.tolist())) == 1
     wide = ties_to_map(witness([0.5, np.nan, 0.2, -0.1], width=0.04), size)
     assert wide.tolerance[0] == pytest.approx(2 * ties.tolerance[0])
+
+
+def test_a_body_of_which_several_walls_say_the_same_has_a_heavier_tie():
+    ties = ties_to_map(witness([0.5, 0.2, 0.1], worth=[4.0, 6.0, -0.5]), np.full(3, LARGE))
+    assert ties.bodies[:, 0].tolist() == [0, 1], "walls that each say something else are no word"
+    assert ties.weight.tolist() == [4.0, 6.0]
+
+
+def test_the_ground_that_the_map_shows_is_tied_to_it():
+    ties = ties_to_map(witness([0.5, 0.2], ground=0.7, weight=3.0), np.full(2, LARGE))
+    assert ties.bodies.tolist() == [[0, 3], [1, 3], [2, 3]]
+    assert ties.log_ratio.tolist() == [0.5, 0.2, 0.7]
+    assert ties.weight[2] == pytest.approx(3.0)
+
+
+def test_a_false_foot_yields_to_a_map_that_shows_the_ground():
+    """Two houses stand on it; the foot of one is found 30 % off."""
+    feet = tie(0, 2, -0.4, weight=3.5).joined(tie(1, 2, -0.3, weight=3.0))
+    with_ground, without = (followed([0.0, 0.2], feet, ground=ground) for ground in (0.4, None))
+    assert with_ground.log_scale[1] == pytest.approx(0.2, abs=0.04)
+    assert without.log_scale[1] == pytest.approx(0.1, abs=0.04)
 
 
 def test_a_word_that_is_worth_little_ties_nothing():
