@@ -35,8 +35,8 @@ def without_ticks(scene: Scene, framed: FramedLines, sight: Sight) -> tuple[Scen
     """The scene without its ticks, by their ids as before, and with the ends closed that met nothing but them.
 
     Lines stay that a person said something about, and that alone connect others. Planes go that only ticks showed and
-    no opening is in, and components that were nothing else, but for component 0. `framed` are the lines of the scene, row by row: what they
-    meet and miss is looked for among those of their frame.
+    no opening is in, and components that were nothing else, but for component 0. `framed` are the lines of the scene,
+    row by row: what they meet and miss is looked for among those of their frame.
     """
     outlines = outlines_of(scene.planes)
     found = scene

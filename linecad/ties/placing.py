@@ -139,7 +139,7 @@ class Placed:
     def ground(self) -> tuple[float, float] | None:
         """Log height of the camera above the ground on which walls stand, and the log-odds of all that says so.
 
-        The unit is that of the solution's depths; None where no wall shows its foot.
+        The unit is that of the solution's depths; None where neither a wall shows its foot nor a depth map the ground.
         """
         number = self.setting.bodies.count
         says_so = self.placement.counted & (self.ties.bodies == number).any(axis=1)
