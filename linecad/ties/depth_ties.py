@@ -1,11 +1,11 @@
-"""A depth map as a witness of where bodies stand: one more body, to which the map ties each of them.
+"""A depth map as a witness of where bodies stand: one more body, to which the map ties each of them and the ground.
 
 The log scale of the map is that of its unit. How far its word goes is estimated from the photo itself: the width of the
-Cauchy error of its bodies, by how well the ratios that it asks for agree with those that other evidence asks for, each
+Cauchy error of its walls, by how well the ratios that it asks for agree with those that other evidence asks for, each
 of which is right with the probability that the table gives it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -30,7 +30,8 @@ USUAL_WIDTH, SPREAD = 0.02, 0.5  # before anything is seen: the middle of publis
 MOST_WIDTH = 0.06  # of a map of this photo
 ELSEWHERE = 0.4  # log ratio, mean by which wrong candidates are off
 CONTRADICTED = 0.045  # share of the crossings' weight that contradicts a fit, at which the map counts as it stands
-LEAST_WORTH = 2.3  # log-odds of a large body, below which the map places only what nothing else ties
+LEAST_WORTH = 2.3  # of the word of one wall, below which the map places only what nothing else ties
+LEAST_WORD = 0.2  # log-odds of a body whose walls each say something else
 POWER, FEWEST, MOST = 2.0, 0.25, 1.0  # of that share; times that the map counts, which is never more than it is worth
 
 
@@ -39,8 +40,8 @@ class DepthWitness:
     """What a depth map says of bodies."""
 
     reading: DepthReading
-    width: float  # log scale: of the Cauchy error of a body
-    worth: float  # log-odds of its word for a large body
+    width: float  # log scale: of the Cauchy error of a wall
+    worth: float  # log-odds of its word for a large body of one wall, and for the ground
     weight: float  # the same against ties of crossings that contradict each other more or less
     words: BodyWords  # of each body
     ground: float | None  # log height of the camera above it in the map's unit; None where the map shows none
@@ -49,6 +50,12 @@ class DepthWitness:
     def trust(self) -> float:
         """What its word counts against ties of crossings."""
         return self.weight / self.worth
+
+    def with_part_of(self, body: int) -> "DepthWitness":
+        """The same with one more body, which comes last: a part of one, of which the map says what it says of that."""
+        asked, words = self.reading.log_scale, self.words
+        more = BodyWords(np.append(words.log_scale, words.log_scale[body]), np.append(words.worth, words.worth[body]))
+        return replace(self, reading=replace(self.reading, log_scale=np.append(asked, asked[body])), words=more)
 
 
 def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) -> DepthWitness | str:
@@ -105,8 +112,9 @@ def ties_to_map(witness: DepthWitness, size: Int) -> Ties:
     None where the map's word is worth less than LEAST_WORTH.
     """
     words, count = witness.words, len(size)
-    told = np.flatnonzero(words.worth > 0)
-    log_scale, worth = words.log_scale[told], words.worth[told] * np.minimum(1.0, size[told] / FULL_SIZE)
+    told = np.flatnonzero(np.isfinite(words.log_scale))
+    log_scale = words.log_scale[told]
+    worth = np.maximum(words.worth[told], LEAST_WORD) * np.minimum(1.0, size[told] / FULL_SIZE)
     if witness.ground is not None:
         told, log_scale, worth = (
             np.append(told, count),
@@ -154,8 +162,12 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
             own_told = own & told
             off = weighted_median((asked - log_scale)[own_told], size[own_told].astype(np.float64))
             log_scale[own] += off - of_map
-    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)[: len(size)]
-    by_map = (firm != firm[reference]) & np.isin(firm, firm[told])
+    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
+    of_told = firm[: len(size)][told]
+    if (placement.counted & (ties.bodies == [len(size), len(size) + 1]).all(axis=1)).any():
+        of_told = np.append(of_told, firm[len(size)])  # what stands on a ground that the map ties
+    firm = firm[: len(size)]
+    by_map = (firm != firm[reference]) & np.isin(firm, of_told)
     return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
 
 

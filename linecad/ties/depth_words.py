@@ -15,8 +15,7 @@ WITHIN = 1.5  # widths, half of the interval in which a tie to the map holds
 DENSITY = 1.25  # of scales, a unit of log ratio, where nothing is known: BY_CHANCE over twice TOLERANCE
 MOST_VOTES = 2.0  # of a body: networks err on neighbouring walls alike
 FARTHEST = 0.7  # log scale about the likeliest one, in which others are looked at
-STEP = 0.1  # widths, between the scales that are tried
-SUREST = 0.999  # that any body is where its walls say
+STEPS = 10  # to a width, between the scales that are tried
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,7 +23,8 @@ class BodyWords:
     """What a map says of B bodies."""
 
     log_scale: Float  # (B,) by which log each must most likely grow; NaN where the map does not tell
-    worth: Float  # (B,) log-odds over chance that this is right within WITHIN widths; 0 where it does not tell
+    # (B,) log-odds over chance that this is right within WITHIN widths, below 0 where walls disagree; 0 without a word
+    worth: Float
 
 
 def words_of(votes: WallVotes, width: float, bodies: int) -> BodyWords:
@@ -46,13 +46,14 @@ def _word(asked: Float, weight: Float, width: float) -> tuple[float, float]:
     """The likeliest log scale of one body, by those that its walls ask for (V,), and what it is worth."""
     counts = weight / weight.max()
     counts *= min(1.0, MOST_VOTES / counts.sum())
-    # A sum of Cauchy's logs has its peaks next to what is asked for.
-    near = (asked[:, None] + np.arange(-1.0, 1.0 + STEP / 2, STEP) * width).ravel()
+    # A sum of Cauchy's logs has its peaks within a width of what is asked for.
+    near = (asked[:, None] + np.arange(-STEPS, STEPS + 1) * width / STEPS).ravel()
     best = float(near[_log_likelihood(near, asked, counts, width).argmax()])
-    around = best + np.arange(-FARTHEST, FARTHEST, STEP * width)
-    likelihood = np.exp(_log_likelihood(around, asked, counts, width))
-    inside = likelihood[np.abs(around - best) < WITHIN * width].sum() / likelihood.sum()
-    return best, worth_within(min(float(inside), SUREST), width)
+    farthest = int(FARTHEST / width * STEPS)
+    step = np.arange(-farthest, farthest + 1)
+    likelihood = np.exp(_log_likelihood(best + step * width / STEPS, asked, counts, width))
+    inside = np.abs(step) < WITHIN * STEPS
+    return best, worth_within(float(likelihood[inside].sum() / likelihood.sum()), width)
 
 
 def _log_likelihood(log_scale: Float, asked: Float, counts: Float, width: float) -> Float:

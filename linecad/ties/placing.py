@@ -137,12 +137,13 @@ class Placed:
 
     @property
     def ground(self) -> tuple[float, float] | None:
-        """Log height of the camera above the ground on which walls stand, and the log-odds of all that says so.
+        """Log height of the camera above the ground on which walls stand, and the log-odds of all feet that say so.
 
-        The unit is that of the solution's depths; None where neither a wall shows its foot nor a depth map the ground.
+        The unit is that of the solution's depths; None where no wall shows its foot.
         """
         number = self.setting.bodies.count
-        says_so = self.placement.counted & (self.ties.bodies == number).any(axis=1)
+        of_feet = (self.ties.bodies == number).any(axis=1) & ~np.asarray(self.ties.yields)
+        says_so = self.placement.counted & of_feet
         if not says_so.any():
             return None
         return float(self.placement.log_scale[number]), float(self.ties.weight[says_so].sum())

@@ -67,8 +67,7 @@ def part_off(evidence: Evidence, lines: Int) -> Evidence:
     between = _between(moved, new)
     heard = evidence.heard
     if isinstance(heard, DepthWitness):
-        asked = heard.reading.log_scale
-        heard = replace(heard, reading=replace(heard.reading, log_scale=np.append(asked, asked[own])))
+        heard = heard.with_part_of(own)
     is_most = own == evidence.reference and 2 * len(lines) > int(setting.bodies.size[own])
     return replace(
         evidence,

@@ -10,6 +10,7 @@ from linecad.ties.candidates import Candidate
 from linecad.ties.depth_kind import DepthReading
 from linecad.ties.depth_samples import WallVotes
 from linecad.ties.depth_ties import (
+    LEAST_WORD,
     DepthWitness,
     estimate_width,
     follow_map,
@@ -176,10 +177,30 @@ def test_each_body_has_one_tie_to_the_map():
     assert wide.tolerance[0] == pytest.approx(2 * ties.tolerance[0])
 
 
-def test_a_body_of_which_several_walls_say_the_same_has_a_heavier_tie():
+def test_a_tie_weighs_what_the_word_about_its_body_is_worth():
     ties = ties_to_map(witness([0.5, 0.2, 0.1], worth=[4.0, 6.0, -0.5]), np.full(3, LARGE))
-    assert ties.bodies[:, 0].tolist() == [0, 1], "walls that each say something else are no word"
-    assert ties.weight.tolist() == [4.0, 6.0]
+    assert ties.weight.tolist() == [4.0, 6.0, LEAST_WORD], "walls that each say something else are hardly a word"
+
+
+def test_what_is_heard_has_words_of_the_walls_and_the_ground(avenue_walls, moved, build_depth_map, build_ground):
+    seen, surfaces = avenue_walls
+    heard = hear(moved, [], build_depth_map(seen.sight, [*surfaces, build_ground(1.6, None)], scale=5.0))
+    np.testing.assert_allclose(heard.words.log_scale, np.log(5.0) - np.array(MOVED), atol=1e-3)
+    assert (heard.words.worth > 1).all()
+    assert heard.ground == pytest.approx(np.log(1.6 * 5.0), abs=0.01)
+
+
+def test_what_stands_on_a_ground_that_the_map_ties_is_placed_by_the_map():
+    foot = tie(1, 2, -0.3)
+    found = followed([0.0, np.nan], foot, ground=0.4)
+    assert found.log_scale.tolist() == pytest.approx([0.0, 0.1], abs=1e-6)
+    assert found.by_map.tolist() == [False, True]
+
+
+def test_a_part_of_a_body_has_the_word_of_that_body():
+    more = witness([0.5, 0.2], worth=[4.0, 6.0]).with_part_of(0)
+    assert more.words.log_scale.tolist() == more.reading.log_scale.tolist() == [0.5, 0.2, 0.5]
+    assert more.words.worth.tolist() == [4.0, 6.0, 4.0]
 
 
 def test_the_ground_that_the_map_shows_is_tied_to_it():
