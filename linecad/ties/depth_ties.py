@@ -121,9 +121,7 @@ def ties_to_map(witness: DepthWitness, size: Int) -> Ties:
             np.append(log_scale, witness.ground),
             np.append(worth, witness.worth),
         )
-    if witness.weight < LEAST_WORTH:
-        told, log_scale, worth = told[:0], log_scale[:0], worth[:0]
-    return Ties(
+    ties = Ties(
         bodies=np.column_stack([told, np.full(len(told), count + 1)]),
         log_ratio=log_scale,
         tolerance=np.full(len(told), WITHIN * witness.width),
@@ -131,6 +129,7 @@ def ties_to_map(witness: DepthWitness, size: Int) -> Ties:
         group=np.full(len(told), -1),
         yields=np.ones(len(told), bool),
     )
+    return ties.subset(np.full(len(ties), witness.weight >= LEAST_WORTH))
 
 
 @dataclass(frozen=True, eq=False)
