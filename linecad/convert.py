@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Self
 
 import linecad.pipeline
+from exporters.drawings.sizes import FIT
+from exporters.format_options import DRAWING_SCALE
 from exporters.options import Value
 from linecad.camera.distortion import open_photo
 from linecad.camera.intrinsics import read_calibration
@@ -13,7 +15,7 @@ from linecad.camera.photo import Photo
 from linecad.corrections.file import check_belongs, read_corrections
 from linecad.depth.for_photo import check_depth_options, open_depth_map
 from linecad.depth.read import check_depth_file
-from linecad.errors import LinecadError, OutputError, UnwrittenError
+from linecad.errors import LinecadError, OptionError, OutputError, UnwrittenError
 from linecad.model.wanted import Wanted
 from linecad.options import Options
 from linecad.outputs import export_command, keep_scene, write_outputs
@@ -39,9 +41,10 @@ class Conversion:
 
         `maps_come` says that photos get depth maps of their own, each in place of `depth`. Raises CameraError,
         CorrectionsFileError, DepthMapError where the first bytes of the map tell that it is none, or OptionError where
-        what is said of a map has no use.
+        what is said of a map has no use, or what is wanted is known to be missing from the scene.
         """
         check_depth_options(self.options, maps_come or self.depth is not None)
+        self._check_wanted()
         if self.depth is not None:
             check_depth_file(self.depth)
         if self.camera is not None:
@@ -49,6 +52,20 @@ class Conversion:
         if self.corrections is not None:
             read_corrections(self.corrections)
         return self
+
+    def _check_wanted(self) -> None:
+        """Raise OptionError where what is wanted needs what no scene of this conversion tells."""
+        if self.wanted.confidence is not None and not self.options.uses_bodies:
+            raise OptionError(
+                "only formulation=bodies tells how likely the depth of a line is right; leave out --confidence, or "
+                "--fast and the options that choose another formulation"
+            )
+        scale = self.values.get(DRAWING_SCALE, FIT)
+        if scale != FIT and self.wanted.known is None and self.corrections is None:
+            raise OptionError(
+                f"option {DRAWING_SCALE}={scale} needs a known length; give one by --scale or --camera-height, or "
+                "leave the option out"
+            )
 
     def read(self, photo: Path) -> Photo:
         """The photo with its camera. Raises PhotoError or CameraError."""

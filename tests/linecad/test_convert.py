@@ -1,5 +1,6 @@
 """A conversion and Python's `reconstruct`: what they read, and what they refuse before the photo."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +9,11 @@ import pytest
 import linecad
 import linecad.pipeline
 from linecad.convert import Conversion
+from linecad.corrections.edits import Corrections
+from linecad.corrections.file import write_corrections
 from linecad.errors import DepthMapError, OptionError, ReconstructionError
+from linecad.model.scale import LineLength
+from linecad.model.wanted import Wanted
 from linecad.options import Options
 from solver.options import SolveOptions
 
@@ -65,6 +70,28 @@ def test_what_does_not_go_together_is_refused_before_the_photo(depth_file, tmp_p
         linecad.reconstruct(nowhere, options=Options(depth_factor=0.5))
     with pytest.raises(DepthMapError, match="does not exist"):
         linecad.reconstruct(nowhere, depth=tmp_path / "none.npz")
+
+
+@pytest.mark.parametrize("options", [Options(solve=SolveOptions(fast=True)), Options(over_bodies=False)])
+def test_a_confidence_that_the_program_does_not_tell_is_refused(options):
+    asked = Conversion(options=options, wanted=Wanted(confidence=0.5))
+    with pytest.raises(OptionError, match="only formulation=bodies tells how likely"):
+        asked.checked()
+    assert replace(asked, options=Options()).checked().wanted.confidence == 0.5
+    assert replace(asked, wanted=Wanted()).checked().options == options
+
+
+def test_a_drawing_to_scale_needs_a_length_that_may_be_known(tmp_path):
+    asked = Conversion(values={"drawing-scale": "1:50"})
+    with pytest.raises(OptionError, match="drawing-scale=1:50 needs a known length"):
+        asked.checked()
+    write_corrections(Corrections("room.jpg", 400, 300), tmp_path / "said.json")
+    for known in (
+        replace(asked, wanted=Wanted(known=LineLength(3, 2.0))),
+        replace(asked, corrections=tmp_path / "said.json"),  # a length among them
+        replace(asked, values={"drawing-scale": "fit"}),
+    ):
+        assert known.checked() == known
 
 
 def test_maps_that_come_with_each_photo_count_as_given():

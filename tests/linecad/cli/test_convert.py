@@ -25,6 +25,8 @@ from linecad.corrections.edits import Corrections
 from linecad.corrections.file import write_corrections
 from linecad.errors import OutputError, ReconstructionError
 from linecad.io.scene_file import read_scene, write_scene
+from linecad.options import Options
+from solver.options import SolveOptions
 
 ROOT = Path(__file__).resolve().parents[3]
 SAMPLES = ROOT / "samples"
@@ -226,14 +228,14 @@ def test_a_confidence_filters_every_file_and_the_summary(folder, monkeypatch, ca
     reconstruct = linecad.pipeline.reconstruct
     made = []
 
-    def told(*given):
-        scene = reconstruct(*given)
+    def told(photo, _options, *given):
+        scene = reconstruct(photo, Options(solve=SolveOptions(fast=True)), *given)
         probability = np.linspace(0, 1, len(scene.lines))
         made.append(replace(scene, lines=replace(scene.lines, probability=probability)))
         return made[0]
 
     monkeypatch.setattr(linecad.pipeline, "reconstruct", told)
-    arguments = ["-o", "a.json", "-o", "a.dxf", "--fast", "--confidence", "0.8", "--quiet"]
+    arguments = ["-o", "a.json", "-o", "a.dxf", "--confidence", "0.8", "--quiet"]
     assert main(["convert", str(ROOM), *arguments]) == 0
     scene = read_scene(folder / "a.json")
     kept = made[0].lines.id[made[0].lines.probability >= 0.8].tolist()
