@@ -58,13 +58,13 @@ class Conversion:
         if self.wanted.confidence is not None and not self.options.uses_bodies:
             raise OptionError(
                 "only formulation=bodies tells how likely the depth of a line is right; leave out --confidence, or "
-                "--fast and the options that choose another formulation"
+                "what chooses another: --fast, or options of the program, its joins, weights, collinear pairs or reach"
             )
         scale = self.values.get(DRAWING_SCALE, FIT)
         if scale != FIT and self.wanted.known is None and self.corrections is None:
             raise OptionError(
-                f"option {DRAWING_SCALE}={scale} needs a known length; give one by --scale or --camera-height, or "
-                "leave the option out"
+                f"option {DRAWING_SCALE}={scale} needs a known length; give --camera-height, for a single photo also "
+                "--scale or corrections that hold one, or leave the option out"
             )
 
     def read(self, photo: Path) -> Photo:

@@ -23,38 +23,38 @@ LARGEST_MARGIN = 20.0
 TOLD = 0.97  # probability of a place that a person gave: nobody measured how often people are wrong
 FARTHEST_OFF = 6.0  # widths of a depth map
 # Logistic regression on bodies of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -0.0484
+AT_ONCE = 0.3269
 LOG_ODDS: dict[str, float] = {
-    "margin": 0.0817,
-    "root of margin": 0.3850,
-    "lines of the body": -0.7887,
-    "lines of the piece": -0.6889,
-    "lines of the other": -0.2550,
-    "weight": 2.7536,
-    "weight of all": 0.1207,
-    "kinds": 0.1320,
-    "weakest": 0.8382,
-    "by a bundle": -0.0774,
-    "by the ground": 0.1080,
-    "bodies": -0.2642,
+    "margin": 0.1109,
+    "root of margin": 0.2783,
+    "lines of the body": -0.8325,
+    "lines of the piece": -0.9094,
+    "lines of the other": -0.1955,
+    "weight": 2.4779,
+    "weight of all": 0.2142,
+    "kinds": 0.2573,
+    "weakest": 0.6249,
+    "by a bundle": 0.6159,
+    "by the ground": 0.0252,
+    "bodies": -0.1455,
 }
 # The same where a depth map was heard.
-WITH_MAP_AT_ONCE = 0.0750
+WITH_MAP_AT_ONCE = 2.2675
 WITH_MAP_LOG_ODDS: dict[str, float] = {
-    "margin": 0.1075,
-    "root of margin": 0.5132,
-    "lines of the body": -1.0235,
-    "lines of the piece": 0.0746,
-    "lines of the other": 0.1311,
-    "weight": 2.3338,
-    "weight of all": 0.1174,
-    "kinds": -0.0021,
-    "weakest": -0.0069,
-    "by a bundle": -0.2902,
-    "by the ground": -0.0784,
-    "bodies": -0.3271,
-    "map's word": 0.1935,
-    "off the map": -0.2591,
+    "margin": 0.0784,
+    "root of margin": 0.7895,
+    "lines of the body": -0.6957,
+    "lines of the piece": -0.6984,
+    "lines of the other": -0.1812,
+    "weight": 2.0938,
+    "weight of all": 0.1597,
+    "kinds": -0.1829,
+    "weakest": -0.4118,
+    "by a bundle": 0.2849,
+    "by the ground": -0.3255,
+    "bodies": -0.4754,
+    "map's word": 0.5074,
+    "off the map": -0.2869,
 }
 
 

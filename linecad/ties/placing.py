@@ -18,7 +18,7 @@ from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
 from linecad.ties.links import find_links, told_links
-from linecad.ties.pieces import ties_between_bodies, with_stays
+from linecad.ties.pieces import ties_between_bodies, with_pieces_heard
 from linecad.ties.probability import chances, main_lines, probabilities
 from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting, Sight
@@ -94,7 +94,7 @@ class BodyPlaces:
     @cached_property
     def seams(self) -> list[Seam]:
         """Where bodies are weak, as sure as they are at these places."""
-        return with_stays(list(self.evidence.seams), self.evidence.pieces, self.scale_with_ground)
+        return with_pieces_heard(list(self.evidence.seams), self.evidence.pieces, self.scale_with_ground)
 
     @property
     def by_map(self) -> Bool:

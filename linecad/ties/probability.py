@@ -24,10 +24,10 @@ RIGHT = 0.05  # log scale
 OFF = (0.06, 1.0)  # log scale, by which what does not hold is off, to either side
 LEAST_WEIGHT = 0.1  # log-odds of one crossing that agrees and one that does not, for lines with hardly any
 # Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -2.3645
+AT_ONCE = -3.6346
 LOG_ODDS: dict[str, float] = {
-    "together": 4.6316,
-    "agreement": 2.0366,
+    "together": 5.5982,
+    "agreement": 2.6151,
 }
 
 

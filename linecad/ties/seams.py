@@ -46,25 +46,26 @@ OF_BUNDLE = (
     "plane beside",
 )
 # Logistic regression on cuts of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -2.9592
+AT_ONCE = -3.3933
 LOG_ODDS: dict[str, float] = {
-    "near": -0.7158,
-    "levels": 0.3874,
-    "level excess": 0.2297,
-    "level lead": 0.1911,
-    "same eaves": 0.2896,
-    "size excess": 0.0305,
-    "corners": -0.0753,
-    "pieces": 0.5490,
-    "from both": -0.1421,
-    "supported": 1.4844,
-    "connected": -0.3781,
-    "plane of it": 1.2260,
-    "plane beside": 1.4263,
-    "shade": 2.7248,
-    "overlap across": 0.3661,
-    "overlap down": -0.4805,
-    "stays": 1.4715,
+    "near": -0.6992,
+    "levels": 0.4968,
+    "level excess": 0.2415,
+    "level lead": 0.1921,
+    "same eaves": 0.6402,
+    "size excess": 0.1206,
+    "corners": -0.1189,
+    "pieces": 0.4191,
+    "from both": -0.2630,
+    "supported": 1.5760,
+    "connected": 0.0082,
+    "plane of it": 1.0232,
+    "plane beside": 1.8568,
+    "shade": 2.9889,
+    "overlap across": 0.3728,
+    "overlap down": -0.3411,
+    "stays": 1.0825,
+    "one ground": 3.1726,
 }
 
 
@@ -74,7 +75,7 @@ class Seam:
 
     larger: Int  # the lines of the side with more of them
     smaller: Int
-    features: Features  # "stays" comes last, by `linecad.ties.pieces.with_stays`
+    features: Features  # the last two by `linecad.ties.pieces.with_pieces_heard`
 
     @property
     def probability(self) -> float:

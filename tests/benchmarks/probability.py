@@ -29,7 +29,7 @@ from linecad.arrays import Bool, Float, Int, Text
 from linecad.evaluation.datasets import find_dataset
 from linecad.geometry import lengths
 from linecad.ties.links import Link, find_links
-from linecad.ties.pieces import with_stays
+from linecad.ties.pieces import with_pieces_heard
 from linecad.ties.probability import chances, line_features, main_lines
 from linecad.ties.seams import Seam
 from solver.robust import agreeing_with
@@ -101,7 +101,7 @@ def look(photo: Judged, one: Placed, suffix: str) -> Looked | None:
     """None where no line of component 0 shows a point of known depth."""
     setting, places, pieces = photo.setting, one.places, photo.pieces
     margin = places.placement.margin
-    seams = with_stays([seam for seam, _ in photo.seams], pieces, places.scale_with_ground)
+    seams = with_pieces_heard([seam for seam, _ in photo.seams], pieces, places.scale_with_ground)
     links = find_links(pieces, places.scale_with_ground, margin, places.evidence.reference, places.mapped)
     main = main_lines(setting, agreeing_with(setting.graph, places.log_depth))
     line = photo.on[photo.seen]

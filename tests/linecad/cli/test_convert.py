@@ -228,7 +228,7 @@ def test_a_confidence_filters_every_file_and_the_summary(folder, monkeypatch, ca
     reconstruct = linecad.pipeline.reconstruct
     made = []
 
-    def told(photo, _options, *given):
+    def told(photo, _options, *given):  # by the fast program, which tells no probabilities itself
         scene = reconstruct(photo, Options(solve=SolveOptions(fast=True)), *given)
         probability = np.linspace(0, 1, len(scene.lines))
         made.append(replace(scene, lines=replace(scene.lines, probability=probability)))
@@ -251,6 +251,14 @@ def test_a_bad_confidence_is_refused_before_the_photo_is_looked_for(fails):
         "convert", "none.jpg", "-o", "a.json", "--confidence", "2", code=2
     )
     assert "'x' is not a number from 0 to 1" in fails("batch", "none.jpg", "-o", "out", "--confidence", "x", code=2)
+
+
+@pytest.mark.parametrize("command", [["convert", "none.jpg", "-o", "a.json"], ["batch", "none.jpg", "-o", "out"]])
+def test_what_no_scene_can_serve_is_refused_before_the_photo_is_looked_for(fails, folder, command):
+    assert "only formulation=bodies tells how likely" in fails(*command, "--fast", "--confidence", "0.5")
+    drawn = ["--format", "elevation.pdf"] if command[0] == "batch" else ["-o", "a.elevation.pdf"]
+    assert "drawing-scale=1:50 needs a known length" in fails(*command, *drawn, "--option", "drawing-scale=1:50")
+    assert list(folder.glob("a.*")) + list(folder.glob("out*")) == []
 
 
 class Loader:

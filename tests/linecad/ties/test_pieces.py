@@ -1,4 +1,4 @@
-"""Pieces: bodies parted at their seams, and whether the local search leaves the sides of a seam where they stand."""
+"""Pieces: bodies parted at their seams, whether the local search leaves these where they stand, and their feet."""
 
 from dataclasses import replace
 
@@ -9,7 +9,7 @@ from linecad.ties import pieces as module
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.candidates import Candidate
 from linecad.ties.looks import Looks
-from linecad.ties.pieces import Pieces, find_pieces, part_bodies, ties_between_bodies, with_stays
+from linecad.ties.pieces import Pieces, find_pieces, part_bodies, ties_between_bodies, with_pieces_heard
 from linecad.ties.seams import Seam, find_seams
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from linecad.ties.weights import CHANCE, weigh_candidates
@@ -109,8 +109,8 @@ def stays(ties, monkeypatch):
     """Of the outer and the inner seam of NESTED, with these ties between pieces of one body and the ground."""
     piece, body = part_bodies(RigidBodies(np.zeros(8, int), 1), NESTED)
     monkeypatch.setattr(module, "weigh_candidates", lambda *_: ties)
-    found = with_stays(NESTED, Pieces(piece, body, []), np.array([0.3, -0.2]))
-    assert [list(seam.features) for seam in found] == [["stays"], ["stays"]]
+    found = with_pieces_heard(NESTED, Pieces(piece, body, []), np.array([0.3, -0.2]))
+    assert [list(seam.features) for seam in found] == [["stays", "one ground"]] * 2
     return [seam.features["stays"] for seam in found]
 
 
@@ -138,6 +138,51 @@ def test_a_side_that_the_ground_calls_elsewhere_does_not_stay(monkeypatch):
 
 def test_the_seams_of_a_setting_stay_as_they_are_in_a_sound_body(one_body):
     seams = find_seams(one_body, Looks(one_body))
-    found = with_stays(seams, find_pieces(one_body, seams, Looks(one_body)), np.zeros(2))
+    found = with_pieces_heard(seams, find_pieces(one_body, seams, Looks(one_body)), np.zeros(2))
     assert [seam.features["stays"] for seam in found] == [1.0] * len(seams)
     assert [replace(seam, features={}).larger.tolist() for seam in found] == [seam.larger.tolist() for seam in seams]
+
+
+def foot(piece, log_ratio, clear):
+    """Of a piece; the ground is piece 3."""
+    known = dict.fromkeys(LOG_ODDS["ground"], 0.0) | {"clear": clear}
+    return Candidate("ground", (piece, 3), log_ratio, -1, known)
+
+
+def grounds(*candidates):
+    """Of the outer seam of NESTED, of piece 0 before 1 and 2, and of the inner, of 1 before 2."""
+    piece, body = part_bodies(RigidBodies(np.zeros(8, int), 1), NESTED)
+    found = with_pieces_heard(NESTED, Pieces(piece, body, list(candidates)), np.zeros(2))
+    return [seam.features["one ground"] for seam in found]
+
+
+def chance(clear):
+    return 1 / (1 + np.exp(-AT_ONCE["ground"] - LOG_ODDS["ground"]["clear"] * clear))
+
+
+BOTH = (chance(3.0) * chance(2.0)) ** 2
+
+
+def test_feet_at_one_height_are_on_one_ground():
+    assert grounds(foot(0, 0.5, 3.0), foot(2, 0.51, 2.0)) == [pytest.approx(BOTH), 0.0]
+
+
+@pytest.mark.parametrize("height", [0.4, 0.546, 0.6])
+def test_feet_at_two_heights_are_on_two_grounds(height):
+    assert grounds(foot(1, 0.5, 3.0), foot(2, height, 2.0)) == [0.0, pytest.approx(-BOTH)]
+
+
+def test_of_several_feet_the_clearest_two_of_either_kind_tell():
+    [found, _] = grounds(foot(0, 0.5, 3.0), foot(0, 0.9, 1.0), foot(1, 0.5, -1.0), foot(2, 0.9, 2.0))
+    assert found == pytest.approx((chance(1.0) * chance(2.0)) ** 2 - BOTH)
+
+
+@pytest.mark.parametrize("height", [0.531, 0.544])
+def test_between_one_ground_and_two_feet_tell_nothing(height):
+    assert grounds(foot(0, 0.5, 3.0), foot(1, height, 3.0)) == [0.0, 0.0]
+
+
+def test_without_feet_on_both_sides_there_is_nothing_to_tell():
+    level = Candidate("level", (0, 1), 0.5, -1, dict.fromkeys(LOG_ODDS["level"], 9.0))
+    assert grounds() == [0.0, 0.0]
+    assert grounds(foot(0, 0.5, 3.0), foot(0, 0.9, 3.0), level) == [0.0, 0.0]

@@ -9,6 +9,11 @@ from linecad.ties.looks import Looks
 from linecad.ties.seams import LOG_ODDS, TYPICAL_SHADE, find_seams
 
 RED, BLUE = (170, 60, 50), (50, 70, 170)
+BY_PIECES = {"stays": 1.0, "one ground": 0.0}  # as where nothing speaks against a seam
+
+
+def told(seam, features):
+    return replace(seam, features={**seam.features, **BY_PIECES, **features}).probability
 
 
 def seams_of(setting):
@@ -40,7 +45,7 @@ def test_two_walls_part_where_few_courses_join_them(one_body, row):
     sides = [set(np.flatnonzero(row.part == part).tolist()) for part in range(2)]
     assert set(seam.larger.tolist()) in sides
     assert set(seam.smaller.tolist()) in sides
-    assert [*seam.features, "stays"] == list(LOG_ODDS)
+    assert [*seam.features, *BY_PIECES] == list(LOG_ODDS)
 
 
 def test_what_no_crossing_joins_has_no_seam(build_town, build_row, build_setting):
@@ -62,7 +67,7 @@ def test_walls_of_one_paint_hold_better_than_those_of_two(one_body):
     same, other = (seams_of(seen(one_body, painted(RED, right)))[0] for right in (RED, BLUE))
     assert same.features["shade"] > 0.95
     assert other.features["shade"] < 0.2
-    same, other = (replace(each, features={**each.features, "stays": 1.0}) for each in (same, other))
+    same, other = (replace(each, features={**each.features, **BY_PIECES}) for each in (same, other))
     assert same.probability > other.probability
 
 
@@ -84,8 +89,14 @@ def test_sides_beside_each_other_overlap_down_and_not_across(build_town, build_r
 
 def test_a_seam_is_doubtful_where_the_search_moves_its_sides_apart(one_body):
     seam = seams_of(one_body)[0]
-    moved, stays = (replace(seam, features={**seam.features, "stays": share}).probability for share in (0.0, 1.0))
+    moved, stays = (told(seam, {"stays": share}) for share in (0.0, 1.0))
     assert 0 < moved < stays < 1
+
+
+def test_a_seam_is_doubtful_where_its_sides_stand_on_two_grounds(one_body):
+    seam = seams_of(one_body)[0]
+    two, unknown, one = (told(seam, {"one ground": clear}) for clear in (-0.5, 0.0, 0.5))
+    assert 0 < two < unknown < one < 1
 
 
 def test_the_same_setting_has_the_same_seams(one_body):
