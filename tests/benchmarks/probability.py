@@ -263,12 +263,14 @@ def main() -> None:
         photos = [photo for job in jobs if (photo := job.result()) is not None]
         print(f"{len(photos)} of {len(jobs)} photos", flush=True)
         plain = [pool.submit(placed, photo, (), TABLE) for photo in photos]
+        # Of a real photo only points are known: a map made of these is no network's.
+        made = [photo for photo in photos if photo.is_made]
         mapped = [
             pool.submit(placed, photo, (), TABLE, (width, seed))
-            for width in WIDTHS for seed, photo in enumerate(photos)
+            for width in WIDTHS for seed, photo in enumerate(made)
         ]  # fmt: skip
         by_photo = list(zip(photos, [job.result() for job in plain], strict=True))
-        by_map = list(zip(photos * len(WIDTHS), [job.result() for job in mapped], strict=True))
+        by_map = list(zip(made * len(WIDTHS), [job.result() for job in mapped], strict=True))
     measure(by_photo, [one for one in by_map if one[1].heard], {folder.name for folder in chosen.unseen}, chosen.write)
 
 
