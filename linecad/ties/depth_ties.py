@@ -14,8 +14,10 @@ from linecad.depth.depth_map import DepthMap
 from linecad.line_graph import LineGraph
 from linecad.scene import DepthMapReport
 from linecad.ties.candidates import Candidate
+from linecad.ties.depth_corners import jumps_at_corners, width_by_corners
 from linecad.ties.depth_ground import ground_of_map
 from linecad.ties.depth_kind import DepthReading, read_depth
+from linecad.ties.depth_parts import LineWords, Moves, find_parts, hear_lines, moves_of
 from linecad.ties.depth_samples import sample_walls, weighted_median
 from linecad.ties.depth_words import WITHIN, BodyWords, words_of, worth_within
 from linecad.ties.setting import Setting
@@ -44,6 +46,7 @@ class DepthWitness:
     worth: float  # log-odds of its word for a large body of one wall, and for the ground
     weight: float  # the same against ties of crossings that contradict each other more or less
     words: BodyWords  # of each body
+    lines: LineWords
     ground: float | None  # log height of the camera above it in the map's unit; None where the map shows none
 
     @property
@@ -71,7 +74,8 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
         return reading
     if not np.isfinite(reading.log_scale[setting.bodies.size.argmax()]):
         return "it says nothing of the largest body, relative to which the others stand"
-    width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, estimate_width(reading.log_scale, candidates))
+    by_bodies = estimate_width(reading.log_scale, candidates)
+    width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, by_bodies)
     if width > MOST_WIDTH:
         return f"it is {np.expm1(width):.0%} off the bodies of this photo, too much to place them"
     worth = worth_within(2 / np.pi * np.arctan(WITHIN), width)
@@ -79,7 +83,10 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
     trust = float(np.clip((contradicted / CONTRADICTED) ** POWER, FEWEST, MOST))
     words = words_of(reading.votes, width, setting.bodies.count)
     ground = ground_of_map(depth, reading.kind, reading.shift, setting.sight)
-    return DepthWitness(reading, width, worth, worth * trust, words, ground)
+    jumps = jumps_at_corners(depth, reading.kind, reading.shift, setting.graph.segments, setting.sight)
+    # A network may be off alike on both sides of a corner, and bodies of one wall each tell hardly anything.
+    lines = hear_lines(setting, depth, reading, max(by_bodies, width_by_corners(jumps)))
+    return DepthWitness(reading, width, worth, worth * trust, words, lines, ground)
 
 
 def _contradicted(graph: LineGraph, log_depth: Float) -> float:
@@ -142,6 +149,7 @@ class MapPlaces:
     misfit: Float  # (B,) log scale by which bodies are off the map; NaN where it does not tell
     width: float  # as of the witness
     worth: float
+    moves: Moves | None = None  # of parts of bodies; None before they are looked at
 
 
 def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, reference: int, size: Int) -> MapPlaces:
@@ -168,6 +176,18 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     firm = firm[: len(size)]
     by_map = (firm != firm[reference]) & np.isin(firm, of_told)
     return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
+
+
+def with_parts(
+    mapped: MapPlaces, witness: DepthWitness, setting: Setting, probability: Float, held: Bool
+) -> MapPlaces:
+    """The places with parts of bodies moved, but of those that a person `held` (B,).
+
+    Lines are right with a probability (N,) where bodies stand as a whole.
+    """
+    words = witness.lines
+    parts = find_parts(setting, words, mapped.log_scale, mapped.of_map, probability, held)
+    return replace(mapped, moves=moves_of(parts, setting, words.width))
 
 
 def report_of(depth: DepthMap, heard: DepthWitness | str, mapped: MapPlaces | None) -> DepthMapReport:

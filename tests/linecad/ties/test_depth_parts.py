@@ -1,0 +1,135 @@
+"""Parts of bodies that a map has elsewhere: of one body that was made of two walls, one of which stands wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from linecad.ties.depth_kind import DepthReading
+from linecad.ties.depth_parts import (
+    LEAST_LINES,
+    LEAST_OFF,
+    MOST_KNOWN,
+    WIDEST,
+    Part,
+    find_parts,
+    hear_lines,
+    moves_of,
+)
+from linecad.ties.depth_samples import WallVotes
+
+FALSE = 0.3  # log scale by which the second wall stands too far
+SCALE = np.log(5.0)  # of the map's unit
+READING = DepthReading("z", 0.0, 0.0, 0.0, np.zeros(0), WallVotes(np.zeros(0, int), np.zeros(0), np.zeros(0)))
+WIDTH = 0.012
+
+
+@pytest.fixture(scope="module")
+def bent(avenue_walls, build_setting):
+    """The first two walls as one body, the second of which stands wrong; the third is a body of its own."""
+    seen, _ = avenue_walls
+    whole = build_setting(seen, (0.0, FALSE))
+    return replace(whole, bodies=build_setting(seen, body=np.array([0, 0, 1])[seen.part]).bodies)
+
+
+@pytest.fixture(scope="module")
+def words(avenue_walls, build_depth_map, bent):
+    seen, surfaces = avenue_walls
+    return hear_lines(bent, build_depth_map(seen.sight, surfaces, scale=5.0), READING, WIDTH)
+
+
+def parts(setting, words, known=0.3, log_scale=(0.0, 0.0), held=(False, False)):
+    probability = np.full(len(setting.log_depth), known)
+    return find_parts(setting, words, np.array(log_scale), SCALE, probability, np.array(held))
+
+
+def test_an_exact_map_asks_each_line_for_its_scale(avenue_walls, bent, words):
+    seen, _ = avenue_walls
+    np.testing.assert_allclose(words.log_scale, SCALE - np.array([0.0, FALSE, 0.0])[seen.part], atol=5e-3)
+
+
+def test_lines_of_no_body_and_beside_no_depth_are_told_nothing(avenue_walls, bent, build_setting, build_depth_map):
+    seen, surfaces = avenue_walls
+    depth = build_depth_map(seen.sight, surfaces[:2])
+    loose = replace(bent, bodies=build_setting(seen, body=np.array([0, -1, 1])[seen.part]).bodies)
+    told = np.isfinite(hear_lines(loose, depth, READING, WIDTH).log_scale)
+    assert told[seen.part == 0].all()
+    assert not told[seen.part != 0].any()
+
+
+def test_the_part_that_stands_wrong_is_found_as_a_whole(avenue_walls, bent, words):
+    seen, _ = avenue_walls
+    (found,) = parts(bent, words)
+    assert sorted(found.lines.tolist()) == np.flatnonzero(seen.part == 1).tolist()
+    assert found.move == pytest.approx(-FALSE, abs=3e-3)
+    assert found.known == pytest.approx(0.3)
+
+
+def test_a_part_that_stands_where_the_map_has_it_is_none(bent, words):
+    near = replace(words, log_scale=words.log_scale + np.where(np.isclose(words.log_scale, SCALE, atol=0.1), 0.0, FALSE))
+    assert parts(bent, near) == []
+    assert [part.move for part in parts(bent, near, log_scale=(2 * LEAST_OFF, 0.0))] == pytest.approx(
+        [-2 * LEAST_OFF], abs=3e-3
+    )
+
+
+def test_what_a_person_holds_is_not_parted(bent, words):
+    assert parts(bent, words, held=(True, False)) == []
+    assert len(parts(bent, words, held=(False, True))) == 1
+
+
+def test_few_lines_are_no_part(bent, words):
+    one = np.full(len(bent.log_depth), SCALE)
+    own = bent.lines[0][: LEAST_LINES - 1]
+    one[own] += 0.5
+    assert parts(bent, replace(words, log_scale=one)) == []
+
+
+def test_what_moves_goes_on_to_where_the_map_has_it(avenue_walls, bent, words):
+    seen, _ = avenue_walls
+    moves = moves_of(parts(bent, words), bent, WIDTH)
+    np.testing.assert_allclose(moves.log_scale, np.where(seen.part == 1, -FALSE, 0.0), atol=3e-3)
+    assert 0 < moves.probability < 1
+
+
+def test_what_crossings_hold_stays(bent, words):
+    assert not moves_of(parts(bent, words, known=MOST_KNOWN), bent, WIDTH).log_scale.any()
+
+
+def test_a_map_of_wide_errors_moves_nothing(bent, words):
+    assert not moves_of(parts(bent, words), bent, WIDEST).log_scale.any()
+
+
+def test_with_the_main_part_goes_what_the_map_is_mute_about(bent, words):
+    """And a smaller part that stands elsewhere stays by itself."""
+    asked = words.log_scale.copy()
+    own = bent.lines[0]
+    mute, other = own[:3], own[3:6]
+    asked[own] = SCALE + 0.4
+    asked[mute], asked[other] = np.nan, SCALE
+    moves = moves_of(parts(bent, replace(words, log_scale=asked)), bent, WIDTH).log_scale
+    assert moves[own[6:]] == pytest.approx(0.4)
+    assert moves[mute] == pytest.approx(0.4)
+    assert moves[other] == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "likelier"),
+    [({"known": 0.1}, True), ({"known": 0.7}, False), ({"move": 0.6}, True), ({"move": -0.05}, False)],
+)
+def test_the_map_is_believed_where_little_is_known_and_it_is_far_off(change, likelier):
+    """The log-odds of a part by itself, against one that is known and off as usual."""
+    usual = Part(np.arange(4), 0.1, 0.4, np.zeros(0, int))
+    asked = replace(usual, **change)
+    widths = np.geomspace(0.004, WIDEST * 0.999, 60)
+
+    def moved(part):
+        return sum(part.is_moved(float(width)) for width in widths)
+
+    assert (moved(asked) > moved(usual)) == likelier
+    assert moved(asked) != moved(usual)
+
+
+def test_a_wider_map_is_less_often_right(bent):
+    narrow, wide = (moves_of([], bent, width).probability for width in (0.01, 0.03))
+    assert narrow > wide
