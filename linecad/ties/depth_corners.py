@@ -64,7 +64,7 @@ def jumps_at_corners(depth: DepthMap, kind: Kind, shift: float, segments: Segmen
 
 
 def _side(depth: DepthMap, kind: Kind, shift: float, on: Float, across: Float, axis: Int, sight: Sight) -> _Sides:
-    """The plane on the side of lines along an axis (N,) to which `across` (N, 2) points, by points on them (N, P, 2)."""
+    """The planes on the side of lines along axes (N,) to which `across` (N, 2) points; points on them are (N, P, 2)."""
     pixels = on[:, :, None] + BESIDE[:, None] * across[:, None, None]
     column, row = np.moveaxis(np.rint(pixels).astype(np.int64), -1, 0)
     inside = (column >= 0) & (column < depth.width) & (row >= 0) & (row < depth.height)

@@ -178,9 +178,7 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
 
 
-def with_parts(
-    mapped: MapPlaces, witness: DepthWitness, setting: Setting, probability: Float, held: Bool
-) -> MapPlaces:
+def with_parts(mapped: MapPlaces, witness: DepthWitness, setting: Setting, probability: Float, held: Bool) -> MapPlaces:
     """The places with parts of bodies moved, but of those that a person `held` (B,).
 
     Lines are right with a probability (N,) where bodies stand as a whole.

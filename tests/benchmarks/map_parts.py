@@ -1,10 +1,10 @@
-"""Who is right about parts of bodies, a depth map or crossings: python tests/benchmarks/map_parts.py DATASET ... [--write]
+"""Who is right about parts of bodies, a map or crossings: python tests/benchmarks/map_parts.py DATASET ... [--write]
 
 DATASET is a folder that `linecad evaluate` knows and whose truth has depth. Places each photo with simulated maps of
 WIDTHS, finds the parts of bodies that the map has elsewhere, and fits the log-odds of `linecad.ties.depth_parts` to
 those where one of both is right; each dataset is judged by the fit of the others, and an --unseen one by that of all.
-Prints for each dataset and width what the moves gain, in points of a hundred
-within 5 % (of all, and of those with a line), and how often what was moved is right and is called so.
+Prints for each dataset and width what the moves gain, in points of a hundred within 5 % (of all, and of those that
+lines show), and how often what was moved is right and is called so.
 """
 
 import argparse
@@ -89,7 +89,9 @@ def fits_to(rows: list[Rows]) -> tuple[logistic.Logistic, logistic.Logistic]:
     weight = np.abs(gain[told]) / np.abs(gain[told]).mean()
     who = logistic.fit(features[told], (gain[told] > 0).astype(float), RIDGE, weight)
     moved = [is_moved(each, who) & (each.points > 0) for each in rows]
-    share = np.concatenate([(each.after / np.maximum(each.points, 1))[own] for each, own in zip(rows, moved, strict=True)])
+    share = np.concatenate(
+        [(each.after / np.maximum(each.points, 1))[own] for each, own in zip(rows, moved, strict=True)]
+    )
     weight = np.concatenate([(each.points / each.all_points)[own] for each, own in zip(rows, moved, strict=True)])
     by_width = np.array(list(LOG_ODDS)) == "width"
     moved_features = np.concatenate([each.features[own] for each, own in zip(rows, moved, strict=True)])
@@ -119,8 +121,8 @@ def print_dataset(rows: list[Rows], who: logistic.Logistic, moved: logistic.Logi
         gain = 100 * np.sum(gains, axis=0) / photos
         found = np.quantile([each.found for each in own], [0.1, 0.5, 0.9])
         cells = " ".join(f"{each:.1%}" for each in found)
-        rates = f"{right / max(points, 1):.2f} | {said / max(points, 1):.2f}"
-        print(f"| {own[0].dataset} | {width:.1%} | {len(own)} of {photos} | {cells} | {gain[0]:+.1f} / {gain[1]:+.1f} | {rates} |")
+        row = [own[0].dataset, f"{width:.1%}", f"{len(own)} of {photos}", cells, f"{gain[0]:+.1f} / {gain[1]:+.1f}"]
+        print("| " + " | ".join([*row, f"{right / max(points, 1):.2f}", f"{said / max(points, 1):.2f}"]) + " |")
 
 
 def main() -> None:

@@ -9,6 +9,7 @@ from linecad.ties.depth_kind import DepthReading
 from linecad.ties.depth_parts import (
     LEAST_LINES,
     LEAST_OFF,
+    LOG_ODDS,
     MOST_KNOWN,
     WIDEST,
     Part,
@@ -17,11 +18,21 @@ from linecad.ties.depth_parts import (
     moves_of,
 )
 from linecad.ties.depth_samples import WallVotes
+from linecad.ties.depth_ties import follow_map, hear, with_parts
+from solver.bodies.search import place
+from solver.bodies.ties import Ties
+from solver.options import SolveOptions
 
 FALSE = 0.3  # log scale by which the second wall stands too far
 SCALE = np.log(5.0)  # of the map's unit
 READING = DepthReading("z", 0.0, 0.0, 0.0, np.zeros(0), WallVotes(np.zeros(0, int), np.zeros(0), np.zeros(0)))
 WIDTH = 0.012
+NONE = Ties(np.zeros((0, 2)), [], [], [], [])
+
+
+def placed_at_zero(setting):
+    """Bodies and the ground at their own scales, which nothing ties."""
+    return place(NONE, setting.bodies.count + 2, 0, SolveOptions())
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +54,7 @@ def parts(setting, words, known=0.3, log_scale=(0.0, 0.0), held=(False, False)):
     return find_parts(setting, words, np.array(log_scale), SCALE, probability, np.array(held))
 
 
-def test_an_exact_map_asks_each_line_for_its_scale(avenue_walls, bent, words):
+def test_an_exact_map_asks_each_line_for_its_scale(avenue_walls, words):
     seen, _ = avenue_walls
     np.testing.assert_allclose(words.log_scale, SCALE - np.array([0.0, FALSE, 0.0])[seen.part], atol=5e-3)
 
@@ -66,7 +77,9 @@ def test_the_part_that_stands_wrong_is_found_as_a_whole(avenue_walls, bent, word
 
 
 def test_a_part_that_stands_where_the_map_has_it_is_none(bent, words):
-    near = replace(words, log_scale=words.log_scale + np.where(np.isclose(words.log_scale, SCALE, atol=0.1), 0.0, FALSE))
+    near = replace(
+        words, log_scale=words.log_scale + np.where(np.isclose(words.log_scale, SCALE, atol=0.1), 0.0, FALSE)
+    )
     assert parts(bent, near) == []
     assert [part.move for part in parts(bent, near, log_scale=(2 * LEAST_OFF, 0.0))] == pytest.approx(
         [-2 * LEAST_OFF], abs=3e-3
@@ -104,30 +117,40 @@ def test_with_the_main_part_goes_what_the_map_is_mute_about(bent, words):
     """And a smaller part that stands elsewhere stays by itself."""
     asked = words.log_scale.copy()
     own = bent.lines[0]
-    mute, other = own[:3], own[3:6]
+    mute, other = own[:3], own[3 : 3 + LEAST_LINES]
     asked[own] = SCALE + 0.4
     asked[mute], asked[other] = np.nan, SCALE
     moves = moves_of(parts(bent, replace(words, log_scale=asked)), bent, WIDTH).log_scale
-    assert moves[own[6:]] == pytest.approx(0.4)
+    assert moves[own[3 + LEAST_LINES :]] == pytest.approx(0.4)
     assert moves[mute] == pytest.approx(0.4)
     assert moves[other] == pytest.approx(0.0)
 
 
-@pytest.mark.parametrize(
-    ("change", "likelier"),
-    [({"known": 0.1}, True), ({"known": 0.7}, False), ({"move": 0.6}, True), ({"move": -0.05}, False)],
-)
-def test_the_map_is_believed_where_little_is_known_and_it_is_far_off(change, likelier):
-    """The log-odds of a part by itself, against one that is known and off as usual."""
-    usual = Part(np.arange(4), 0.1, 0.4, np.zeros(0, int))
-    asked = replace(usual, **change)
-    widths = np.geomspace(0.004, WIDEST * 0.999, 60)
+def test_the_map_is_believed_where_little_is_known_and_it_is_far_off():
+    """By the fitted log-odds, of which each has its sign, and not from MOST_KNOWN on."""
 
-    def moved(part):
-        return sum(part.is_moved(float(width)) for width in widths)
+    def moved(known=0.45, move=0.06, width=0.8 * WIDEST):
+        return Part(np.arange(LEAST_LINES), move, known, np.zeros(0, int)).is_moved(width)
 
-    assert (moved(asked) > moved(usual)) == likelier
-    assert moved(asked) != moved(usual)
+    assert LOG_ODDS["known"] < 0 < LOG_ODDS["off"]
+    assert LOG_ODDS["width"] < 0
+    assert moved(known=0.05, move=-0.6, width=0.012)
+    assert not moved(known=MOST_KNOWN, move=0.6, width=0.012)
+    assert not moved(known=0.05, move=0.6, width=WIDEST)
+
+
+def test_a_wall_that_stands_wrong_in_its_body_is_put_right(avenue_walls, bent, build_depth_map):
+    """From the map to the places of lines, which are marked; and not where a person holds the body."""
+    seen, surfaces = avenue_walls
+    depth = build_depth_map(seen.sight, surfaces, scale=5.0)
+    heard = hear(bent, [], depth)
+    mapped = follow_map(heard, NONE, placed_at_zero(bent), 0, bent.bodies.size)
+    known = np.full(len(bent.log_depth), 0.1)
+    for held in (False, True):
+        moves = with_parts(mapped, heard, bent, known, np.array([held, True])).moves.log_scale
+        apart = np.median((bent.log_depth + moves - seen.log_depth)[seen.part == 1])
+        apart -= np.median((bent.log_depth + moves - seen.log_depth)[seen.part == 0])
+        assert apart == pytest.approx(FALSE if held else 0.0, abs=5e-3)
 
 
 def test_a_wider_map_is_less_often_right(bent):
