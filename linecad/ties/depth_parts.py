@@ -25,22 +25,22 @@ BESIDE = np.array([0.003, 0.005, 0.0075, 0.01, 0.0125])  # of the photo's width
 SAME = 0.03  # log depth, half of the window of samples, and of lines, that are at one place
 LEAST_SAMPLES, LEAST_AGREEING = 20, 0.25  # of a line; and their share in that window
 MOST_PARTS = 12  # of a body
-LEAST_LINES = 8  # of a part; what fewer lines ask for would become planes that only the map shows
+LEAST_LINES = 4  # of a part; what fewer lines ask for would become planes that only the map shows
 LEAST_OFF = 0.04  # log scale by which a part that stands where the map has it may be off
 MOST_KNOWN = 0.8  # probability of a place, from which on no map moves it: crossings hold it
 WIDEST = 0.035  # of a map's errors, from which on it moves no part
 SUREST = 0.98  # probability, beyond which the fits below saw nothing
 USUAL_WIDTH, USUAL_OFF = 0.02, 0.1  # of a map's errors, and of a part; log depth
 # Logistic regressions on parts of known depth, by tests/benchmarks/map_parts.py (docs/results/depth-maps.md).
-AT_ONCE = 0.2713
+AT_ONCE = 0.2456
 LOG_ODDS: dict[str, float] = {
-    "known": -0.4490,
-    "width": -1.4884,
-    "off": 0.1998,
+    "known": -0.4322,
+    "width": -1.6088,
+    "off": 0.5582,
 }
-MOVED_AT_ONCE = 0.1756
+MOVED_AT_ONCE = 0.1525
 MOVED_LOG_ODDS: dict[str, float] = {
-    "width": -1.3999,
+    "width": -1.4090,
 }
 
 
