@@ -57,6 +57,7 @@ class Part:
     """Lines of one body that a map has elsewhere, all by the same."""
 
     lines: Int
+    asked: float  # log scale by which the map asks them to grow, at their body's own scale
     move: float  # log scale, from where they stand to where the map has them
     known: float  # how likely they are right as they stand
     also: Int  # lines that go with them: those that the map is mute about, with the largest part of their body
@@ -73,14 +74,6 @@ class Part:
         """Whether a map of that width is likelier right."""
         log_odds = AT_ONCE + sum(LOG_ODDS[name] * value for name, value in self.features(width).items())
         return width < WIDEST and self.known < MOST_KNOWN and log_odds > 0
-
-
-@dataclass(frozen=True, eq=False)
-class Moves:
-    """What a map moved."""
-
-    log_scale: Float  # (N,) by which lines went on from the places of their bodies; 0 for most
-    probability: float  # that what was moved stands right
 
 
 def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading, width: float) -> LineWords:
@@ -154,16 +147,11 @@ def find_parts(
             move = weighted_median(off[own], length[part])
             if len(part) >= LEAST_LINES and abs(move) > LEAST_OFF:
                 known = float(np.average(probability[part], weights=length[part]))
-                parts.append(Part(part, move, known, also))
+                parts.append(Part(part, move + log_scale[body] + of_map, move, known, also))
             also = also[:0]
     return parts
 
 
-def moves_of(parts: list[Part], setting: Setting, width: float) -> Moves:
-    """Where those parts go of which a map with errors of that width is likelier right."""
-    log_scale = np.zeros(len(setting.log_depth))
-    for part in parts:
-        if part.is_moved(width):
-            log_scale[part.lines] = part.move
-            log_scale[part.also] = part.move
-    return Moves(log_scale, float(expit(MOVED_AT_ONCE + MOVED_LOG_ODDS["width"] * np.log(width / USUAL_WIDTH))))
+def right_by_map(width: float) -> float:
+    """How likely a part stands right where a map with errors of that width has it."""
+    return float(expit(MOVED_AT_ONCE + MOVED_LOG_ODDS["width"] * np.log(width / USUAL_WIDTH)))

@@ -17,7 +17,7 @@ from linecad.ties.candidates import Candidate
 from linecad.ties.depth_corners import jumps_at_corners, width_by_corners
 from linecad.ties.depth_ground import ground_of_map
 from linecad.ties.depth_kind import DepthReading, read_depth
-from linecad.ties.depth_parts import LineWords, Moves, find_parts, hear_lines, moves_of
+from linecad.ties.depth_parts import LineWords, hear_lines
 from linecad.ties.depth_samples import sample_walls, weighted_median
 from linecad.ties.depth_words import WITHIN, BodyWords, words_of, worth_within
 from linecad.ties.setting import Setting
@@ -48,6 +48,7 @@ class DepthWitness:
     words: BodyWords  # of each body
     lines: LineWords
     ground: float | None  # log height of the camera above it in the map's unit; None where the map shows none
+    parts: frozenset[int] = frozenset()  # bodies that nothing but the map ties, by a decision about parts of bodies
 
     @property
     def trust(self) -> float:
@@ -59,6 +60,13 @@ class DepthWitness:
         asked, words = self.reading.log_scale, self.words
         more = BodyWords(np.append(words.log_scale, words.log_scale[body]), np.append(words.worth, words.worth[body]))
         return replace(self, reading=replace(self.reading, log_scale=np.append(asked, asked[body])), words=more)
+
+    def placing(self, body: int, asked: float) -> "DepthWitness":
+        """The same where nothing but the map ties a body, which it asks to grow by that log."""
+        own = np.arange(len(self.words.log_scale)) == body
+        words = BodyWords(np.where(own, asked, self.words.log_scale), np.where(own, self.worth, self.words.worth))
+        reading = replace(self.reading, log_scale=np.where(own, asked, self.reading.log_scale))
+        return replace(self, reading=reading, words=words, parts=self.parts | {body})
 
 
 def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) -> DepthWitness | str:
@@ -149,7 +157,6 @@ class MapPlaces:
     misfit: Float  # (B,) log scale by which bodies are off the map; NaN where it does not tell
     width: float  # as of the witness
     worth: float
-    moves: Moves | None = None  # of parts of bodies; None before they are looked at
 
 
 def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, reference: int, size: Int) -> MapPlaces:
@@ -176,16 +183,6 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     firm = firm[: len(size)]
     by_map = (firm != firm[reference]) & np.isin(firm, of_told)
     return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
-
-
-def with_parts(mapped: MapPlaces, witness: DepthWitness, setting: Setting, probability: Float, held: Bool) -> MapPlaces:
-    """The places with parts of bodies moved, but of those that a person `held` (B,).
-
-    Lines are right with a probability (N,) where bodies stand as a whole.
-    """
-    words = witness.lines
-    parts = find_parts(setting, words, mapped.log_scale, mapped.of_map, probability, held)
-    return replace(mapped, moves=moves_of(parts, setting, words.width))
 
 
 def report_of(depth: DepthMap, heard: DepthWitness | str, mapped: MapPlaces | None) -> DepthMapReport:

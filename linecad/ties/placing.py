@@ -14,7 +14,8 @@ from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
 from linecad.ties.candidates import Candidate
-from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map, with_parts
+from linecad.ties.depth_parts import right_by_map
+from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
 from linecad.ties.links import find_links, told_links
@@ -65,7 +66,7 @@ class BodyPlaces:
         setting = self.evidence.setting
         body = setting.bodies.body
         moved = np.append(self.log_scale[: setting.bodies.count], 0.0)[body]
-        return np.asarray(setting.log_depth + moved + self._moves)
+        return np.asarray(setting.log_depth + moved)
 
     def connected_at(self, graph: LineGraph, log_depth: Float) -> Bool:
         """(E,) the crossings of a graph of these lines that agree at depths (N,), as far as a person lets them."""
@@ -90,16 +91,10 @@ class BodyPlaces:
         links = told_links(links, pieces, evidence.reference, told == told[evidence.reference])
         length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)
         found = probabilities(setting, log_depth, pieces, chances(pieces, self.seams, links, length))
-        if self.mapped is None or self.mapped.moves is None:
+        if not isinstance(evidence.heard, DepthWitness):
             return found
-        return np.where(self._moves == 0, found, self.mapped.moves.probability)
-
-    @property
-    def _moves(self) -> Float:
-        """(N,) log scale by which a depth map moved lines on from the places of their bodies."""
-        if self.mapped is None or self.mapped.moves is None:
-            return np.zeros(len(self.evidence.setting.log_depth))
-        return self.mapped.moves.log_scale
+        parted = np.isin(setting.bodies.body, list(evidence.heard.parts))
+        return np.where(parted, right_by_map(evidence.heard.lines.width), found)
 
     @cached_property
     def seams(self) -> list[Seam]:
@@ -108,11 +103,11 @@ class BodyPlaces:
 
     @property
     def by_map(self) -> Bool:
-        """(N,) lines of bodies that a depth map alone ties to the reference, and of parts that it moved."""
+        """(N,) lines of bodies that a depth map alone ties to the reference."""
         body = self.evidence.setting.bodies.body
         if self.mapped is None:
             return np.zeros(len(body), bool)
-        return np.asarray((body >= 0) & (self.mapped.by_map[np.maximum(body, 0)] | (self._moves != 0)))
+        return np.asarray((body >= 0) & self.mapped.by_map[np.maximum(body, 0)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -237,11 +232,7 @@ def place_bodies(
     if isinstance(heard, DepthWitness):
         mapped = follow_map(heard, ties, placement, reference, size)
     sources += [None] * (len(ties) - len(sources))
-    found = BodyPlaces(evidence, tuple(facts), told, tuple(sources), ties, placement, mapped)
-    if mapped is None or not isinstance(heard, DepthWitness):
-        return found
-    held = np.isin(np.arange(len(size)), ties.bodies[ties.weight >= IMPLIED])  # by a person
-    return replace(found, mapped=with_parts(mapped, heard, setting, found.probability, held))
+    return BodyPlaces(evidence, tuple(facts), told, tuple(sources), ties, placement, mapped)
 
 
 def tie_up(evidence: Evidence, facts: Sequence[ToldFact], told: FactTies) -> tuple[Ties, list[Candidate | int | None]]:

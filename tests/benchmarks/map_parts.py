@@ -9,7 +9,7 @@ lines show), and how often what was moved is right and is called so.
 
 import argparse
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import logistic
@@ -56,7 +56,6 @@ def rows_of(photo: Judged, width: float) -> Rows | None:
     heard, mapped, setting = placed.evidence.heard, placed.mapped, placed.evidence.setting
     if not isinstance(heard, DepthWitness) or mapped is None:
         return None
-    placed = replace(placed, mapped=replace(mapped, moves=None))
     found = heard.lines.width
     nothing = np.zeros(setting.bodies.count, bool)
     parts = find_parts(setting, heard.lines, mapped.log_scale, mapped.of_map, placed.probability, nothing)

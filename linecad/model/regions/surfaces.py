@@ -88,7 +88,11 @@ def find_surfaces(
 
 def _is_held(surface: Surface, lines: Lines) -> bool:
     """Whether crossings hold a line of a surface, or many lines are on it: few that a map placed may be of anything."""
-    return len(surface.lines) >= LEAST_BY_MAP or len(lines.by_depth_map) == 0 or not lines.by_depth_map[surface.lines].all()
+    return (
+        len(surface.lines) >= LEAST_BY_MAP
+        or len(lines.by_depth_map) == 0
+        or not lines.by_depth_map[surface.lines].all()
+    )
 
 
 def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:
