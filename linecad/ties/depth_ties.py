@@ -168,7 +168,8 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     log_scale = placement.log_scale[: len(size)].copy()
     part = ties.parts(placement.counted, count)[: len(size)]
     told = np.isfinite(asked)
-    main = told & (part == part[reference])
+    alone = np.isin(np.arange(len(size)), list(witness.parts))
+    main = told & (part == part[reference]) & ~alone
     of_map = weighted_median((asked - log_scale)[main], size[main].astype(np.float64))
     for number in np.unique(part[told]).tolist():
         own = part == number
@@ -176,6 +177,8 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
             own_told = own & told
             off = weighted_median((asked - log_scale)[own_told], size[own_told].astype(np.float64))
             log_scale[own] += off - of_map
+    # The program ties these to the map where most ties have it, which need not be where most lines do.
+    log_scale[alone] = asked[alone] - of_map
     firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
     of_told = firm[: len(size)][told]
     if (placement.counted & (ties.bodies == [len(size), len(size) + 1]).all(axis=1)).any():
