@@ -28,7 +28,7 @@ MOST_PARTS = 12  # of a body
 LEAST_LINES = 4  # of a part; what fewer lines ask for would become planes that only the map shows
 LEAST_OFF = 0.04  # log scale by which a part that stands where the map has it may be off
 MOST_KNOWN = 0.8  # probability of a place, from which on no map moves it: crossings hold it
-WIDEST = 0.035  # of a map's errors, from which on it moves no part
+WIDEST = 0.025  # of a map's errors, from which on it moves no part
 SUREST = 0.98  # probability, beyond which the fits below saw nothing
 USUAL_WIDTH, USUAL_OFF = 0.02, 0.1  # of a map's errors, and of a part; log depth
 # Logistic regressions on parts of known depth, by tests/benchmarks/map_parts.py (docs/results/depth-maps.md).
