@@ -184,14 +184,14 @@ def _face(number: int, part: _Part, turns: Turns) -> Face | None:
 
 
 def without_spikes(ring: Float) -> Float:
-    """A ring (V, 3) without corners that are the one before, and without edges there and back.
+    """A ring (V, 3) without corners that are the one before, and without edges there and back, all the way or in part.
 
     A strip of the photo that is thinner than rounding becomes such an edge.
     """
     while True:
-        before, after = np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)
-        idle = (ring == before).all(axis=1)
-        tips = np.flatnonzero((before == after).all(axis=1))
+        there, back = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+        idle = (there == 0).all(axis=1)
+        tips = np.flatnonzero((np.cross(there, back) == 0).all(axis=1) & ((there * back).sum(axis=1) < 0))
         if idle.any():
             ring = ring[~idle]
         elif len(tips):

@@ -201,6 +201,16 @@ def test_edges_there_and_back_are_left_out(ring, kept):
     assert {tuple(place) for place in found} == {tuple(places[letter]) for letter in kept}
 
 
+def test_an_edge_that_turns_back_beyond_its_start_is_no_spike_any_more():
+    # Up along one side to 5.6, then down the same side to -0.5: a whole wall was lost for it.
+    ring = np.array([[-9.5, 9.0, 4.1], [-9.5, 9.0, 5.6], [-9.5, 9.0, -0.5], [0.8, 9.0, -0.5], [0.1, 9.0, 4.1]])
+    for start in range(len(ring)):
+        for turned in (np.roll(ring, start, axis=0), np.roll(ring[::-1], start, axis=0)):
+            found = without_spikes(turned)
+            assert len(found) == 4
+            assert {tuple(place) for place in found} == {tuple(place) for place in ring[[0, 2, 3, 4]]}
+
+
 def test_a_surface_ends_before_its_horizon_with_one_straight_cut():
     # A wall on the right whose region reaches to its vanishing point in the middle of the photo, and beyond.
     side = Surface("wall", 0, 3.0, NO_LINES, None)
