@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import expit, logit
 
-from linecad.arrays import Bool, Float, Int
+from linecad.arrays import Float, Int
 from linecad.depth.depth_map import DepthMap, camera_depths
 from linecad.directions import MAIN, across
 from linecad.geometry import lengths, world_rays
@@ -28,7 +28,7 @@ MOST_PARTS = 12  # of a body
 LEAST_LINES = 4  # of a part; what fewer lines ask for would become planes that only the map shows
 LEAST_OFF = 0.04  # log scale by which a part that stands where the map has it may be off
 MOST_KNOWN = 0.8  # probability of a place, from which on no map moves it: crossings hold it
-WIDEST = 0.025  # of a map's errors, from which on it moves no part
+WIDEST = 0.02  # of a map's errors, log depth, from which on it moves no part: exact ones gain, others lose as much
 SUREST = 0.98  # probability, beyond which the fits below saw nothing
 USUAL_WIDTH, USUAL_OFF = 0.02, 0.1  # of a map's errors, and of a part; log depth
 # Logistic regressions on parts of known depth, by tests/benchmarks/map_parts.py (docs/results/depth-maps.md).
@@ -126,18 +126,15 @@ def _most_agree(excess: Float) -> float:
     return found
 
 
-def find_parts(
-    setting: Setting, words: LineWords, log_scale: Float, of_map: float, probability: Float, held: Bool
-) -> list[Part]:
-    """The parts of bodies that the map has elsewhere, but of those that a person `held` (B,).
+def find_parts(setting: Setting, words: LineWords, log_scale: Float, of_map: float, probability: Float) -> list[Part]:
+    """The parts of bodies that the map has elsewhere.
 
     Bodies stand at log scales (B,), the map's depth is larger by the log `of_map`, and each line is right with a
     probability (N,).
     """
     length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0])
     parts: list[Part] = []
-    for body in np.flatnonzero(~held).tolist():
-        lines = setting.lines[body]
+    for body, lines in enumerate(setting.lines):
         told = lines[np.isfinite(words.log_scale[lines])]
         off = words.log_scale[told] - log_scale[body] - of_map
         groups = [own for _, own in densest_groups(off, length[told], SAME, MOST_PARTS)]

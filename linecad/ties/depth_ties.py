@@ -157,6 +157,7 @@ class MapPlaces:
     misfit: Float  # (B,) log scale by which bodies are off the map; NaN where it does not tell
     width: float  # as of the witness
     worth: float
+    parts: Bool | tuple[()] = ()  # (B,) of by_map, parts of bodies that stand where most lines have the map; or none
 
 
 def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, reference: int, size: Int) -> MapPlaces:
@@ -167,8 +168,10 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     asked, count = witness.words.log_scale, len(placement.log_scale)
     log_scale = placement.log_scale[: len(size)].copy()
     part = ties.parts(placement.counted, count)[: len(size)]
+    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
     told = np.isfinite(asked)
-    alone = np.isin(np.arange(len(size)), list(witness.parts))
+    # A part that a person ties to something goes with that.
+    alone = np.isin(np.arange(len(size)), list(witness.parts)) & (np.bincount(firm)[firm[: len(size)]] == 1)
     main = told & (part == part[reference]) & ~alone
     of_map = weighted_median((asked - log_scale)[main], size[main].astype(np.float64))
     for number in np.unique(part[told]).tolist():
@@ -179,13 +182,12 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
             log_scale[own] += off - of_map
     # The program ties these to the map where most ties have it, which need not be where most lines do.
     log_scale[alone] = asked[alone] - of_map
-    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
     of_told = firm[: len(size)][told]
     if (placement.counted & (ties.bodies == [len(size), len(size) + 1]).all(axis=1)).any():
         of_told = np.append(of_told, firm[len(size)])  # what stands on a ground that the map ties
     firm = firm[: len(size)]
     by_map = (firm != firm[reference]) & np.isin(firm, of_told)
-    return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
+    return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth, alone)
 
 
 def report_of(depth: DepthMap, heard: DepthWitness | str, mapped: MapPlaces | None) -> DepthMapReport:

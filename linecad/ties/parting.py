@@ -1,7 +1,8 @@
 """Evidence in which parts of bodies that a depth map has elsewhere are bodies of their own, which it places.
 
-Who is right about a part, its body or the map, is decided once, at the places that all evidence gives
-(`linecad.ties.depth_parts`); from then on a part is a body as any other, on the page too.
+Who is right about a part, its body or the map, is decided once, at the places that the photo gives without a person's
+words (`linecad.ties.depth_parts`). From then on a part is a body as any other, on the page too, and what a person says
+moves it: a crossing called real ties it to its body again.
 """
 
 from collections.abc import Sequence
@@ -14,7 +15,7 @@ from linecad.corrections.corrected import ToldFact
 from linecad.line_graph import LineGraph
 from linecad.progress import StageReport, silent
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.depth_parts import find_parts
+from linecad.ties.depth_parts import WIDEST, find_parts
 from linecad.ties.depth_ties import DepthWitness
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.pieces import Pieces
@@ -31,43 +32,33 @@ def find_parted_evidence(
     facts: Sequence[ToldFact] = (),
     on_stage: StageReport = silent,
 ) -> Evidence:
-    """As `find_evidence`, with parts of bodies that a depth map places; what `facts` tell of is not parted."""
-    return part_by_map(find_evidence(graph, sight, options, facts, on_stage), options, facts)
+    """As `find_evidence`, with parts of bodies that a depth map places. Raises what that raises, and SolverError."""
+    return part_by_map(find_evidence(graph, sight, options, facts, on_stage), options)
 
 
-def part_by_map(evidence: Evidence, options: SolveOptions, facts: Sequence[ToldFact] = ()) -> Evidence:
+def part_by_map(evidence: Evidence, options: SolveOptions) -> Evidence:
     """The evidence with parts that a map has elsewhere, and likelier rightly, as bodies that it alone ties."""
     heard, setting = evidence.heard, evidence.setting
-    if not isinstance(heard, DepthWitness):
+    if not isinstance(heard, DepthWitness) or heard.lines.width >= WIDEST:
         return evidence
-    places = place_bodies(evidence, options, facts)
+    places = place_bodies(evidence, options)
     assert places.mapped is not None
-    held = np.zeros(setting.bodies.count, bool)
-    own = setting.bodies.body[[line for fact in facts for line in fact.lines]] if facts else np.zeros(0, np.int64)
-    held[own[own >= 0]] = True
-    words, of_map = heard.lines, places.mapped.of_map
-    parts = find_parts(setting, words, places.mapped.log_scale, of_map, places.probability, held)
-    for part in parts:
-        lines = np.union1d(part.lines, part.also)
-        if part.is_moved(words.width) and _may_go(lines, evidence):
-            evidence = _parted(evidence, lines, part.asked)
-    return _with_reference(evidence)
+    of_map, words = places.mapped.of_map, heard.lines
+    for part in find_parts(setting, words, places.mapped.log_scale, of_map, places.probability):
+        if part.is_moved(words.width):
+            evidence = _parted(evidence, np.union1d(part.lines, part.also), part.asked)
+    return _with_reference(evidence, int(setting.bodies.size[evidence.reference]))
 
 
-def _may_go(lines: Int, evidence: Evidence) -> bool:
-    """Whether no crossing that a person called real holds lines to their body."""
-    body, edges = evidence.setting.bodies.body, evidence.setting.graph.edges[evidence.real]
-    own = int(body[lines[0]])
-    inside = np.isin(edges, lines)
-    return not ((inside[:, 0] != inside[:, 1]) & (body[edges] == own).all(axis=1)).any()
+def _with_reference(evidence: Evidence, size: int) -> Evidence:
+    """The evidence with the largest body that not the map alone ties as reference, where most of its lines are gone.
 
-
-def _with_reference(evidence: Evidence) -> Evidence:
-    """The evidence, the largest body that not the map alone ties its reference, where the reference lost its lines."""
-    heard, size = evidence.heard, evidence.setting.bodies.size
+    It had so many lines.
+    """
+    heard, left = evidence.heard, evidence.setting.bodies.size
     assert isinstance(heard, DepthWitness)
-    free = np.where(np.isin(np.arange(len(size)), list(heard.parts)), 0, size)
-    return replace(evidence, reference=int(free.argmax())) if heard.parts and free.any() else evidence
+    free = np.where(np.isin(np.arange(len(left)), list(heard.parts)), 0, left)
+    return evidence if 2 * free[evidence.reference] >= size else replace(evidence, reference=int(free.argmax()))
 
 
 def _parted(evidence: Evidence, lines: Int, asked: float) -> Evidence:

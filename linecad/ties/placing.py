@@ -91,10 +91,10 @@ class BodyPlaces:
         links = told_links(links, pieces, evidence.reference, told == told[evidence.reference])
         length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)
         found = probabilities(setting, log_depth, pieces, chances(pieces, self.seams, links, length))
-        if not isinstance(evidence.heard, DepthWitness):
+        if not isinstance(evidence.heard, DepthWitness) or self.mapped is None:
             return found
-        parted = np.isin(setting.bodies.body, list(evidence.heard.parts))
-        return np.where(parted, right_by_map(evidence.heard.lines.width), found)
+        of_part = np.isin(setting.bodies.body, np.flatnonzero(self.mapped.parts))
+        return np.where(of_part, right_by_map(evidence.heard.lines.width), found)
 
     @cached_property
     def seams(self) -> list[Seam]:

@@ -57,8 +57,7 @@ def rows_of(photo: Judged, width: float) -> Rows | None:
     if not isinstance(heard, DepthWitness) or mapped is None:
         return None
     found = heard.lines.width
-    nothing = np.zeros(setting.bodies.count, bool)
-    parts = find_parts(setting, heard.lines, mapped.log_scale, mapped.of_map, placed.probability, nothing)
+    parts = find_parts(setting, heard.lines, mapped.log_scale, mapped.of_map, placed.probability)
     seen = photo.seen
     line = photo.on[seen]
     error = placed.log_depth[line] + photo.log_factor[seen] - photo.log_true[seen]

@@ -20,7 +20,6 @@ SAME_LEVEL = 0.03  # the same between the ground that feet found and lines that 
 LEAST_LENGTH = 0.02  # of a surface's lines together, as a share of the photo's width
 MOST_SURFACES = 20
 NEARLY_ALL = 0.95  # of the length of the lines that reach below the horizon ends above the lowest level
-LEAST_BY_MAP = 8  # lines of a surface that a depth map alone places; where the map is flat, it shows walls itself
 LEAST_ENDS = 3  # of lines on one side of the horizon, for a level there
 FURTHEST_FOOT = 1.5  # times the lowest level; the ground is no lower, unless feet are firm and in the open:
 FURTHEST_FIRM = 3.5  # below shop windows and plain walls there is no line
@@ -73,10 +72,7 @@ def find_surfaces(
         else:
             kind: Kind = "level" if plane.axis == 2 else "wall"
             found.append(Surface(kind, plane.axis, plane.offset, own, plane.id))
-    walls = [
-        wall for wall in found
-        if length[wall.lines].sum() >= LEAST_LENGTH * camera.width and _is_held(wall, lines)
-    ][:MOST_SURFACES]  # fmt: skip
+    walls = [wall for wall in found if length[wall.lines].sum() >= LEAST_LENGTH * camera.width][:MOST_SURFACES]
     ground = ground_height(lines, feet)
     ceiling = level_of_ends(lines, above=True) if has_ceiling else None
     for kind, height in (("ground", None if ground is None else -ground), ("ceiling", ceiling)):
@@ -84,15 +80,6 @@ def find_surfaces(
             found_by_feet = kind == "ground" and feet is not None and height == -feet.height
             walls = _with_level(walls, kind, height, SAME_LEVEL if found_by_feet else GROUND_STEP)
     return walls
-
-
-def _is_held(surface: Surface, lines: Lines) -> bool:
-    """Whether crossings hold a line of a surface, or many lines are on it: few that a map placed may be of anything."""
-    return (
-        len(surface.lines) >= LEAST_BY_MAP
-        or len(lines.by_depth_map) == 0
-        or not lines.by_depth_map[surface.lines].all()
-    )
 
 
 def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:

@@ -15,24 +15,14 @@ from linecad.ties.depth_parts import (
     Part,
     find_parts,
     hear_lines,
-    moves_of,
+    right_by_map,
 )
 from linecad.ties.depth_samples import WallVotes
-from linecad.ties.depth_ties import follow_map, hear, with_parts
-from solver.bodies.search import place
-from solver.bodies.ties import Ties
-from solver.options import SolveOptions
 
 FALSE = 0.3  # log scale by which the second wall stands too far
 SCALE = np.log(5.0)  # of the map's unit
 READING = DepthReading("z", 0.0, 0.0, 0.0, np.zeros(0), WallVotes(np.zeros(0, int), np.zeros(0), np.zeros(0)))
 WIDTH = 0.012
-NONE = Ties(np.zeros((0, 2)), [], [], [], [])
-
-
-def placed_at_zero(setting):
-    """Bodies and the ground at their own scales, which nothing ties."""
-    return place(NONE, setting.bodies.count + 2, 0, SolveOptions())
 
 
 @pytest.fixture(scope="module")
@@ -49,9 +39,8 @@ def words(avenue_walls, build_depth_map, bent):
     return hear_lines(bent, build_depth_map(seen.sight, surfaces, scale=5.0), READING, WIDTH)
 
 
-def parts(setting, words, known=0.3, log_scale=(0.0, 0.0), held=(False, False)):
-    probability = np.full(len(setting.log_depth), known)
-    return find_parts(setting, words, np.array(log_scale), SCALE, probability, np.array(held))
+def parts(setting, words, known=0.3, log_scale=(0.0, 0.0)):
+    return find_parts(setting, words, np.array(log_scale), SCALE, np.full(len(setting.log_depth), known))
 
 
 def test_an_exact_map_asks_each_line_for_its_scale(avenue_walls, words):
@@ -86,11 +75,6 @@ def test_a_part_that_stands_where_the_map_has_it_is_none(bent, words):
     )
 
 
-def test_what_a_person_holds_is_not_parted(bent, words):
-    assert parts(bent, words, held=(True, False)) == []
-    assert len(parts(bent, words, held=(False, True))) == 1
-
-
 def test_few_lines_are_no_part(bent, words):
     one = np.full(len(bent.log_depth), SCALE)
     own = bent.lines[0][: LEAST_LINES - 1]
@@ -98,39 +82,34 @@ def test_few_lines_are_no_part(bent, words):
     assert parts(bent, replace(words, log_scale=one)) == []
 
 
-def test_what_moves_goes_on_to_where_the_map_has_it(avenue_walls, bent, words):
-    seen, _ = avenue_walls
-    moves = moves_of(parts(bent, words), bent, WIDTH)
-    np.testing.assert_allclose(moves.log_scale, np.where(seen.part == 1, -FALSE, 0.0), atol=3e-3)
-    assert 0 < moves.probability < 1
-
-
-def test_what_crossings_hold_stays(bent, words):
-    assert not moves_of(parts(bent, words, known=MOST_KNOWN), bent, WIDTH).log_scale.any()
-
-
-def test_a_map_of_wide_errors_moves_nothing(bent, words):
-    assert not moves_of(parts(bent, words), bent, WIDEST).log_scale.any()
+@pytest.mark.parametrize("kind", ["distance", "inverse", "affine-inverse"])
+def test_every_kind_of_map_is_read(avenue_walls, build_depth_map, bent, kind):
+    seen, surfaces = avenue_walls
+    scale = 5.0 if kind == "distance" else 1.0
+    depth = build_depth_map(seen.sight, surfaces, kind, scale, shift=0.2 if kind == "affine-inverse" else 0.0)
+    shift = -depth.values[depth.valid].max() * 0.2 / 1.2 if kind == "affine-inverse" else 0.0
+    asked = hear_lines(bent, depth, replace(READING, kind=kind, shift=shift), WIDTH).log_scale
+    np.testing.assert_allclose(asked, np.log(scale) - np.array([0.0, FALSE, 0.0])[seen.part], atol=5e-3)
 
 
 def test_with_the_main_part_goes_what_the_map_is_mute_about(bent, words):
-    """And a smaller part that stands elsewhere stays by itself."""
+    """And a smaller part that stands where the map has it stays by itself."""
     asked = words.log_scale.copy()
     own = bent.lines[0]
     mute, other = own[:3], own[3 : 3 + LEAST_LINES]
     asked[own] = SCALE + 0.4
     asked[mute], asked[other] = np.nan, SCALE
-    moves = moves_of(parts(bent, replace(words, log_scale=asked)), bent, WIDTH).log_scale
-    assert moves[own[3 + LEAST_LINES :]] == pytest.approx(0.4)
-    assert moves[mute] == pytest.approx(0.4)
-    assert moves[other] == pytest.approx(0.0)
+    (found,) = parts(bent, replace(words, log_scale=asked))
+    assert sorted(found.lines.tolist()) == own[3 + LEAST_LINES :].tolist()
+    assert found.also.tolist() == mute.tolist()
+    assert found.asked == pytest.approx(SCALE + 0.4)
 
 
 def test_the_map_is_believed_where_little_is_known_and_it_is_far_off():
-    """By the fitted log-odds, of which each has its sign, and not from MOST_KNOWN on."""
+    """By the fitted log-odds, of which each has its sign; and not from MOST_KNOWN and WIDEST on."""
 
     def moved(known=0.45, move=0.06, width=0.8 * WIDEST):
-        return Part(np.arange(LEAST_LINES), move, known, np.zeros(0, int)).is_moved(width)
+        return Part(np.arange(LEAST_LINES), 0.0, move, known, np.zeros(0, int)).is_moved(width)
 
     assert LOG_ODDS["known"] < 0 < LOG_ODDS["off"]
     assert LOG_ODDS["width"] < 0
@@ -139,20 +118,5 @@ def test_the_map_is_believed_where_little_is_known_and_it_is_far_off():
     assert not moved(known=0.05, move=0.6, width=WIDEST)
 
 
-def test_a_wall_that_stands_wrong_in_its_body_is_put_right(avenue_walls, bent, build_depth_map):
-    """From the map to the places of lines, which are marked; and not where a person holds the body."""
-    seen, surfaces = avenue_walls
-    depth = build_depth_map(seen.sight, surfaces, scale=5.0)
-    heard = hear(bent, [], depth)
-    mapped = follow_map(heard, NONE, placed_at_zero(bent), 0, bent.bodies.size)
-    known = np.full(len(bent.log_depth), 0.1)
-    for held in (False, True):
-        moves = with_parts(mapped, heard, bent, known, np.array([held, True])).moves.log_scale
-        apart = np.median((bent.log_depth + moves - seen.log_depth)[seen.part == 1])
-        apart -= np.median((bent.log_depth + moves - seen.log_depth)[seen.part == 0])
-        assert apart == pytest.approx(FALSE if held else 0.0, abs=5e-3)
-
-
-def test_a_wider_map_is_less_often_right(bent):
-    narrow, wide = (moves_of([], bent, width).probability for width in (0.01, 0.03))
-    assert narrow > wide
+def test_a_wider_map_is_less_often_right():
+    assert 1 > right_by_map(0.01) > right_by_map(0.03) > 0
