@@ -24,7 +24,8 @@ from linecad.model.regions.roofs import Sketch
 from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Scene
-from linecad.ties.evidence import Evidence, find_evidence
+from linecad.ties.evidence import Evidence
+from linecad.ties.parting import find_parted_evidence
 from linecad.ties.placing import BodyPlaces, Placed, place_on
 from linecad.ties.setting import Sight
 from solver.options import OnProgress
@@ -129,7 +130,7 @@ def prepare(
         sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
         facts = () if corrected is None else facts_of(graph, corrected)[0]
         with told_in_the_photo(graph, corrected):
-            evidence = find_evidence(graph, sight, with_annotations(options.solve, annotations), facts, on_stage)
+            evidence = find_parted_evidence(graph, sight, with_annotations(options.solve, annotations), facts, on_stage)
     return Prepared(found, whole, graph, annotations, details, corrected, evidence)
 
 
@@ -142,7 +143,7 @@ def prepared_for(
         return replace(prepared, corrected=corrected)
     limits = with_annotations(options.solve, prepared.annotations)
     with told_in_the_photo(graph, corrected):
-        evidence = find_evidence(graph, known.setting.sight, limits, facts_of(graph, corrected)[0], on_stage)
+        evidence = find_parted_evidence(graph, known.setting.sight, limits, facts_of(graph, corrected)[0], on_stage)
     return replace(prepared, corrected=corrected, evidence=evidence)
 
 

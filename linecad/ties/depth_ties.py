@@ -14,8 +14,10 @@ from linecad.depth.depth_map import DepthMap
 from linecad.line_graph import LineGraph
 from linecad.scene import DepthMapReport
 from linecad.ties.candidates import Candidate
+from linecad.ties.depth_corners import jumps_at_corners, width_by_corners
 from linecad.ties.depth_ground import ground_of_map
 from linecad.ties.depth_kind import DepthReading, read_depth
+from linecad.ties.depth_parts import LineWords, hear_lines
 from linecad.ties.depth_samples import sample_walls, weighted_median
 from linecad.ties.depth_words import WITHIN, BodyWords, words_of, worth_within
 from linecad.ties.setting import Setting
@@ -44,7 +46,9 @@ class DepthWitness:
     worth: float  # log-odds of its word for a large body of one wall, and for the ground
     weight: float  # the same against ties of crossings that contradict each other more or less
     words: BodyWords  # of each body
+    lines: LineWords
     ground: float | None  # log height of the camera above it in the map's unit; None where the map shows none
+    parts: frozenset[int] = frozenset()  # bodies that nothing but the map ties, by a decision about parts of bodies
 
     @property
     def trust(self) -> float:
@@ -56,6 +60,13 @@ class DepthWitness:
         asked, words = self.reading.log_scale, self.words
         more = BodyWords(np.append(words.log_scale, words.log_scale[body]), np.append(words.worth, words.worth[body]))
         return replace(self, reading=replace(self.reading, log_scale=np.append(asked, asked[body])), words=more)
+
+    def placing(self, body: int, asked: float) -> "DepthWitness":
+        """The same where nothing but the map ties a body, which it asks to grow by that log."""
+        own = np.arange(len(self.words.log_scale)) == body
+        words = BodyWords(np.where(own, asked, self.words.log_scale), np.where(own, self.worth, self.words.worth))
+        reading = replace(self.reading, log_scale=np.where(own, asked, self.reading.log_scale))
+        return replace(self, reading=reading, words=words, parts=self.parts | {body})
 
 
 def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) -> DepthWitness | str:
@@ -71,7 +82,8 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
         return reading
     if not np.isfinite(reading.log_scale[setting.bodies.size.argmax()]):
         return "it says nothing of the largest body, relative to which the others stand"
-    width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, estimate_width(reading.log_scale, candidates))
+    by_bodies = estimate_width(reading.log_scale, candidates)
+    width = max(LEAST_WIDTH, WITHIN_BODIES * reading.spread, by_bodies)
     if width > MOST_WIDTH:
         return f"it is {np.expm1(width):.0%} off the bodies of this photo, too much to place them"
     worth = worth_within(2 / np.pi * np.arctan(WITHIN), width)
@@ -79,7 +91,10 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
     trust = float(np.clip((contradicted / CONTRADICTED) ** POWER, FEWEST, MOST))
     words = words_of(reading.votes, width, setting.bodies.count)
     ground = ground_of_map(depth, reading.kind, reading.shift, setting.sight)
-    return DepthWitness(reading, width, worth, worth * trust, words, ground)
+    jumps = jumps_at_corners(depth, reading.kind, reading.shift, setting.graph.segments, setting.sight)
+    # A network may be off alike on both sides of a corner, and bodies of one wall each tell hardly anything.
+    lines = hear_lines(setting, depth, reading, max(by_bodies, width_by_corners(jumps)))
+    return DepthWitness(reading, width, worth, worth * trust, words, lines, ground)
 
 
 def _contradicted(graph: LineGraph, log_depth: Float) -> float:
@@ -142,6 +157,7 @@ class MapPlaces:
     misfit: Float  # (B,) log scale by which bodies are off the map; NaN where it does not tell
     width: float  # as of the witness
     worth: float
+    parts: Bool | tuple[()] = ()  # (B,) of by_map, parts of bodies that stand where most lines have the map; or none
 
 
 def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, reference: int, size: Int) -> MapPlaces:
@@ -152,8 +168,11 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     asked, count = witness.words.log_scale, len(placement.log_scale)
     log_scale = placement.log_scale[: len(size)].copy()
     part = ties.parts(placement.counted, count)[: len(size)]
+    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
     told = np.isfinite(asked)
-    main = told & (part == part[reference])
+    # A part that a person ties to something goes with that.
+    alone = np.isin(np.arange(len(size)), list(witness.parts)) & (np.bincount(firm)[firm[: len(size)]] == 1)
+    main = told & (part == part[reference]) & ~alone
     of_map = weighted_median((asked - log_scale)[main], size[main].astype(np.float64))
     for number in np.unique(part[told]).tolist():
         own = part == number
@@ -161,13 +180,14 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
             own_told = own & told
             off = weighted_median((asked - log_scale)[own_told], size[own_told].astype(np.float64))
             log_scale[own] += off - of_map
-    firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
+    # The program ties these to the map where most ties have it, which need not be where most lines do.
+    log_scale[alone] = asked[alone] - of_map
     of_told = firm[: len(size)][told]
     if (placement.counted & (ties.bodies == [len(size), len(size) + 1]).all(axis=1)).any():
         of_told = np.append(of_told, firm[len(size)])  # what stands on a ground that the map ties
     firm = firm[: len(size)]
     by_map = (firm != firm[reference]) & np.isin(firm, of_told)
-    return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth)
+    return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth, alone)
 
 
 def report_of(depth: DepthMap, heard: DepthWitness | str, mapped: MapPlaces | None) -> DepthMapReport:

@@ -14,6 +14,7 @@ from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
 from linecad.ties.candidates import Candidate
+from linecad.ties.depth_parts import right_by_map
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
@@ -89,7 +90,11 @@ class BodyPlaces:
         told = self.ties.parts(certain, len(self.placement.log_scale))
         links = told_links(links, pieces, evidence.reference, told == told[evidence.reference])
         length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main_lines(setting, connected)
-        return probabilities(setting, log_depth, pieces, chances(pieces, self.seams, links, length))
+        found = probabilities(setting, log_depth, pieces, chances(pieces, self.seams, links, length))
+        if not isinstance(evidence.heard, DepthWitness) or self.mapped is None:
+            return found
+        of_part = np.isin(setting.bodies.body, np.flatnonzero(self.mapped.parts))
+        return np.where(of_part, right_by_map(evidence.heard.lines.width), found)
 
     @cached_property
     def seams(self) -> list[Seam]:

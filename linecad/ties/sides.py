@@ -59,7 +59,7 @@ def part_off(evidence: Evidence, lines: Int) -> Evidence:
     of_piece[2 * inside > pieces.size] = new
     parted = replace(setting, bodies=RigidBodies(body, new + 1))
     kept = [
-        _moved_up(each, new)
+        moved_up(each, new)
         for each in evidence.candidates
         if own not in each.bodies or not _is_of_part(each, pieces, of_piece, new)
     ]
@@ -79,7 +79,7 @@ def part_off(evidence: Evidence, lines: Int) -> Evidence:
     )
 
 
-def _moved_up(candidate: Candidate, ground: int) -> Candidate:
+def moved_up(candidate: Candidate, ground: int) -> Candidate:
     """The candidate where the ground has the next number."""
     first, second = candidate.bodies
     return replace(candidate, bodies=(first, second + 1)) if second == ground else candidate

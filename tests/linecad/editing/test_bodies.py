@@ -1,9 +1,13 @@
 """Bodies as the page is told of them: facts move them at once, and the scene that is built behind agrees."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import linecad.editing.bodies
+import linecad.ties.depth_parts
+import linecad.ties.parting
 from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.bodies import NODES, at_once
 from linecad.options import Options
@@ -208,6 +212,64 @@ def place_part(state, factor=1.0):
     half, rest = half_of(state, 0)
     now = np.log(depth_at_middle(state, half[0]) / depth_at_middle(state, rest[0]))
     return {"op": "place", "line": half[0], "to": rest[0], "part": half, "log_ratio": float(now + np.log(factor))}
+
+
+class TestPartsOfAMap:
+    """A depth map has the right half of the second body farther, and is believed."""
+
+    @pytest.fixture
+    def parted(self, open_page, map_of_made, monkeypatch):
+        monkeypatch.setattr(linecad.ties.parting, "WIDEST", np.inf)
+        monkeypatch.setattr(linecad.ties.depth_parts.Part, "is_moved", lambda part, _: abs(part.move) > np.log(1.2))
+        page = open_page()
+        page.solve()
+        state = page.state()
+        ends = np.concatenate(list(depths(state, 1).values()))
+        is_right = np.arange(map_of_made.width) > np.median(in_photo(state, ends)[:, 0])
+        values = np.where(is_right, 1.3 * map_of_made.values, map_of_made.values)
+        page = open_page(depth=replace(map_of_made, name="right.depth.npz", values=values))
+        page.solve()
+        return page
+
+    def test_each_is_a_body_of_the_list_that_the_map_places(self, parted, open_page):
+        page = open_page()
+        page.solve()
+        plain, state = page.state(), parted.state()
+        assert {body["id"]: body["by_depth_map"] for body in state["bodies"]} == {0: False, 1: False, 2: True}
+        for body in (1, 2):
+            shown = [line for line in lines_of(state, body) if line["ends"] is not None]
+            assert shown
+            assert {line["by_depth_map"] for line in shown} == {body == 2}
+        half, rest = (next(iter(depths(state, body))) for body in (2, 1))
+        as_one, as_two = (depth_at_middle(each, half) / depth_at_middle(each, rest) for each in (plain, state))
+        assert abs(np.log(as_two / as_one)) == pytest.approx(np.log(1.3), abs=0.02)
+
+    def test_a_word_moves_it_at_once_and_the_scene_behind_agrees(self, parted):
+        before = parted.state()
+        own, other = (next(iter(depths(before, body))) for body in (2, 0))
+        ratio = float(np.log(depth_at_middle(before, own) / depth_at_middle(before, other)) + 0.5)
+        there = parted.edit(op="place", line=own, to=other, log_ratio=ratio)
+        parted.solving.answer()
+        built = parted.state()
+        assert built["solve"]["fresh"]
+        for state in (there, built):
+            assert [fact["holds"] for fact in state["facts"]] == [True]
+            assert {line["id"] for line in lines_of(state, 2)} == {line["id"] for line in lines_of(before, 2)}
+            now = np.log(depth_at_middle(state, own) / depth_at_middle(state, other))
+            assert now == pytest.approx(ratio, abs=0.05)
+        assert not any(line["by_depth_map"] for line in lines_of(built, 2))
+
+    def test_a_crossing_called_real_makes_it_stand_with_its_body_again(self, parted):
+        before = parted.state()
+        body = {line["id"]: line["body"] for line in before["lines"]}
+        crossing = next(each for each in before["crossings"] if {body[line] for line in each["lines"]} == {1, 2})
+        first, second = crossing["lines"]
+        was = depth_at_middle(before, first) / depth_at_middle(before, second)
+        parted.edit(op="label", crossing=crossing["id"], value="real")
+        parted.solve()
+        state = parted.state()
+        now = depth_at_middle(state, first) / depth_at_middle(state, second)
+        assert abs(np.log(now / was)) == pytest.approx(np.log(1.3), abs=0.05)
 
 
 class TestParts:

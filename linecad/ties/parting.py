@@ -1,0 +1,101 @@
+"""Evidence in which parts of bodies that a depth map has elsewhere are bodies of their own, which it places.
+
+Who is right about a part, its body or the map, is decided once, at the places that the photo gives without a person's
+words (`linecad.ties.depth_parts`). From then on a part is a body as any other, on the page too, and what a person says
+moves it: a crossing called real ties it to its body again.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from linecad.arrays import Int
+from linecad.corrections.corrected import ToldFact
+from linecad.line_graph import LineGraph
+from linecad.progress import StageReport, silent
+from linecad.ties.bodies import RigidBodies
+from linecad.ties.depth_parts import WIDEST, find_parts
+from linecad.ties.depth_ties import DepthWitness
+from linecad.ties.evidence import Evidence, find_evidence
+from linecad.ties.pieces import Pieces
+from linecad.ties.placing import place_bodies
+from linecad.ties.setting import Sight
+from linecad.ties.sides import moved_up
+from solver.options import SolveOptions
+
+
+def find_parted_evidence(
+    graph: LineGraph,
+    sight: Sight,
+    options: SolveOptions,
+    facts: Sequence[ToldFact] = (),
+    on_stage: StageReport = silent,
+) -> Evidence:
+    """As `find_evidence`, with parts of bodies that a depth map places. Raises what that raises, and SolverError."""
+    return part_by_map(find_evidence(graph, sight, options, facts, on_stage), options)
+
+
+def part_by_map(evidence: Evidence, options: SolveOptions) -> Evidence:
+    """The evidence with parts that a map has elsewhere, and likelier rightly, as bodies that it alone ties."""
+    heard, setting = evidence.heard, evidence.setting
+    if not isinstance(heard, DepthWitness) or heard.lines.width >= WIDEST:
+        return evidence
+    places = place_bodies(evidence, options)
+    assert places.mapped is not None
+    of_map, words = places.mapped.of_map, heard.lines
+    for part in find_parts(setting, words, places.mapped.log_scale, of_map, places.probability):
+        if part.is_moved(words.width):
+            evidence = _parted(evidence, np.union1d(part.lines, part.also), part.asked)
+    return _with_reference(evidence, int(setting.bodies.size[evidence.reference]))
+
+
+def _with_reference(evidence: Evidence, size: int) -> Evidence:
+    """The evidence with the largest body that not the map alone ties as reference, where most of its lines are gone.
+
+    It had so many lines.
+    """
+    heard, left = evidence.heard, evidence.setting.bodies.size
+    assert isinstance(heard, DepthWitness)
+    free = np.where(np.isin(np.arange(len(left)), list(heard.parts)), 0, left)
+    return evidence if 2 * free[evidence.reference] >= size else replace(evidence, reference=int(free.argmax()))
+
+
+def _parted(evidence: Evidence, lines: Int, asked: float) -> Evidence:
+    """The evidence with lines of one body as a body that only the map ties, which asks it to grow by that log.
+
+    It comes last, and all that ties the body ties the rest of it, unless it is the whole body.
+    """
+    setting, heard = evidence.setting, evidence.heard
+    assert isinstance(heard, DepthWitness)
+    own, new = int(setting.bodies.body[lines[0]]), setting.bodies.count
+    if len(lines) == setting.bodies.size[own]:
+        return replace(
+            evidence,
+            candidates=tuple(each for each in evidence.candidates if own not in each.bodies),
+            pieces=_without(evidence.pieces, lines, own),
+            heard=heard.placing(own, asked),
+        )
+    body = setting.bodies.body.copy()
+    body[lines] = new
+    return replace(
+        evidence,
+        setting=replace(setting, bodies=RigidBodies(body, new + 1)),
+        candidates=tuple(moved_up(each, new) for each in evidence.candidates),
+        pieces=_without(evidence.pieces, lines, new),
+        heard=heard.with_part_of(own).placing(new, asked),
+    )
+
+
+def _without(pieces: Pieces, lines: Int, body: int) -> Pieces:
+    """The pieces where lines are of a body of their own, and nothing ties those that are all of such lines."""
+    inside = np.bincount(pieces.piece[lines], minlength=pieces.count)
+    whole = inside == pieces.size
+    of_piece, piece = np.where(whole, body, pieces.body), pieces.piece.copy()
+    candidates = [each for each in pieces.candidates if not np.append(whole, False)[list(each.bodies)].any()]
+    others = lines[~whole[piece[lines]]]
+    if len(others):
+        piece[others] = pieces.count
+        of_piece = np.append(of_piece, body)
+        candidates = [moved_up(each, pieces.count) for each in candidates]
+    return Pieces(piece, of_piece, candidates)

@@ -1,0 +1,192 @@
+"""Parts that a map has elsewhere as bodies: of one body that was made of two walls, one of which stands wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import linecad.ties.parting
+from linecad.corrections.corrected import ToldFact
+from linecad.corrections.edits import Anchor, PlaceAt
+from linecad.ties.candidates import find_candidates
+from linecad.ties.depth_parts import WIDEST, Part, right_by_map
+from linecad.ties.depth_ties import hear
+from linecad.ties.evidence import Evidence
+from linecad.ties.looks import Looks
+from linecad.ties.parting import part_by_map
+from linecad.ties.pieces import find_pieces
+from linecad.ties.placing import place_bodies
+from linecad.ties.seams import find_seams
+from solver.options import SolveOptions
+
+FALSE = 0.3  # log scale by which the second wall stands too far
+WIDTH = 0.012  # log depth, of a map that is believed
+OPTIONS = SolveOptions()
+
+
+@pytest.fixture(scope="module")
+def exact(avenue_walls, build_depth_map):
+    seen, surfaces = avenue_walls
+    return build_depth_map(seen.sight, surfaces, scale=5.0)
+
+
+def heard_as_exact(setting, candidates, depth):
+    """Three walls tell nothing of how exact a map is."""
+    heard = hear(setting, candidates, depth)
+    return replace(heard, lines=replace(heard.lines, width=WIDTH))
+
+
+@pytest.fixture(scope="module")
+def evidence(avenue_walls, build_setting, exact):
+    """The first two walls as one body, the second of which stands wrong, with an exact map; the third is another."""
+    seen, _ = avenue_walls
+    moved = build_setting(seen, (0.0, FALSE))
+    bent = replace(moved, bodies=build_setting(seen, body=np.array([0, 0, 1])[seen.part]).bodies)
+    looks = Looks(bent)
+    candidates, seams = find_candidates(bent, looks), find_seams(bent, looks)
+    heard = heard_as_exact(bent, candidates, exact)
+    none = np.zeros(len(seen.graph.edges), bool)
+    pieces = find_pieces(bent, seams, looks)
+    return Evidence(bent, tuple(candidates), tuple(seams), pieces, heard, none, none, 0)
+
+
+@pytest.fixture(scope="module")
+def parted(evidence):
+    return part_by_map(evidence, OPTIONS)
+
+
+@pytest.fixture
+def part(monkeypatch):
+    """Parts off what it is told to, whatever the map says."""
+
+    def part_(evidence, *parts, asked=0.2):
+        found = [Part(lines, asked, -0.9, 0.0, np.zeros(0, int)) for lines in parts]
+        monkeypatch.setattr(linecad.ties.parting, "find_parts", lambda *_: found)
+        return part_by_map(evidence, OPTIONS)
+
+    return part_
+
+
+def apart(seen, places):
+    """By how much the log depths of the second wall are off those of the first."""
+    off = places.log_depth - seen.log_depth
+    return np.median(off[seen.part == 1]) - np.median(off[seen.part == 0])
+
+
+def holds(evidence):
+    """Every line of a body is of a piece of that body; candidates are between two of each, or one and the ground."""
+    body, pieces = evidence.setting.bodies.body, evidence.pieces
+    assert (pieces.body[pieces.piece[body >= 0]] == body[body >= 0]).all()
+    for found, count in ((evidence.candidates, evidence.setting.bodies.count), (pieces.candidates, pieces.count)):
+        for each in found:
+            assert 0 <= each.bodies[0] < each.bodies[1] <= count
+    assert len(evidence.heard.words.log_scale) == evidence.setting.bodies.count
+
+
+def test_a_wall_that_stands_wrong_in_its_body_becomes_one_that_the_map_places(avenue_walls, evidence, parted):
+    seen, _ = avenue_walls
+    assert parted.setting.bodies.count == evidence.setting.bodies.count + 1
+    assert parted.heard.parts == {2}
+    assert np.flatnonzero(parted.setting.bodies.body == 2).tolist() == np.flatnonzero(seen.part == 1).tolist()
+    holds(parted)
+    places = place_bodies(parted, OPTIONS)
+    assert apart(seen, place_bodies(evidence, OPTIONS)) == pytest.approx(FALSE)
+    assert apart(seen, places) == pytest.approx(0.0, abs=5e-3)
+    assert places.by_map[seen.part == 1].all()
+
+
+def test_its_lines_are_as_sure_as_such_a_map_is_right(avenue_walls, parted):
+    seen, _ = avenue_walls
+    places = place_bodies(parted, OPTIONS)
+    expected = right_by_map(parted.heard.lines.width)
+    np.testing.assert_allclose(places.probability[seen.part == 1], expected)
+    assert not np.isclose(places.probability[seen.part == 0], expected).any()
+
+
+def test_it_stands_where_most_lines_have_the_map(parted):
+    """Not where the program has it, to which single ties of small bodies count as much as those of large ones."""
+    heard, count = parted.heard, parted.setting.bodies.count
+    asked = heard.words.log_scale
+    places = place_bodies(replace(parted, heard=heard.placing(2, asked[2] + 0.1)), OPTIONS)
+    assert places.log_scale[2] == pytest.approx(asked[2] + 0.1 - places.mapped.of_map)
+    assert np.flatnonzero(places.mapped.parts).tolist() == [2]
+    assert len(places.mapped.parts) == count
+
+
+def anchor(evidence, line):
+    (a, b), (c, d) = evidence.setting.graph.segments.ends[line].tolist()
+    return Anchor(((a, b), (c, d)), int(evidence.setting.graph.axis[line]))
+
+
+def test_what_a_person_says_of_it_moves_it(evidence, parted):
+    first, second = (int(parted.setting.lines[body][0]) for body in (2, 0))
+    log_depth = parted.setting.log_depth
+    ratio = float(log_depth[first] - log_depth[second]) + 0.7
+    fact = ToldFact(PlaceAt(anchor(evidence, first), anchor(evidence, second), ratio), (first, second))
+    places = place_bodies(parted, OPTIONS, [fact])
+    assert places.log_depth[first] - places.log_depth[second] == pytest.approx(ratio, abs=0.03)
+    assert not places.mapped.parts.any()
+    by_map = right_by_map(parted.heard.lines.width)
+    assert not np.isclose(places.probability[parted.setting.lines[2]], by_map).any()
+
+
+def test_a_crossing_called_real_ties_it_to_its_body_again(evidence, part):
+    graph, own = evidence.setting.graph, evidence.setting.lines[0]
+    inside = graph.informative & np.isin(graph.edges, own).all(axis=1)
+    edge = int(np.flatnonzero(inside & (np.isin(graph.edges, own[:5]).sum(axis=1) == 1))[0])
+    i, j = graph.edges[edge]
+
+    def missed(evidence):
+        log_depth = place_bodies(evidence, OPTIONS).log_depth
+        return abs(log_depth[i] - log_depth[j] - graph.log_ratio[edge])
+
+    assert missed(part(evidence, own[:5], asked=3.0)) > 1
+    told = part(replace(evidence, real=np.arange(len(graph.edges)) == edge), own[:5], asked=3.0)
+    assert told.heard.parts == {2}
+    assert missed(told) <= 1.01 * graph.tolerance[edge]
+
+
+def test_without_a_map_or_with_a_wide_one_nothing_is_parted(evidence):
+    heard = evidence.heard
+    for told in ("", replace(heard, lines=replace(heard.lines, width=WIDEST))):
+        given = replace(evidence, heard=told)
+        assert part_by_map(given, OPTIONS) is given
+
+
+def test_a_map_that_agrees_parts_nothing(avenue_walls, evidence, exact):
+    seen, _ = avenue_walls
+    true = replace(evidence.setting, log_depth=seen.log_depth)
+    given = replace(evidence, setting=true, heard=heard_as_exact(true, list(evidence.candidates), exact))
+    assert part_by_map(given, OPTIONS) is given
+
+
+def test_a_whole_body_keeps_its_number_and_nothing_but_the_map_ties_it(evidence, part):
+    whole = evidence.setting.lines[1]
+    found = part(evidence, whole)
+    assert found.setting.bodies.count == evidence.setting.bodies.count
+    assert found.heard.parts == {1}
+    assert not [each for each in found.candidates if 1 in each.bodies]
+    own = set(found.pieces.of(whole).tolist())
+    assert not [each for each in found.pieces.candidates if own & set(each.bodies)]
+    holds(found)
+    places = place_bodies(found, OPTIONS)
+    assert places.log_scale[1] == pytest.approx(0.2 - places.mapped.of_map)
+    assert np.isfinite(places.probability).all()
+
+
+def test_parts_of_one_body_are_bodies_each_and_the_rest_keeps_what_ties_it(evidence, part):
+    own = evidence.setting.lines[0]
+    found = part(evidence, own[:5], own[7:12])
+    assert found.heard.parts == {2, 3}
+    assert [lines.tolist() for lines in found.setting.lines[2:]] == [own[:5].tolist(), own[7:12].tolist()]
+    assert len(found.candidates) == len(evidence.candidates)
+    holds(found)
+    assert np.isfinite(place_bodies(found, OPTIONS).probability).all()
+
+
+def test_a_body_that_lost_most_of_its_lines_is_no_reference(evidence, part):
+    own, others = evidence.setting.lines
+    assert len(others) < len(own)
+    assert part(evidence, own[: len(own) // 2 - 1]).reference == 0
+    assert part(evidence, own[2:]).reference == 1
+    assert part(evidence, own).reference == 1
