@@ -60,7 +60,7 @@ class Part:
     asked: float  # log scale by which the map asks them to grow, at their body's own scale
     move: float  # log scale, from where they stand to where the map has them
     known: float  # how likely they are right as they stand
-    also: Int  # lines that go with them: those that the map is mute about, with the largest part of their body
+    also: Int  # lines that go with them: with the largest part of a body those that the map puts nowhere, or in no part
 
     def features(self, width: float) -> dict[str, float]:
         """What tells who is right, them or a map of that width."""

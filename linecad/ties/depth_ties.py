@@ -174,10 +174,10 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     alone = np.isin(np.arange(len(size)), list(witness.parts)) & (np.bincount(firm)[firm[: len(size)]] == 1)
     main = told & (part == part[reference]) & ~alone
     of_map = weighted_median((asked - log_scale)[main], size[main].astype(np.float64))
-    for number in np.unique(part[told]).tolist():
+    for number in np.unique(part[told & ~alone]).tolist():
         own = part == number
         if number != part[reference]:
-            own_told = own & told
+            own_told = own & told & ~alone
             off = weighted_median((asked - log_scale)[own_told], size[own_told].astype(np.float64))
             log_scale[own] += off - of_map
     # The program ties these to the map where most ties have it, which need not be where most lines do.

@@ -1,8 +1,9 @@
 """Evidence in which parts of bodies that a depth map has elsewhere are bodies of their own, which it places.
 
-Who is right about a part, its body or the map, is decided once, at the places that the photo gives without a person's
-words (`linecad.ties.depth_parts`). From then on a part is a body as any other, on the page too, and what a person says
-moves it: a crossing called real ties it to its body again.
+Who is right about a part, its body or the map, is decided at the places that crossings, a person's labels of them among
+these, and the map give (`linecad.ties.depth_parts`); where a person puts bodies does not count there. From then on a
+part is a body as any other, on the page too, and what a person says moves it: a crossing called real ties it to its
+body again.
 """
 
 from collections.abc import Sequence
@@ -24,6 +25,8 @@ from linecad.ties.setting import Sight
 from linecad.ties.sides import moved_up
 from solver.options import SolveOptions
 
+NODES = 100  # of the search that tells where bodies stand before any is parted
+
 
 def find_parted_evidence(
     graph: LineGraph,
@@ -33,32 +36,41 @@ def find_parted_evidence(
     on_stage: StageReport = silent,
 ) -> Evidence:
     """As `find_evidence`, with parts of bodies that a depth map places. Raises what that raises, and SolverError."""
-    return part_by_map(find_evidence(graph, sight, options, facts, on_stage), options)
+    return part_by_map(find_evidence(graph, sight, options, facts, on_stage), options, on_stage)
 
 
-def part_by_map(evidence: Evidence, options: SolveOptions) -> Evidence:
+def part_by_map(evidence: Evidence, options: SolveOptions, on_stage: StageReport = silent) -> Evidence:
     """The evidence with parts that a map has elsewhere, and likelier rightly, as bodies that it alone ties."""
     heard, setting = evidence.heard, evidence.setting
     if not isinstance(heard, DepthWitness) or heard.lines.width >= WIDEST:
         return evidence
-    places = place_bodies(evidence, options)
+    # Bounded by nodes and by no clock: which parts there are must not depend on how fast a machine is.
+    soon = replace(options, node_limit=min(options.node_limit or NODES, NODES), time_limit_s=None)
+    places = place_bodies(evidence, soon, on_stage=on_stage)
     assert places.mapped is not None
     of_map, words = places.mapped.of_map, heard.lines
     for part in find_parts(setting, words, places.mapped.log_scale, of_map, places.probability):
         if part.is_moved(words.width):
-            evidence = _parted(evidence, np.union1d(part.lines, part.also), part.asked)
+            parted = _parted(evidence, np.union1d(part.lines, part.also), part.asked)
+            evidence = parted if _anchors(parted).any() else evidence
     return _with_reference(evidence, int(setting.bodies.size[evidence.reference]))
 
 
-def _with_reference(evidence: Evidence, size: int) -> Evidence:
-    """The evidence with the largest body that not the map alone ties as reference, where most of its lines are gone.
-
-    It had so many lines.
-    """
-    heard, left = evidence.heard, evidence.setting.bodies.size
+def _anchors(evidence: Evidence) -> Int:
+    """(B,) lines of the bodies that lay the map on the scene: it tells of them, and not it alone places them."""
+    heard, size = evidence.heard, evidence.setting.bodies.size
     assert isinstance(heard, DepthWitness)
-    free = np.where(np.isin(np.arange(len(left)), list(heard.parts)), 0, left)
-    return evidence if 2 * free[evidence.reference] >= size else replace(evidence, reference=int(free.argmax()))
+    is_part = np.isin(np.arange(len(size)), list(heard.parts))
+    return np.where(is_part | ~np.isfinite(heard.words.log_scale), 0, size)
+
+
+def _with_reference(evidence: Evidence, size: int) -> Evidence:
+    """The evidence with the largest body that lays the map as reference, where most lines of the one before are gone.
+
+    That had so many lines.
+    """
+    left = _anchors(evidence)
+    return evidence if 2 * left[evidence.reference] >= size else replace(evidence, reference=int(left.argmax()))
 
 
 def _parted(evidence: Evidence, lines: Int, asked: float) -> Evidence:

@@ -13,7 +13,7 @@ from linecad.ties.depth_parts import WIDEST, Part, right_by_map
 from linecad.ties.depth_ties import hear
 from linecad.ties.evidence import Evidence
 from linecad.ties.looks import Looks
-from linecad.ties.parting import part_by_map
+from linecad.ties.parting import NODES, part_by_map
 from linecad.ties.pieces import find_pieces
 from linecad.ties.placing import place_bodies
 from linecad.ties.seams import find_seams
@@ -190,3 +190,39 @@ def test_a_body_that_lost_most_of_its_lines_is_no_reference(evidence, part):
     assert part(evidence, own[: len(own) // 2 - 1]).reference == 0
     assert part(evidence, own[2:]).reference == 1
     assert part(evidence, own).reference == 1
+
+
+def mute_about(evidence, body):
+    """The evidence with a map that says nothing of a body."""
+    words = evidence.heard.words
+    own = np.arange(len(words.log_scale)) == body
+    told = replace(words, log_scale=np.where(own, np.nan, words.log_scale))
+    return replace(evidence, heard=replace(evidence.heard, words=told))
+
+
+def test_one_body_that_the_map_tells_of_always_stays_to_lay_the_map_on(evidence, part):
+    """Without one nothing would tell the unit of the map."""
+    own, others = evidence.setting.lines
+    every = part(evidence, own[:5], own[5:], others)
+    assert every.heard.parts == {0, 2}
+    assert every.reference == 1
+    mute = part(mute_about(evidence, 1), own[:5], own[5:])
+    assert mute.heard.parts == {2}
+    assert mute.reference == 0
+    for found in (every, mute):
+        holds(found)
+        assert np.isfinite(place_bodies(found, OPTIONS).log_depth).all()
+
+
+def test_what_is_decided_depends_on_no_clock(evidence, parted, monkeypatch):
+    asked = []
+
+    def place(evidence, options, **fields):
+        asked.append(options)
+        return place_bodies(evidence, options, **fields)
+
+    monkeypatch.setattr(linecad.ties.parting, "place_bodies", place)
+    found = part_by_map(evidence, replace(OPTIONS, time_limit_s=1e-6))
+    assert found.setting.bodies.body.tolist() == parted.setting.bodies.body.tolist()
+    assert asked[0].time_limit_s is None
+    assert asked[0].node_limit == NODES
