@@ -24,8 +24,8 @@ from linecad.model.regions.roofs import Sketch
 from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Scene
-from linecad.ties.evidence import Evidence
-from linecad.ties.parting import find_parted_evidence
+from linecad.ties.evidence import Evidence, find_evidence
+from linecad.ties.parting import part_by_map
 from linecad.ties.placing import BodyPlaces, Placed, place_on
 from linecad.ties.setting import Sight
 from solver.options import OnProgress
@@ -128,9 +128,7 @@ def prepare(
     evidence = None
     if options.uses_bodies:
         sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
-        facts = () if corrected is None else facts_of(graph, corrected)[0]
-        with told_in_the_photo(graph, corrected):
-            evidence = find_parted_evidence(graph, sight, with_annotations(options.solve, annotations), facts, on_stage)
+        evidence = _look(graph, sight, options, annotations, corrected, on_stage)
     return Prepared(found, whole, graph, annotations, details, corrected, evidence)
 
 
@@ -141,10 +139,23 @@ def prepared_for(
     graph, known = prepared.graph, prepared.evidence
     if known is None or prepared.is_for(corrected):
         return replace(prepared, corrected=corrected)
-    limits = with_annotations(options.solve, prepared.annotations)
-    with told_in_the_photo(graph, corrected):
-        evidence = find_parted_evidence(graph, known.setting.sight, limits, facts_of(graph, corrected)[0], on_stage)
+    evidence = _look(graph, known.setting.sight, options, prepared.annotations, corrected, on_stage)
     return replace(prepared, corrected=corrected, evidence=evidence)
+
+
+def _look(
+    graph: LineGraph,
+    sight: Sight,
+    options: Options,
+    annotations: Annotations,
+    corrected: CorrectedLines | None,
+    on_stage: StageReport,
+) -> Evidence:
+    """What the photo tells of the bodies of a graph's lines, with the parts that its depth map places."""
+    limits = with_annotations(options.solve, annotations)
+    facts = () if corrected is None else facts_of(graph, corrected)[0]
+    with told_in_the_photo(graph, corrected):
+        return part_by_map(find_evidence(graph, sight, limits, facts, on_stage), limits, on_stage)
 
 
 def reconstruct_prepared(

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, get_args
 
 from linecad.errors import SolverError
@@ -71,6 +71,10 @@ class SolveOptions:
     def boundary_reward(self) -> float:
         """The paper's mu_2 in use."""
         return DEFAULT_MU_BOUNDARY[self.formulation] if self.mu_boundary is None else self.mu_boundary
+
+    def within_nodes(self, most: int) -> "SolveOptions":
+        """The same for a search that ends after so many nodes at most."""
+        return replace(self, node_limit=min(self.node_limit or most, most))
 
     @property
     def seconds(self) -> float:

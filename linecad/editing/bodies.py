@@ -127,4 +127,4 @@ class ShownBodies:
 
 def at_once(options: SolveOptions) -> SolveOptions:
     """The options of a search that ends soon: castle photos are proven in a few nodes, others take thousands."""
-    return replace(options, node_limit=min(options.node_limit or NODES, NODES))
+    return options.within_nodes(NODES)

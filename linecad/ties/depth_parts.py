@@ -45,14 +45,6 @@ MOVED_LOG_ODDS: dict[str, float] = {
 
 
 @dataclass(frozen=True, eq=False)
-class LineWords:
-    """What a map says of single lines."""
-
-    log_scale: Float  # (N,) by which log it asks each to grow, at its body's own scale; NaN where it is mute
-    width: float  # log depth: of the Cauchy error of a wall, the larger of what bodies and the map's corners tell
-
-
-@dataclass(frozen=True, eq=False)
 class Part:
     """Lines of one body that a map has elsewhere, all by the same."""
 
@@ -76,8 +68,8 @@ class Part:
         return width < WIDEST and self.known < MOST_KNOWN and log_odds > 0
 
 
-def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading, width: float) -> LineWords:
-    """What a map with errors of that width says of each line of a body.
+def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading) -> Float:
+    """By which log a map asks each line of a body to grow (N,), at its body's own scale; NaN where it is mute.
 
     A line is where most samples of the map beside it agree, on the plane that most of them lie on: beside the edge of a
     house one side shows what is behind.
@@ -110,7 +102,7 @@ def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading, width: 
         with np.errstate(divide="ignore", invalid="ignore"):
             beyond = np.log(towards_on / towards)  # of the depth on a plane over that on the line; NaN behind it
         log_scale[line] = _most_agree(off[line].reshape(-1, 1) - beyond.reshape(-1, 2))
-    return LineWords(log_scale, width)
+    return log_scale
 
 
 def _most_agree(excess: Float) -> float:
@@ -126,17 +118,17 @@ def _most_agree(excess: Float) -> float:
     return found
 
 
-def find_parts(setting: Setting, words: LineWords, log_scale: Float, of_map: float, probability: Float) -> list[Part]:
+def find_parts(setting: Setting, asked: Float, log_scale: Float, of_map: float, probability: Float) -> list[Part]:
     """The parts of bodies that the map has elsewhere.
 
-    Bodies stand at log scales (B,), the map's depth is larger by the log `of_map`, and each line is right with a
-    probability (N,).
+    It has `asked` lines (N,) to grow by a log. Bodies stand at log scales (B,), the map's depth is larger by the log
+    `of_map`, and each line is right with a probability (N,).
     """
     length = lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0])
     parts: list[Part] = []
     for body, lines in enumerate(setting.lines):
-        told = lines[np.isfinite(words.log_scale[lines])]
-        off = words.log_scale[told] - log_scale[body] - of_map
+        told = lines[np.isfinite(asked[lines])]
+        off = asked[told] - log_scale[body] - of_map
         groups = [own for _, own in densest_groups(off, length[told], SAME, MOST_PARTS)]
         also = np.setdiff1d(lines, told[np.concatenate(groups)]) if groups else lines
         for own in groups:

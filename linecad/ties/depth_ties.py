@@ -17,7 +17,6 @@ from linecad.ties.candidates import Candidate
 from linecad.ties.depth_corners import jumps_at_corners, width_by_corners
 from linecad.ties.depth_ground import ground_of_map
 from linecad.ties.depth_kind import DepthReading, read_depth
-from linecad.ties.depth_parts import LineWords, hear_lines
 from linecad.ties.depth_samples import sample_walls, weighted_median
 from linecad.ties.depth_words import WITHIN, BodyWords, words_of, worth_within
 from linecad.ties.setting import Setting
@@ -46,7 +45,7 @@ class DepthWitness:
     worth: float  # log-odds of its word for a large body of one wall, and for the ground
     weight: float  # the same against ties of crossings that contradict each other more or less
     words: BodyWords  # of each body
-    lines: LineWords
+    width_of_parts: float  # log depth, where parts of bodies are looked at: the larger of what bodies and corners tell
     ground: float | None  # log height of the camera above it in the map's unit; None where the map shows none
     parts: frozenset[int] = frozenset()  # bodies that nothing but the map ties, by a decision about parts of bodies
 
@@ -93,8 +92,7 @@ def hear(setting: Setting, candidates: list[Candidate], depth: DepthMap | None) 
     ground = ground_of_map(depth, reading.kind, reading.shift, setting.sight)
     jumps = jumps_at_corners(depth, reading.kind, reading.shift, setting.graph.segments, setting.sight)
     # A network may be off alike on both sides of a corner, and bodies of one wall each tell hardly anything.
-    lines = hear_lines(setting, depth, reading, max(by_bodies, width_by_corners(jumps)))
-    return DepthWitness(reading, width, worth, worth * trust, words, lines, ground)
+    return DepthWitness(reading, width, worth, worth * trust, words, max(by_bodies, width_by_corners(jumps)), ground)
 
 
 def _contradicted(graph: LineGraph, log_depth: Float) -> float:

@@ -6,51 +6,40 @@ part is a body as any other, on the page too, and what a person says moves it: a
 body again.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from linecad.arrays import Int
-from linecad.corrections.corrected import ToldFact
-from linecad.line_graph import LineGraph
 from linecad.progress import StageReport, silent
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.depth_parts import WIDEST, find_parts
+from linecad.ties.depth_parts import WIDEST, find_parts, hear_lines
 from linecad.ties.depth_ties import DepthWitness
-from linecad.ties.evidence import Evidence, find_evidence
+from linecad.ties.evidence import Evidence
 from linecad.ties.pieces import Pieces
 from linecad.ties.placing import place_bodies
-from linecad.ties.setting import Sight
 from linecad.ties.sides import moved_up
 from solver.options import SolveOptions
 
 NODES = 100  # of the search that tells where bodies stand before any is parted
 
 
-def find_parted_evidence(
-    graph: LineGraph,
-    sight: Sight,
-    options: SolveOptions,
-    facts: Sequence[ToldFact] = (),
-    on_stage: StageReport = silent,
-) -> Evidence:
-    """As `find_evidence`, with parts of bodies that a depth map places. Raises what that raises, and SolverError."""
-    return part_by_map(find_evidence(graph, sight, options, facts, on_stage), options, on_stage)
-
-
 def part_by_map(evidence: Evidence, options: SolveOptions, on_stage: StageReport = silent) -> Evidence:
-    """The evidence with parts that a map has elsewhere, and likelier rightly, as bodies that it alone ties."""
+    """The evidence with parts that a map has elsewhere, and likelier rightly, as bodies that it alone ties.
+
+    Raises SolverError, or ContradictionError where crossings called real cannot all hold.
+    """
     heard, setting = evidence.heard, evidence.setting
-    if not isinstance(heard, DepthWitness) or heard.lines.width >= WIDEST:
+    if not isinstance(heard, DepthWitness) or heard.width_of_parts >= WIDEST:
         return evidence
     # Bounded by nodes and by no clock: which parts there are must not depend on how fast a machine is.
-    soon = replace(options, node_limit=min(options.node_limit or NODES, NODES), time_limit_s=None)
-    places = place_bodies(evidence, soon, on_stage=on_stage)
+    soon = replace(options.within_nodes(NODES), time_limit_s=None)
+    places, depth = place_bodies(evidence, soon, on_stage=on_stage), setting.sight.depth
     assert places.mapped is not None
-    of_map, words = places.mapped.of_map, heard.lines
-    for part in find_parts(setting, words, places.mapped.log_scale, of_map, places.probability):
-        if part.is_moved(words.width):
+    assert depth is not None
+    asked = hear_lines(setting, depth, heard.reading)
+    for part in find_parts(setting, asked, places.mapped.log_scale, places.mapped.of_map, places.probability):
+        if part.is_moved(heard.width_of_parts):
             parted = _parted(evidence, np.union1d(part.lines, part.also), part.asked)
             evidence = parted if _anchors(parted).any() else evidence
     return _with_reference(evidence, int(setting.bodies.size[evidence.reference]))

@@ -94,7 +94,7 @@ class BodyPlaces:
         if not isinstance(evidence.heard, DepthWitness) or self.mapped is None:
             return found
         of_part = np.isin(setting.bodies.body, np.flatnonzero(self.mapped.parts))
-        return np.where(of_part, right_by_map(evidence.heard.lines.width), found)
+        return np.where(of_part, right_by_map(evidence.heard.width_of_parts), found)
 
     @cached_property
     def seams(self) -> list[Seam]:

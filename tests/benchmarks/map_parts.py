@@ -22,7 +22,7 @@ from ties_truth import Judged, judge
 import linecad.ties.depth_parts
 from linecad.errors import DepthMapError
 from linecad.evaluation.datasets import find_dataset
-from linecad.ties.depth_parts import LOG_ODDS, MOST_KNOWN, WIDEST, find_parts
+from linecad.ties.depth_parts import LOG_ODDS, MOST_KNOWN, WIDEST, find_parts, hear_lines
 from linecad.ties.depth_ties import DepthWitness
 
 WIDTHS = (0.012, 0.035, 0.08)
@@ -56,8 +56,10 @@ def rows_of(photo: Judged, width: float) -> Rows | None:
     heard, mapped, setting = placed.evidence.heard, placed.mapped, placed.evidence.setting
     if not isinstance(heard, DepthWitness) or mapped is None:
         return None
-    found = heard.lines.width
-    parts = find_parts(setting, heard.lines, mapped.log_scale, mapped.of_map, placed.probability)
+    found, depth = heard.width_of_parts, setting.sight.depth
+    assert depth is not None
+    asked = hear_lines(setting, depth, heard.reading)
+    parts = find_parts(setting, asked, mapped.log_scale, mapped.of_map, placed.probability)
     seen = photo.seen
     line = photo.on[seen]
     error = placed.log_depth[line] + photo.log_factor[seen] - photo.log_true[seen]

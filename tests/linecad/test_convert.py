@@ -35,7 +35,7 @@ def sights(monkeypatch):
         seen.append(sight)
         raise ReconstructionError("the places need not be found")
 
-    monkeypatch.setattr(linecad.pipeline, "find_parted_evidence", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     return seen
 
 

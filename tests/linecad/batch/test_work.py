@@ -27,7 +27,7 @@ def test_the_map_reaches_the_program(small_photo, job_of, mapped, monkeypatch):
     def look(_graph, sight, *_):
         raise ReconstructionError(f"seen {sight.depth.values.shape}")
 
-    monkeypatch.setattr(linecad.pipeline, "find_parted_evidence", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     assert do(job_of(small_photo, conversion=mapped)).error == "seen (213, 320)"
 
 

@@ -57,7 +57,7 @@ def reconstructed_once():
     def remember(photo, options, on_progress=None, on_stage=lambda _: None, *more):
         if any(each is not None for each in more):
             return reconstruct(photo, options, on_progress, on_stage, *more)
-        key = (zlib.crc32(photo.pixels), repr(photo), options, linecad.pipeline.find_parted_evidence)
+        key = (zlib.crc32(photo.pixels), repr(photo), options, linecad.pipeline.find_evidence)
         if key not in known:
             known[key] = reconstruct(photo, options, on_progress, on_stage)
         return known[key]

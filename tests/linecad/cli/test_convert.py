@@ -313,7 +313,7 @@ def test_a_map_reaches_the_program(fails, folder, monkeypatch):
     def look(_graph, sight, *_):
         raise ReconstructionError(f"seen {sight.depth.values.shape} {sight.depth.kind} {sight.depth.values.max()}")
 
-    monkeypatch.setattr(linecad.pipeline, "find_parted_evidence", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     arguments = ["convert", ROOM, "--depth", "map.npz", "--option", "depth-kind=distance", "-o", "a.json"]
     assert f"seen (1067, 1600) distance {DEPTHS.max()}" in fails(*arguments)
 

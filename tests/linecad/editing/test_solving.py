@@ -64,7 +64,7 @@ def test_a_solve_looks_at_the_depth_map(made_photo, task, monkeypatch):
     def look(_graph, sight, *_):
         raise ReconstructionError(f"seen {sight.depth.name}")
 
-    monkeypatch.setattr(linecad.pipeline, "find_parted_evidence", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     ones = np.ones((made_photo.height, made_photo.width))
     depth = DepthMap("map.npz", ones, ones > 0, "z")
     assert TaskSolver(made_photo, Options(), depth).answer(task, lambda _: None).error == "seen map.npz"

@@ -188,7 +188,7 @@ def test_maps_beside_the_photos_are_used_where_they_are_asked_for(mapped_folder,
         seen.append(sight.depth)
         raise ReconstructionError("the places need not be found")
 
-    monkeypatch.setattr(linecad.pipeline, "find_parted_evidence", look)
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
     dataset = find_dataset(mapped_folder)
     settings = Settings(ablation=False, reconstruction=Options(depth_kind="distance"))
     for cases in (dataset.cases, dataset.with_depth_maps().cases):

@@ -22,7 +22,6 @@ from linecad.ties.depth_samples import WallVotes
 FALSE = 0.3  # log scale by which the second wall stands too far
 SCALE = np.log(5.0)  # of the map's unit
 READING = DepthReading("z", 0.0, 0.0, 0.0, np.zeros(0), WallVotes(np.zeros(0, int), np.zeros(0), np.zeros(0)))
-WIDTH = 0.012
 
 
 @pytest.fixture(scope="module")
@@ -36,7 +35,7 @@ def bent(avenue_walls, build_setting):
 @pytest.fixture(scope="module")
 def words(avenue_walls, build_depth_map, bent):
     seen, surfaces = avenue_walls
-    return hear_lines(bent, build_depth_map(seen.sight, surfaces, scale=5.0), READING, WIDTH)
+    return hear_lines(bent, build_depth_map(seen.sight, surfaces, scale=5.0), READING)
 
 
 def parts(setting, words, known=0.3, log_scale=(0.0, 0.0)):
@@ -45,14 +44,14 @@ def parts(setting, words, known=0.3, log_scale=(0.0, 0.0)):
 
 def test_an_exact_map_asks_each_line_for_its_scale(avenue_walls, words):
     seen, _ = avenue_walls
-    np.testing.assert_allclose(words.log_scale, SCALE - np.array([0.0, FALSE, 0.0])[seen.part], atol=5e-3)
+    np.testing.assert_allclose(words, SCALE - np.array([0.0, FALSE, 0.0])[seen.part], atol=5e-3)
 
 
 def test_lines_of_no_body_and_beside_no_depth_are_told_nothing(avenue_walls, bent, build_setting, build_depth_map):
     seen, surfaces = avenue_walls
     depth = build_depth_map(seen.sight, surfaces[:2])
     loose = replace(bent, bodies=build_setting(seen, body=np.array([0, -1, 1])[seen.part]).bodies)
-    told = np.isfinite(hear_lines(loose, depth, READING, WIDTH).log_scale)
+    told = np.isfinite(hear_lines(loose, depth, READING))
     assert told[seen.part == 0].all()
     assert not told[seen.part != 0].any()
 
@@ -66,20 +65,18 @@ def test_the_part_that_stands_wrong_is_found_as_a_whole(avenue_walls, bent, word
 
 
 def test_a_part_that_stands_where_the_map_has_it_is_none(bent, words):
-    near = replace(
-        words, log_scale=words.log_scale + np.where(np.isclose(words.log_scale, SCALE, atol=0.1), 0.0, FALSE)
-    )
+    near = words + np.where(np.isclose(words, SCALE, atol=0.1), 0.0, FALSE)
     assert parts(bent, near) == []
     assert [part.move for part in parts(bent, near, log_scale=(2 * LEAST_OFF, 0.0))] == pytest.approx(
         [-2 * LEAST_OFF], abs=3e-3
     )
 
 
-def test_few_lines_are_no_part(bent, words):
+def test_few_lines_are_no_part(bent):
     one = np.full(len(bent.log_depth), SCALE)
     own = bent.lines[0][: LEAST_LINES - 1]
     one[own] += 0.5
-    assert parts(bent, replace(words, log_scale=one)) == []
+    assert parts(bent, one) == []
 
 
 @pytest.mark.parametrize("kind", ["distance", "inverse", "affine-inverse"])
@@ -88,18 +85,18 @@ def test_every_kind_of_map_is_read(avenue_walls, build_depth_map, bent, kind):
     scale = 5.0 if kind == "distance" else 1.0
     depth = build_depth_map(seen.sight, surfaces, kind, scale, shift=0.2 if kind == "affine-inverse" else 0.0)
     shift = -depth.values[depth.valid].max() * 0.2 / 1.2 if kind == "affine-inverse" else 0.0
-    asked = hear_lines(bent, depth, replace(READING, kind=kind, shift=shift), WIDTH).log_scale
+    asked = hear_lines(bent, depth, replace(READING, kind=kind, shift=shift))
     np.testing.assert_allclose(asked, np.log(scale) - np.array([0.0, FALSE, 0.0])[seen.part], atol=5e-3)
 
 
 def test_with_the_main_part_goes_what_the_map_is_mute_about(bent, words):
     """And a smaller part that stands where the map has it stays by itself."""
-    asked = words.log_scale.copy()
+    asked = words.copy()
     own = bent.lines[0]
     mute, other = own[:3], own[3 : 3 + LEAST_LINES]
     asked[own] = SCALE + 0.4
     asked[mute], asked[other] = np.nan, SCALE
-    (found,) = parts(bent, replace(words, log_scale=asked))
+    (found,) = parts(bent, asked)
     assert sorted(found.lines.tolist()) == own[3 + LEAST_LINES :].tolist()
     assert found.also.tolist() == mute.tolist()
     assert found.asked == pytest.approx(SCALE + 0.4)

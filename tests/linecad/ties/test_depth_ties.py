@@ -8,7 +8,6 @@ import pytest
 import linecad.ties.depth_ties
 from linecad.ties.candidates import Candidate
 from linecad.ties.depth_kind import DepthReading
-from linecad.ties.depth_parts import LineWords
 from linecad.ties.depth_samples import WallVotes
 from linecad.ties.depth_ties import (
     LEAST_WORD,
@@ -53,8 +52,7 @@ def witness(log_scale, width=0.02, weight=4.0, worth=4.0, ground=None):
     asked = np.array(log_scale, float)
     told = np.isfinite(asked)
     reading = DepthReading("z", 0.0, 0.0, 0.0, asked, WallVotes(np.flatnonzero(told), asked[told], np.ones(told.sum())))
-    lines = LineWords(np.full(4, np.nan), width)
-    return DepthWitness(reading, width, 4.0, weight, BodyWords(asked, np.where(told, worth, 0.0)), lines, ground)
+    return DepthWitness(reading, width, 4.0, weight, BodyWords(asked, np.where(told, worth, 0.0)), width, ground)
 
 
 def followed(log_scale, ties=NONE, size=None, reference=0, **fields):

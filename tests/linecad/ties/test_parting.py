@@ -33,7 +33,7 @@ def exact(avenue_walls, build_depth_map):
 def heard_as_exact(setting, candidates, depth):
     """Three walls tell nothing of how exact a map is."""
     heard = hear(setting, candidates, depth)
-    return replace(heard, lines=replace(heard.lines, width=WIDTH))
+    return replace(heard, width_of_parts=WIDTH)
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +41,8 @@ def evidence(avenue_walls, build_setting, exact):
     """The first two walls as one body, the second of which stands wrong, with an exact map; the third is another."""
     seen, _ = avenue_walls
     moved = build_setting(seen, (0.0, FALSE))
-    bent = replace(moved, bodies=build_setting(seen, body=np.array([0, 0, 1])[seen.part]).bodies)
+    bodies = build_setting(seen, body=np.array([0, 0, 1])[seen.part]).bodies
+    bent = replace(moved, bodies=bodies, sight=replace(seen.sight, depth=exact))
     looks = Looks(bent)
     candidates, seams = find_candidates(bent, looks), find_seams(bent, looks)
     heard = heard_as_exact(bent, candidates, exact)
@@ -98,7 +99,7 @@ def test_a_wall_that_stands_wrong_in_its_body_becomes_one_that_the_map_places(av
 def test_its_lines_are_as_sure_as_such_a_map_is_right(avenue_walls, parted):
     seen, _ = avenue_walls
     places = place_bodies(parted, OPTIONS)
-    expected = right_by_map(parted.heard.lines.width)
+    expected = right_by_map(parted.heard.width_of_parts)
     np.testing.assert_allclose(places.probability[seen.part == 1], expected)
     assert not np.isclose(places.probability[seen.part == 0], expected).any()
 
@@ -126,7 +127,7 @@ def test_what_a_person_says_of_it_moves_it(evidence, parted):
     places = place_bodies(parted, OPTIONS, [fact])
     assert places.log_depth[first] - places.log_depth[second] == pytest.approx(ratio, abs=0.03)
     assert not places.mapped.parts.any()
-    by_map = right_by_map(parted.heard.lines.width)
+    by_map = right_by_map(parted.heard.width_of_parts)
     assert not np.isclose(places.probability[parted.setting.lines[2]], by_map).any()
 
 
@@ -148,7 +149,7 @@ def test_a_crossing_called_real_ties_it_to_its_body_again(evidence, part):
 
 def test_without_a_map_or_with_a_wide_one_nothing_is_parted(evidence):
     heard = evidence.heard
-    for told in ("", replace(heard, lines=replace(heard.lines, width=WIDEST))):
+    for told in ("", replace(heard, width_of_parts=WIDEST)):
         given = replace(evidence, heard=told)
         assert part_by_map(given, OPTIONS) is given
 

@@ -11,7 +11,6 @@ from linecad.ties.alternatives import other_places, other_places_of
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.candidates import find_candidates
 from linecad.ties.depth_kind import DepthReading
-from linecad.ties.depth_parts import LineWords
 from linecad.ties.depth_samples import WallVotes
 from linecad.ties.depth_ties import DepthWitness
 from linecad.ties.depth_words import BodyWords
@@ -137,8 +136,7 @@ def test_a_fact_moves_a_part_alone(evidence, part):
 def test_a_part_can_be_placed_where_a_map_is_heard(evidence, part):
     words = BodyWords(np.zeros(1), np.full(1, 4.0))
     reading = DepthReading("z", 0.0, 0.0, 0.0, np.zeros(1), WallVotes(np.zeros(1, int), np.zeros(1), np.ones(1)))
-    lines = LineWords(np.full(len(evidence.setting.log_depth), np.nan), 0.02)
-    told = replace(evidence, heard=DepthWitness(reading, 0.02, 4.0, 4.0, words, lines, None))
+    told = replace(evidence, heard=DepthWitness(reading, 0.02, 4.0, 4.0, words, 0.02, None))
     places = place_bodies(part_off(told, part.lines), SolveOptions())
     assert len(places.log_scale) == 2
     assert np.isfinite(places.probability).all()
