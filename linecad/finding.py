@@ -54,6 +54,14 @@ class FoundLines:
         known = self.inconsistency if options.needs_inconsistency else None
         return replace(self, segments=whole, reach=reach, known_inconsistency=known)
 
+    def is_like(self, other: "FoundLines") -> bool:
+        """Whether lines, camera and axes are the same."""
+        return (
+            self.segments.is_like(other.segments)
+            and np.array_equal(self.camera.matrix, other.camera.matrix)
+            and np.array_equal(self.frame.axes, other.frame.axes)
+        )
+
     def reach_for(self, options: Options) -> Reach:
         """The reach in use: that with which these were grouped, else that of the options for this photo."""
         if self.reach is not None:

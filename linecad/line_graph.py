@@ -6,7 +6,7 @@ z, 3 and more for the level axes of further frames, a *depth* is the camera z of
 of `linecad.scene`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal, get_args
@@ -58,6 +58,18 @@ class Segments:
     def subset(self, keep: Bool | Int) -> "Segments":
         """The segments that a mask or an index array selects."""
         return Segments(self.ends[keep], self.axis[keep])
+
+    def is_like(self, other: "Segments") -> bool:
+        """Whether these are the same to the last digit."""
+        return np.array_equal(self.axis, other.axis) and np.array_equal(self.ends, other.ends)
+
+    def rows(self, taken: "Segments") -> Int:
+        """(M,) the row here of each of M segments that were taken from these, to the last digit; -1 for others."""
+        row = {look: number for number, look in enumerate(self._looks())}
+        return np.array([row.get(look, -1) for look in taken._looks()], np.int64)
+
+    def _looks(self) -> Iterator[tuple[int, bytes]]:
+        return ((axis, ends.tobytes()) for axis, ends in zip(self.axis.tolist(), self.ends, strict=True))
 
     def joined(self, others: "Segments") -> "Segments":
         """These segments and the others after them."""

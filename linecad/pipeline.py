@@ -1,13 +1,9 @@
 """The stages in the paper's order (algorithm 1): a photo becomes a scene."""
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-import numpy as np
-
-from linecad.arrays import Float
 from linecad.camera.photo import Photo
-from linecad.corrections.annotations import Annotations, facts_of
+from linecad.corrections.annotations import Annotations, as_found, facts_of
 from linecad.corrections.apply import correct
 from linecad.corrections.corrected import CorrectedLines, ToldFact
 from linecad.corrections.edits import Corrections
@@ -15,6 +11,7 @@ from linecad.decide.annotations import annotate, solve_annotated, told_in_the_ph
 from linecad.decide.decision import Decision, decide
 from linecad.depth.depth_map import DepthMap
 from linecad.depth.intrinsics import note_on_intrinsics
+from linecad.errors import DepthMapError, ReconstructionError
 from linecad.finding import FoundLines, connect, find_lines
 from linecad.line_graph import LineGraph, Segments, Solution
 from linecad.model.build import View, build_scene, find_components
@@ -25,7 +22,7 @@ from linecad.options import Options
 from linecad.progress import StageReport, silent
 from linecad.scene import Camera, Scene
 from linecad.ties.evidence import Evidence, find_evidence
-from linecad.ties.parting import part_by_map
+from linecad.ties.parting import DecidedParts, decide_parts, part_by_map
 from linecad.ties.placing import BodyPlaces, Placed, place_on
 from linecad.ties.setting import Sight
 from solver.options import OnProgress
@@ -82,6 +79,7 @@ class Prepared:
     details: Segments | None  # edges that faces can place
     corrected: CorrectedLines | None
     evidence: Evidence | None  # of the places of bodies; None for programs without them
+    parts: DecidedParts | None  # by what the photo and its depth map show without that person; None without a map
 
     def is_for(self, corrected: CorrectedLines) -> bool:
         """Whether it holds after other edits too."""
@@ -116,9 +114,13 @@ def prepare(
     on_stage: StageReport = silent,
     corrected: CorrectedLines | None = None,
     depth: DepthMap | None = None,
+    parts: DecidedParts | None = None,
 ) -> Prepared:
-    """All that comes before bodies are placed; raises as `reconstruct_lines`."""
-    details = None
+    """All that comes before bodies are placed; raises as `reconstruct_lines`.
+
+    With `parts`, those are not decided again: they were for the same lines as found, the same map and options.
+    """
+    details, before = None, found
     if options.uses_face_lines:
         details = found.details_for_faces(taken_away(found.segments, corrected))
     if corrected is not None:
@@ -128,8 +130,12 @@ def prepare(
     evidence = None
     if options.uses_bodies:
         sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
-        evidence = _look(graph, sight, options, annotations, corrected, on_stage)
-    return Prepared(found, whole, graph, annotations, details, corrected, evidence)
+        if parts is None and depth is not None:
+            parts, evidence = _parts_of(before, sight, options, on_stage)
+        if evidence is None or (corrected is not None and corrected.changes_evidence(before.segments)):
+            evidence = _look(graph, sight, options, annotations, corrected, parts, on_stage)
+        evidence = part_by_map(evidence)
+    return Prepared(found, whole, graph, annotations, details, corrected, evidence, parts)
 
 
 def prepared_for(
@@ -139,8 +145,25 @@ def prepared_for(
     graph, known = prepared.graph, prepared.evidence
     if known is None or prepared.is_for(corrected):
         return replace(prepared, corrected=corrected)
-    evidence = _look(graph, known.setting.sight, options, prepared.annotations, corrected, on_stage)
-    return replace(prepared, corrected=corrected, evidence=evidence)
+    sight = known.setting.sight
+    evidence = _look(graph, sight, options, prepared.annotations, corrected, prepared.parts, on_stage)
+    return replace(prepared, corrected=corrected, evidence=part_by_map(evidence))
+
+
+def _parts_of(
+    found: FoundLines, sight: Sight, options: Options, on_stage: StageReport
+) -> tuple[DecidedParts, Evidence] | tuple[None, None]:
+    """The parts of bodies that a photo's depth map has elsewhere, and what the photo by itself tells, which decides.
+
+    None where the photo by itself gives no scene.
+    """
+    try:
+        graph, annotations = annotate(connect(found, options)[1], None)
+        evidence = _look(graph, sight, options, annotations, None, None, on_stage)
+    except (ReconstructionError, DepthMapError):  # which corrections may have mended; if not, it is raised again
+        return None, None
+    parts = decide_parts(evidence, options.solve, on_stage)
+    return parts, replace(evidence, parts=parts.parts)
 
 
 def _look(
@@ -149,13 +172,15 @@ def _look(
     options: Options,
     annotations: Annotations,
     corrected: CorrectedLines | None,
+    parts: DecidedParts | None,
     on_stage: StageReport,
 ) -> Evidence:
-    """What the photo tells of the bodies of a graph's lines, with the parts that its depth map places."""
+    """What the photo tells of the bodies of a graph's lines, before parts are parted off."""
     limits = with_annotations(options.solve, annotations)
     facts = () if corrected is None else facts_of(graph, corrected)[0]
+    known = () if parts is None else parts.now(as_found(graph, corrected))
     with told_in_the_photo(graph, corrected):
-        return part_by_map(find_evidence(graph, sight, limits, facts, on_stage), limits, on_stage)
+        return find_evidence(graph, sight, limits, facts, on_stage, known)
 
 
 def reconstruct_prepared(
@@ -217,12 +242,7 @@ def taken_away(found: Segments, corrected: CorrectedLines | None) -> Segments:
     """The segments that a person took away or changed."""
     if corrected is None:
         return Segments.none()
-    kept = {(axis, ends.tobytes()) for axis, ends in _looks(corrected.segments)}
-    return found.subset(np.array([(axis, ends.tobytes()) not in kept for axis, ends in _looks(found)], bool))
-
-
-def _looks(segments: Segments) -> Iterator[tuple[int, Float]]:
-    return zip(segments.axis.tolist(), segments.ends, strict=True)
+    return found.subset(corrected.segments.rows(found) < 0)
 
 
 def _notes_on_map(depth: DepthMap | None, placed: Placed | None, camera: Camera) -> tuple[str, ...]:

@@ -63,9 +63,12 @@ def facts_of(graph: LineGraph, corrected: CorrectedLines) -> tuple[tuple[ToldFac
 
 def rows_of(segments: Segments, corrected: CorrectedLines) -> Int:
     """(M,) the row in `corrected` of each of M segments that were taken from there."""
-    place = {
-        (axis, ends.tobytes()): row
-        for row, (ends, axis) in enumerate(zip(corrected.segments.ends, corrected.segments.axis.tolist(), strict=True))
-    }
-    pairs = zip(segments.ends, segments.axis.tolist(), strict=True)
-    return np.array([place[axis, ends.tobytes()] for ends, axis in pairs], np.int64)
+    rows = corrected.segments.rows(segments)
+    assert (rows >= 0).all()
+    return rows
+
+
+def as_found(graph: LineGraph, corrected: CorrectedLines | None) -> Segments:
+    """What each line of a graph was before any edit; a line that was drawn is as it was drawn."""
+    segments = graph.segments
+    return segments if corrected is None else corrected.as_found.subset(rows_of(segments, corrected))

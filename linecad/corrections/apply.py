@@ -5,7 +5,7 @@ added or taken back: found lines are numbered in their order, new ones follow in
 """
 
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from itertools import product
 from typing import assert_never
@@ -13,8 +13,7 @@ from typing import assert_never
 import numpy as np
 import shapely
 
-from linecad.arrays import Float
-from linecad.corrections.corrected import CorrectedLines, FoundPlace, Origin, ToldFact
+from linecad.corrections.corrected import CorrectedLines, FoundPlace, ToldFact
 from linecad.corrections.drawing import Drawing
 from linecad.corrections.edits import (
     Anchor,
@@ -51,6 +50,7 @@ from linecad.corrections.edits import (
     anchors_of,
 )
 from linecad.corrections.faces import ToldFace, told
+from linecad.corrections.line import Line, segments_of
 from linecad.corrections.lookup import LineTable
 from linecad.directions import axis_name
 from linecad.errors import CorrectionError
@@ -86,20 +86,13 @@ def correcting_of(
     return lines, tuple(notes)
 
 
-@dataclass
-class _Line:
-    ends: Float  # (2, 2) px
-    axis: int
-    origin: Origin
-
-
 class Correcting:
     """Lines that edits are applied to, one after another."""
 
     def __init__(self, segments: Segments, camera: Camera, frame: ManhattanFrame, first_id: int = 0) -> None:
         self.drawing = Drawing(camera, frame)
-        self.lines: dict[int, _Line] = {
-            first_id + number: _Line(ends, axis, "found")
+        self.lines: dict[int, Line] = {
+            first_id + number: Line(ends, axis, "found")
             for number, (ends, axis) in enumerate(zip(segments.ends, segments.axis.tolist(), strict=True))
         }
         self.next_id = first_id + len(segments)
@@ -132,8 +125,7 @@ class Correcting:
             case SetEnds():
                 number = self.find(edit.line, before_frame)
                 line = self.lines[number]
-                reached = _Line(self.drawing.reaching(line.ends, np.array(edit.ends)), line.axis, line.origin)
-                self._put(number, reached)
+                self._put(number, line.changed(self.drawing.reaching(line.ends, np.array(edit.ends))))
             case Many():
                 self._apply_all(edit.edits, before_frame)
             case Split():
@@ -143,7 +135,7 @@ class Correcting:
             case Draw():
                 ends = np.array(edit.line.ends)
                 axis = self.drawing.nearest_axis(ends) if before_frame else edit.line.axis
-                drawn = _Line(self.drawing.long_enough(self.drawing.turned(ends, axis)), axis, "drawn")
+                drawn = Line(self.drawing.long_enough(self.drawing.turned(ends, axis)), axis, "drawn")
                 self._check_new(drawn)
                 self._add(drawn)
             case KnownLength():
@@ -177,14 +169,14 @@ class Correcting:
     def result(self, notes: tuple[str, ...] = ()) -> CorrectedLines:
         """The lines as they are now."""
         lines = list(self.lines.values())
-        ends = np.array([line.ends for line in lines]).reshape(-1, 2, 2)
         faces = [face.now(self._look) for face in self.faces]
         if None in faces:
             notes = (*notes, "a wall by four edges is left out: one of its edges was taken away")
         return CorrectedLines(
-            segments=Segments(ends, np.array([line.axis for line in lines], np.int64)),
+            segments=segments_of(lines),
             ids=np.array(list(self.lines), np.int64),
             origin=tuple(line.origin for line in lines),
+            as_found=segments_of(line.as_found for line in lines),
             labels=self._final_labels(),
             lengths={own: metres for number, metres in self.lengths.items() for own in self._now(number)[:1]},
             parted=tuple((a, b) for one, other in self.parted for a, b in product(self._now(one), self._now(other))),
@@ -256,18 +248,14 @@ class Correcting:
     def table(self) -> LineTable:
         """The lines as they are now."""
         if self._table is None:
-            lines = list(self.lines.values())
-            self._table = LineTable(
-                np.array(list(self.lines), np.int64),
-                np.array([line.ends for line in lines]).reshape(-1, 2, 2),
-                np.array([line.axis for line in lines], np.int64),
-            )
+            lines = segments_of(self.lines.values())
+            self._table = LineTable(np.array(list(self.lines), np.int64), lines.ends, lines.axis)
         return self._table
 
     def _turn(self, number: int, axis: int) -> None:
         """Let a line run along another axis."""
         line = self.lines[number]
-        turned = _Line(self.drawing.turned(line.ends, axis), axis, line.origin)
+        turned = line.changed(self.drawing.turned(line.ends, axis), axis)
         if axis != line.axis:
             self._check_new(turned)
             self._put(number, turned)
@@ -287,15 +275,15 @@ class Correcting:
         if label is not None:
             self.labels[pair] = (pixel, label)
 
-    def _put(self, number: int, line: _Line) -> None:
+    def _put(self, number: int, line: Line) -> None:
         self.lines[number] = line
         self._table = None
 
-    def _check_new(self, line: _Line) -> None:
+    def _check_new(self, line: Line) -> None:
         if self.table.has(line.ends, line.axis):
             raise CorrectionError("this line is there already; draw another one")
 
-    def _add(self, line: _Line) -> int:
+    def _add(self, line: Line) -> int:
         number = self.next_id
         self.next_id += 1
         self._put(number, line)
@@ -309,7 +297,7 @@ class Correcting:
     def _split(self, number: int, at: Point) -> None:
         line = self.lines[number]
         pieces = self.drawing.split(line.ends, at)
-        one, other = (self._add(_Line(piece, line.axis, "split")) for piece in pieces)
+        one, other = (self._add(line.changed(piece, origin="split")) for piece in pieces)
         self._drop(number, (one, other))
         self.parted.append((one, other))
 
@@ -323,7 +311,7 @@ class Correcting:
                 "give them one axis first"
             )
         ends = self.drawing.joined(one.ends, other.ends, one.axis)
-        whole = self._add(_Line(ends, one.axis, "joined"))
+        whole = self._add(one.changed(ends, origin="joined"))
         self._drop(first, (whole,))
         self._drop(second, (whole,))
 

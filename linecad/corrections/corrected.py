@@ -48,6 +48,7 @@ class CorrectedLines:
     segments: Segments  # N
     ids: Int  # (N,) stable numbers
     origin: tuple[Origin, ...]  # N
+    as_found: Segments  # N, what each was before any edit; one that was drawn as it is, a piece as the whole line
     labels: dict[tuple[int, int], tuple[Point, Label]]  # by the ids of two lines, the smaller first
     lengths: dict[int, float]  # m, by id
     parted: tuple[tuple[int, int], ...]  # ids of pieces that a split parted
@@ -59,11 +60,11 @@ class CorrectedLines:
 
     def is_like(self, other: "CorrectedLines") -> bool:
         """Whether the lines are the same, whatever their annotations."""
-        return bool(
-            np.array_equal(self.ids, other.ids)
-            and np.array_equal(self.segments.axis, other.segments.axis)
-            and np.array_equal(self.segments.ends, other.segments.ends)
-        )
+        return np.array_equal(self.ids, other.ids) and self.segments.is_like(other.segments)
+
+    def changes_evidence(self, found: Segments) -> bool:
+        """Whether lines differ from those found, or something is told of crossings or of where bodies are parted."""
+        return not self.segments.is_like(found) or bool(self.labels or self.parted or self.cuts or self.parts)
 
     @property
     def cuts(self) -> frozenset[Fact]:

@@ -226,6 +226,7 @@ class TaskSolver:
         """`depth` is a map on the photo's pixels."""
         self._photo, self._options, self._depth = photo, options, depth
         self._prepared: Prepared | None = None
+        self._found: FoundLines | None = None  # of the last task
 
     def answer(self, task: Task, tell: Callable[[Progress], None], on_stage: StageReport = silent) -> Answer:
         """The answer to a task."""
@@ -250,6 +251,8 @@ class TaskSolver:
                 prepared = prepared_for(prepared, self._options, task.corrected, on_stage)
         else:
             found = replace(task.found, pixels=self._photo.pixels)
-            prepared = prepare(found, self._options, on_stage, task.corrected, self._depth)
-        self._prepared = prepared
+            same = prepared is not None and self._found is not None and self._found.is_like(found)
+            parts = prepared.parts if prepared is not None and same else None
+            prepared = prepare(found, self._options, on_stage, task.corrected, self._depth, parts)
+        self._prepared, self._found = prepared, task.found
         return reconstruct_prepared(self._photo.name, prepared, self._options, tell, on_stage, task.corrected)

@@ -68,6 +68,15 @@ class Part:
         return width < WIDEST and self.known < MOST_KNOWN and log_odds > 0
 
 
+@dataclass(frozen=True, eq=False)
+class MapPart:
+    """Lines that a map is believed to have elsewhere than their body, whatever a person says of lines and bodies."""
+
+    lines: Int  # ascending
+    heard: Float  # log by which the map asks each to grow, at its own body's scale; NaN where it is mute
+    asked: float  # the same of all of them
+
+
 def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading) -> Float:
     """By which log a map asks each line of a body to grow (N,), at its body's own scale; NaN where it is mute.
 
@@ -139,6 +148,18 @@ def find_parts(setting: Setting, asked: Float, log_scale: Float, of_map: float, 
                 parts.append(Part(part, move + log_scale[body] + of_map, move, known, also))
             also = also[:0]
     return parts
+
+
+def heard_again(part: MapPart, lines: Int, asked: Float) -> MapPart:
+    """Those `lines` of a part that are of one body, where the map asks the lines of a photo (N,) to grow by a log.
+
+    A body that was fitted anew has another scale. Where the map is mute about the lines, it is that of the whole part.
+    """
+    by = asked[part.lines] - part.heard
+    told = np.isfinite(by)
+    own = told & np.isin(part.lines, lines)
+    by = by[own if own.any() else told]
+    return MapPart(lines, asked[lines], part.asked + (float(np.median(by)) if len(by) else 0.0))
 
 
 def right_by_map(width: float) -> float:

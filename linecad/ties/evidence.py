@@ -13,6 +13,7 @@ from linecad.line_graph import LineGraph
 from linecad.progress import StageReport, silent
 from linecad.ties.bodies import RigidBodies, find_rigid_bodies
 from linecad.ties.candidates import Candidate, find_candidates
+from linecad.ties.depth_parts import MapPart, hear_lines, heard_again
 from linecad.ties.depth_ties import DepthWitness, hear
 from linecad.ties.facts import CERTAIN
 from linecad.ties.looks import Looks
@@ -40,6 +41,7 @@ class Evidence:
     real: Bool  # (E,) crossings that a person called so
     fake: Bool  # (E,)
     reference: int  # the body that the others are placed relative to: the largest, or what is left of that
+    parts: tuple[MapPart, ...] = ()  # each of one of these bodies, from which it is still to be parted off
 
     def without_photo(self) -> "Evidence":
         """The same without pixels: small enough to hand on, and enough to place bodies."""
@@ -53,45 +55,93 @@ def find_evidence(
     options: SolveOptions,
     facts: Sequence[ToldFact] = (),
     on_stage: StageReport = silent,
+    parts: Sequence[MapPart] = (),
 ) -> Evidence:
     """What a photo tells of the bodies of a graph's lines; of `facts` about its nodes only cuts matter here.
 
-    Keeps to the crossings that `options` call real or fake. Raises SolverError, ContradictionError, or DepthMapError
-    where nothing tells what the photo's depth map measures.
+    Keeps to the crossings that `options` call real or fake. Who says so, or tells facts, sees `parts` of bodies as
+    bodies, though here they are of those that they were decided on. Raises SolverError, ContradictionError, or
+    DepthMapError where nothing tells what the photo's depth map measures.
     """
     real, fake = read_annotations(graph, options)
     if real.any():
         ratios = end_ratios(graph)
         check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
     on_stage("fitting depths, with and without some of the lines")
-    setting, reference = _setting(graph, sight, options, real, fake, facts)
+    setting, reference, of_parts = _setting(graph, sight, options, (real, fake), facts, parts)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
     looks = Looks(setting)
     candidates = find_candidates(setting, looks)
     seams = find_seams(setting, looks)
     pieces = find_pieces(setting, seams, looks)
     heard = hear(setting, candidates, sight.depth)
-    return Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake, reference)
+    found = Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake, reference)
+    if not parts or sight.depth is None:
+        return found
+    if isinstance(heard, str):  # and what a person says cannot be of parts that are none any more
+        return find_evidence(graph, sight, options, facts, on_stage)
+    asked = hear_lines(setting, sight.depth, heard.reading)
+    return replace(found, parts=tuple(heard_again(part, lines, asked) for part, lines in of_parts))
 
 
 def _setting(
-    graph: LineGraph, sight: Sight, options: SolveOptions, real: Bool, fake: Bool, facts: Sequence[ToldFact]
-) -> tuple[Setting, int]:
+    graph: LineGraph,
+    sight: Sight,
+    options: SolveOptions,
+    called: tuple[Bool, Bool],
+    facts: Sequence[ToldFact],
+    parts: Sequence[MapPart],
+) -> tuple[Setting, int, list[tuple[MapPart, Int]]]:
     """Bodies of the lines as they were found; fitted again only where what a person said contradicts them inside.
 
-    And the one that others are placed relative to.
+    The one that others are placed relative to, and the lines that each part has in one of the bodies, or in one of
+    those that a person made of it. `called` are the crossings (E,) that are called real, and fake.
 
     So a word about two bodies moves these, and what is far from them keeps its place.
     """
+    real, fake = called
     log_depth = RobustFit(graph).depths()
     bodies = find_rigid_bodies(graph, log_depth, fits := resample(graph, options.seed, FITS))
     believed = replace(graph, informative=graph.informative & ~fake)
-    if _contradicts(graph, log_depth, bodies, real, fake):
+    if _contradicts(graph, log_depth, _parted(bodies, parts), real, fake):
         believed = replace(believed, weight=np.where(real, CERTAIN, graph.weight))
         log_depth = RobustFit(believed).depths()
         bodies = find_rigid_bodies(believed, log_depth, fits := resample(believed, options.seed, FITS))
-    cut = cut_bodies(bodies, believed, log_depth, facts)
-    return Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut)
+    told = cut_bodies(_parted(bodies, parts), believed, log_depth, facts)
+    of_parts = [(part, lines) for part in parts for lines in _by_body(part, told.body)]
+    cut = _together(told, bodies, parts)
+    return Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut), of_parts
+
+
+def _parted(bodies: RigidBodies, parts: Sequence[MapPart]) -> RigidBodies:
+    """The bodies where what parts have of each is a body of its own, unless it is all that is left of it."""
+    body, count = bodies.body.copy(), bodies.count
+    for part in parts:
+        for lines in _by_body(part, body):
+            if len(lines) < (body == body[lines[0]]).sum():
+                body[lines] = count
+                count += 1
+    return RigidBodies(body, count)
+
+
+def _by_body(part: MapPart, body: Int) -> list[Int]:
+    """The lines of a part by the body (N,) that they are of."""
+    own = body[part.lines]
+    return [part.lines[own == number] for number in np.unique(own[own >= 0])]
+
+
+def _together(told: RigidBodies, bodies: RigidBodies, parts: Sequence[MapPart]) -> RigidBodies:
+    """The bodies that a person made of bodies and parts, with the parts in what keeps the number of their body.
+
+    What ties a body was found with all lines that seem of it.
+    """
+    if not parts:
+        return told
+    lines, body = np.concatenate([part.lines for part in parts]), told.body.copy()
+    body[lines] = bodies.body[lines]
+    number, own = np.unique(body[body >= 0], return_inverse=True)
+    body[body >= 0] = own
+    return RigidBodies(body, len(number))
 
 
 def _reference(bodies: RigidBodies, cut: RigidBodies) -> int:

@@ -6,14 +6,15 @@ part is a body as any other, on the page too, and what a person says moves it: a
 body again.
 """
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from linecad.arrays import Int
+from linecad.line_graph import Segments
 from linecad.progress import StageReport, silent
 from linecad.ties.bodies import RigidBodies
-from linecad.ties.depth_parts import WIDEST, find_parts, hear_lines
+from linecad.ties.depth_parts import WIDEST, MapPart, find_parts, hear_lines
 from linecad.ties.depth_ties import DepthWitness
 from linecad.ties.evidence import Evidence
 from linecad.ties.pieces import Pieces
@@ -24,25 +25,62 @@ from solver.options import SolveOptions
 NODES = 100  # of the search that tells where bodies stand before any is parted
 
 
-def part_by_map(evidence: Evidence, options: SolveOptions, on_stage: StageReport = silent) -> Evidence:
-    """The evidence with parts that a map has elsewhere, and likelier rightly, as bodies that it alone ties.
+@dataclass(frozen=True, eq=False)
+class DecidedParts:
+    """The parts of a photo as it is: what a person says later makes none of them and takes none away."""
 
-    Raises SolverError, or ContradictionError where crossings called real cannot all hold.
+    segments: Segments  # of the graph that they were decided on
+    parts: tuple[MapPart, ...]  # by its nodes
+
+    def now(self, as_found: Segments) -> tuple[MapPart, ...]:
+        """The same by the lines (N,) of a graph that were found as such segments; those that are gone are left out."""
+        row, found = self.segments.rows(as_found), []
+        for part in self.parts:
+            lines = np.flatnonzero(np.isin(row, part.lines))
+            if len(lines):
+                heard = part.heard[np.searchsorted(part.lines, row[lines])]
+                found.append(MapPart(lines, heard, part.asked))
+        return tuple(found)
+
+
+def decide_parts(evidence: Evidence, options: SolveOptions, on_stage: StageReport = silent) -> DecidedParts:
+    """The parts that a map has elsewhere, and likelier rightly; of a photo of which a person has said nothing.
+
+    Raises SolverError.
     """
     heard, setting = evidence.heard, evidence.setting
+    segments = setting.graph.segments
     if not isinstance(heard, DepthWitness) or heard.width_of_parts >= WIDEST:
-        return evidence
+        return DecidedParts(segments, ())
     # Bounded by nodes and by no clock: which parts there are must not depend on how fast a machine is.
     soon = replace(options.within_nodes(NODES), time_limit_s=None)
     places, depth = place_bodies(evidence, soon, on_stage=on_stage), setting.sight.depth
+    while places.placement.status == "interrupted":  # who stops a solve stops no decision that others build on
+        places = place_bodies(evidence, soon, on_stage=on_stage)
     assert places.mapped is not None
     assert depth is not None
     asked = hear_lines(setting, depth, heard.reading)
-    for part in find_parts(setting, asked, places.mapped.log_scale, places.mapped.of_map, places.probability):
-        if part.is_moved(heard.width_of_parts):
-            parted = _parted(evidence, np.union1d(part.lines, part.also), part.asked)
-            evidence = parted if _anchors(parted).any() else evidence
-    return _with_reference(evidence, int(setting.bodies.size[evidence.reference]))
+    parts = []
+    for found in find_parts(setting, asked, places.mapped.log_scale, places.mapped.of_map, places.probability):
+        if found.is_moved(heard.width_of_parts):
+            lines = np.union1d(found.lines, found.also)
+            part = MapPart(lines, asked[lines], found.asked)
+            parted = _parted(evidence, part)
+            if _anchors(parted).any():
+                evidence = parted
+                parts.append(part)
+    return DecidedParts(segments, tuple(parts))
+
+
+def part_by_map(evidence: Evidence) -> Evidence:
+    """The evidence with its parts as bodies that the map alone ties, but for such as leave nothing to lay it on."""
+    if not isinstance(evidence.heard, DepthWitness):
+        return evidence
+    found = replace(evidence, parts=())
+    for part in evidence.parts:
+        parted = _parted(found, part)
+        found = parted if _anchors(parted).any() else found
+    return _with_reference(found, int(evidence.setting.bodies.size[evidence.reference]))
 
 
 def _anchors(evidence: Evidence) -> Int:
@@ -62,12 +100,12 @@ def _with_reference(evidence: Evidence, size: int) -> Evidence:
     return evidence if 2 * left[evidence.reference] >= size else replace(evidence, reference=int(left.argmax()))
 
 
-def _parted(evidence: Evidence, lines: Int, asked: float) -> Evidence:
-    """The evidence with lines of one body as a body that only the map ties, which asks it to grow by that log.
+def _parted(evidence: Evidence, part: MapPart) -> Evidence:
+    """The evidence with a part of one body as a body that only the map ties, where that has it.
 
     It comes last, and all that ties the body ties the rest of it, unless it is the whole body.
     """
-    setting, heard = evidence.setting, evidence.heard
+    setting, heard, lines = evidence.setting, evidence.heard, part.lines
     assert isinstance(heard, DepthWitness)
     own, new = int(setting.bodies.body[lines[0]]), setting.bodies.count
     if len(lines) == setting.bodies.size[own]:
@@ -75,7 +113,7 @@ def _parted(evidence: Evidence, lines: Int, asked: float) -> Evidence:
             evidence,
             candidates=tuple(each for each in evidence.candidates if own not in each.bodies),
             pieces=_without(evidence.pieces, lines, own),
-            heard=heard.placing(own, asked),
+            heard=heard.placing(own, part.asked),
         )
     body = setting.bodies.body.copy()
     body[lines] = new
@@ -84,7 +122,7 @@ def _parted(evidence: Evidence, lines: Int, asked: float) -> Evidence:
         setting=replace(setting, bodies=RigidBodies(body, new + 1)),
         candidates=tuple(moved_up(each, new) for each in evidence.candidates),
         pieces=_without(evidence.pieces, lines, new),
-        heard=heard.with_part_of(own).placing(new, asked),
+        heard=heard.with_part_of(own).placing(new, part.asked),
     )
 
 

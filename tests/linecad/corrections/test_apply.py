@@ -146,3 +146,30 @@ def test_many_edits_in_one_step_do_what_they_do_one_after_another(made, applied,
     once, each = applied(Many(edits)), applied(*edits)
     assert once.is_like(each)
     assert once.labels == each.labels != {}
+
+
+def test_every_line_knows_what_it_was_found_as(made, applied, anchor):
+    """A split, turned or longer line is the line of the photo that it was; a drawn one is as it was drawn."""
+    middle = tuple(made.pixels[0].mean(axis=0).tolist())
+    longer = tuple(map(tuple, (made.pixels[1] + 0.2 * np.diff(made.pixels[1], axis=0) * [[-1], [1]]).tolist()))
+    drawn = Anchor(((300.0, 300.0), (380.0, 290.0)), 0)
+    lines = applied(Split(anchor(0), middle), SetEnds(anchor(1), longer), Delete(anchor(2)), Draw(drawn))
+    row = {number: row for row, number in enumerate(lines.ids.tolist())}
+    count = len(made.axis)
+    for number, found in ((1, 1), (3, 3), (count, 0), (count + 1, 0)):
+        assert (lines.as_found.ends[row[number]] == made.pixels[found]).all()
+        assert lines.as_found.axis[row[number]] == made.axis[found]
+    assert (lines.as_found.ends[row[count + 2]] == lines.segments.ends[row[count + 2]]).all()
+    assert not (lines.segments.ends[row[1]] == made.pixels[1]).all()
+    assert len(lines.as_found) == len(lines.segments)
+    turned = applied(SetAxis(anchor(1), (int(made.axis[1]) + 1) % 3))
+    assert (turned.as_found.ends == made.pixels).all()
+    assert turned.as_found.axis.tolist() == made.axis.tolist()
+    joined = applied(Split(anchor(0), middle), Join((piece(made, 0, 0), piece(made, 0, 1))))
+    assert (joined.as_found.ends[-1] == made.pixels[0]).all()
+
+
+def piece(made, line, end):
+    """A half of a line, as it is named."""
+    ends = [made.pixels[line].mean(axis=0), made.pixels[line, end]][:: 1 if end else -1]
+    return Anchor(tuple(tuple(each.tolist()) for each in ends), int(made.axis[line]))

@@ -9,6 +9,8 @@ import pytest
 from starlette.testclient import TestClient
 
 import linecad.editing.session
+import linecad.ties.depth_parts
+import linecad.ties.parting
 from exporters.model import build_model
 from exporters.textures.layout import view_of
 from exporters.textures.nearest import nearest_of, shape_of
@@ -28,6 +30,7 @@ if TYPE_CHECKING:
     from linecad.editing.solving import Answer
 
 PORT, TOKEN = 8765, "the-token"
+MIDDLE_OF_SECOND = 987  # px, column of the made scene's second box
 URL = f"http://{HOST}:{PORT}"
 
 
@@ -167,6 +170,16 @@ def map_of_made(made_photo):
     far = np.random.default_rng(0).uniform(40, 50, inverse.shape)
     values = np.where(inverse > 0, 2.5 / np.maximum(inverse, 1e-6), far)
     return DepthMap("made.depth.npz", values, values > 0, "z")
+
+
+@pytest.fixture
+def map_with_a_part(map_of_made, monkeypatch):
+    """The map where it has the right half of the second box farther, and is believed."""
+    monkeypatch.setattr(linecad.ties.parting, "WIDEST", np.inf)
+    monkeypatch.setattr(linecad.ties.depth_parts.Part, "is_moved", lambda part, _: abs(part.move) > np.log(1.2))
+    values = map_of_made.values.copy()
+    values[:, MIDDLE_OF_SECOND:] *= 1.3
+    return replace(map_of_made, name="right.depth.npz", values=values)
 
 
 @pytest.fixture

@@ -1,13 +1,9 @@
 """Bodies as the page is told of them: facts move them at once, and the scene that is built behind agrees."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 import linecad.editing.bodies
-import linecad.ties.depth_parts
-import linecad.ties.parting
 from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.bodies import NODES, at_once
 from linecad.options import Options
@@ -199,6 +195,11 @@ def depth_at_middle(state, number):
     return across @ (start - (start @ along) * along) / (across @ across)
 
 
+def by_body(state):
+    """The ids of the lines of each body."""
+    return {body["id"]: {line["id"] for line in lines_of(state, body["id"])} for body in state["bodies"]}
+
+
 def half_of(state, body):
     """The ids of the lines of a body in the model that are in the lower half of it, and those of the others."""
     own = [line for line in lines_of(state, body) if line["ends"] is not None]
@@ -218,16 +219,8 @@ class TestPartsOfAMap:
     """A depth map has the right half of the second body farther, and is believed."""
 
     @pytest.fixture
-    def parted(self, open_page, map_of_made, monkeypatch):
-        monkeypatch.setattr(linecad.ties.parting, "WIDEST", np.inf)
-        monkeypatch.setattr(linecad.ties.depth_parts.Part, "is_moved", lambda part, _: abs(part.move) > np.log(1.2))
-        page = open_page()
-        page.solve()
-        state = page.state()
-        ends = np.concatenate(list(depths(state, 1).values()))
-        is_right = np.arange(map_of_made.width) > np.median(in_photo(state, ends)[:, 0])
-        values = np.where(is_right, 1.3 * map_of_made.values, map_of_made.values)
-        page = open_page(depth=replace(map_of_made, name="right.depth.npz", values=values))
+    def parted(self, open_page, map_with_a_part):
+        page = open_page(depth=map_with_a_part)
         page.solve()
         return page
 
@@ -270,6 +263,47 @@ class TestPartsOfAMap:
         state = parted.state()
         now = depth_at_middle(state, first) / depth_at_middle(state, second)
         assert abs(np.log(now / was)) == pytest.approx(np.log(1.3), abs=0.05)
+
+    def test_not_connected_to_its_former_body_parts_the_two_as_they_are(self, parted):
+        """The cut once went through the body that the two are without the map, and took one line from it."""
+        before = parted.state()
+        own, other = (lines_of(before, body)[0]["id"] for body in (2, 1))
+        parted.edit(op="cut", lines=[other, own])
+        parted.solve()
+        assert by_body(parted.state()) == by_body(before)
+
+    def test_a_crossing_called_fake_between_the_two_leaves_both_where_they_are(self, parted):
+        before = parted.state()
+        body = {line["id"]: line["body"] for line in before["lines"]}
+        crossing = next(each for each in before["crossings"] if {body[line] for line in each["lines"]} == {1, 2})
+        parted.edit(op="label", crossing=crossing["id"], value="fake")
+        parted.solve()
+        state = parted.state()
+        assert by_body(state) == by_body(before)
+        for number in range(3):
+            for line, ends in depths(state, number).items():
+                assert ends == pytest.approx(depths(before, number)[line])
+
+    def test_not_connected_inside_a_part_leaves_both_sides_where_the_map_has_them(self, parted):
+        before = parted.state()
+        lines = lines_of(before, 2)
+        parted.edit(op="cut", lines=[lines[0]["id"], lines[-1]["id"]])
+        parted.solve()
+        state = parted.state()
+        one, other = (next(line for line in state["lines"] if line["id"] == lines[at]["id"]) for at in (0, -1))
+        assert one["body"] != other["body"]
+        assert by_body(state)[one["body"]] | by_body(state)[other["body"]] == by_body(before)[2]
+        assert {number: by_body(state)[number] for number in (0, 1)} == {k: by_body(before)[k] for k in (0, 1)}
+        for number in {one["body"], other["body"]}:
+            for line, ends in depths(state, number).items():
+                assert ends == pytest.approx(depths(before, 2)[line], rel=0.01)
+
+    def test_a_line_taken_away_leaves_the_parts_of_others(self, parted):
+        before = parted.state()
+        gone = lines_of(before, 2)[0]["id"]
+        parted.edit(op="delete", line=gone)
+        parted.solve()
+        assert by_body(parted.state()) == {number: lines - {gone} for number, lines in by_body(before).items()}
 
 
 class TestParts:

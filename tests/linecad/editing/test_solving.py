@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import linecad.pipeline
-from linecad.corrections.edits import Corrections, PlaceAt
+from linecad.corrections.edits import Corrections, Cut, Delete, PlaceAt
 from linecad.depth.depth_map import DepthMap
 from linecad.editing.document import solve_of
 from linecad.editing.run import EditOptions, edit
@@ -17,6 +17,8 @@ from linecad.editing.solving import SolvingProcess, Step, TaskSolver
 from linecad.errors import DepthMapError, ReconstructionError
 from linecad.lines.segments import find_segments
 from linecad.options import Options
+from linecad.pipeline import reconstruct
+from linecad.ties.parting import decide_parts
 from solver.options import Progress
 
 
@@ -116,6 +118,47 @@ def test_what_is_said_of_bodies_needs_no_second_look_at_lines(made_photo, monkey
     monkeypatch.undo()
     answer = anew.answer(session.task(session.now().version), lambda _: None)
     assert answer.made.scene.lines.ends.tolist() == session.now().model.scene.lines.ends.tolist()
+
+
+def test_parts_of_a_map_are_decided_once_and_the_command_decides_the_same(
+    made_photo, raw, map_with_a_part, monkeypatch
+):
+    decided = []
+
+    def decide(*given):
+        decided.append(decide_parts(*given))
+        return decided[-1]
+
+    monkeypatch.setattr(linecad.pipeline, "decide_parts", decide)
+    session = Session(made_photo, raw, Options(), Corrections("made.jpg", 1600, 1200), lambda _: None)
+    solver = TaskSolver(made_photo, Options(), map_with_a_part)
+
+    def solve(*words):
+        for word in words:
+            session.edit(session.now().version, lambda _, word=word: word)
+        session.take(solver.answer(session.task(session.now().version), lambda _: None))
+        assert not session.now().error
+        return session.now().model.bodies
+
+    bodies = solve()
+    alone = session.now().model.scene.lines.ends.tolist()
+    part = {line for line in bodies.ids if bodies.body_of(line) == 2}
+    assert part
+    first, second, third = ([line for line in bodies.ids if bodies.body_of(line) == body] for body in range(3))
+    look = session.editing.anchor
+    solve(Cut((look(second[0]), look(third[0]))), Cut((look(first[0]), look(first[-1]))))
+    bodies = solve(Delete(look(second[-1])), Delete(look(first[1])))
+    assert len(decided) == 1
+    assert {line for line in bodies.ids if bodies.body[bodies.node[line]] == bodies.body_of(third[0])} == part
+    by_command = reconstruct(made_photo, Options(), corrections=session.now().corrections, depth=map_with_a_part)
+    assert len(decided) == 2
+    assert by_command.lines.ends.tolist() == session.now().model.scene.lines.ends.tolist()
+    assert by_command.lines.by_depth_map.tolist() == session.now().model.scene.lines.by_depth_map.tolist()
+    while session.now().corrections.edits:
+        session.undo(session.now().version)
+    known = solver.answer(replace(session.task(session.now().version), number=99), lambda _: None)
+    assert known.made.scene.lines.ends.tolist() == alone
+    assert len(decided) == 2
 
 
 def test_a_stage_is_told_until_the_search_begins(made_photo):

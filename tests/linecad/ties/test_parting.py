@@ -7,13 +7,13 @@ import pytest
 
 import linecad.ties.parting
 from linecad.corrections.corrected import ToldFact
-from linecad.corrections.edits import Anchor, PlaceAt
+from linecad.corrections.edits import Anchor, Cut, PlaceAt
 from linecad.ties.candidates import find_candidates
-from linecad.ties.depth_parts import WIDEST, Part, right_by_map
+from linecad.ties.depth_parts import WIDEST, MapPart, Part, hear_lines, heard_again, right_by_map
 from linecad.ties.depth_ties import hear
-from linecad.ties.evidence import Evidence
+from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.looks import Looks
-from linecad.ties.parting import NODES, part_by_map
+from linecad.ties.parting import NODES, DecidedParts, decide_parts, part_by_map
 from linecad.ties.pieces import find_pieces
 from linecad.ties.placing import place_bodies
 from linecad.ties.seams import find_seams
@@ -51,9 +51,14 @@ def evidence(avenue_walls, build_setting, exact):
     return Evidence(bent, tuple(candidates), tuple(seams), pieces, heard, none, none, 0)
 
 
+def with_parts(evidence, options=OPTIONS):
+    """The evidence with the parts that it decides itself."""
+    return part_by_map(replace(evidence, parts=decide_parts(evidence, options).parts))
+
+
 @pytest.fixture(scope="module")
 def parted(evidence):
-    return part_by_map(evidence, OPTIONS)
+    return with_parts(evidence)
 
 
 @pytest.fixture
@@ -63,7 +68,7 @@ def part(monkeypatch):
     def part_(evidence, *parts, asked=0.2):
         found = [Part(lines, asked, -0.9, 0.0, np.zeros(0, int)) for lines in parts]
         monkeypatch.setattr(linecad.ties.parting, "find_parts", lambda *_: found)
-        return part_by_map(evidence, OPTIONS)
+        return with_parts(evidence)
 
     return part_
 
@@ -114,16 +119,17 @@ def test_it_stands_where_most_lines_have_the_map(parted):
     assert len(places.mapped.parts) == count
 
 
-def anchor(evidence, line):
-    (a, b), (c, d) = evidence.setting.graph.segments.ends[line].tolist()
-    return Anchor(((a, b), (c, d)), int(evidence.setting.graph.axis[line]))
+def anchor(graph, line):
+    (a, b), (c, d) = graph.segments.ends[line].tolist()
+    return Anchor(((a, b), (c, d)), int(graph.axis[line]))
 
 
 def test_what_a_person_says_of_it_moves_it(evidence, parted):
     first, second = (int(parted.setting.lines[body][0]) for body in (2, 0))
     log_depth = parted.setting.log_depth
     ratio = float(log_depth[first] - log_depth[second]) + 0.7
-    fact = ToldFact(PlaceAt(anchor(evidence, first), anchor(evidence, second), ratio), (first, second))
+    graph = evidence.setting.graph
+    fact = ToldFact(PlaceAt(anchor(graph, first), anchor(graph, second), ratio), (first, second))
     places = place_bodies(parted, OPTIONS, [fact])
     assert places.log_depth[first] - places.log_depth[second] == pytest.approx(ratio, abs=0.03)
     assert not places.mapped.parts.any()
@@ -151,14 +157,14 @@ def test_without_a_map_or_with_a_wide_one_nothing_is_parted(evidence):
     heard = evidence.heard
     for told in ("", replace(heard, width_of_parts=WIDEST)):
         given = replace(evidence, heard=told)
-        assert part_by_map(given, OPTIONS) is given
+        assert not decide_parts(given, OPTIONS).parts
 
 
 def test_a_map_that_agrees_parts_nothing(avenue_walls, evidence, exact):
     seen, _ = avenue_walls
     true = replace(evidence.setting, log_depth=seen.log_depth)
     given = replace(evidence, setting=true, heard=heard_as_exact(true, list(evidence.candidates), exact))
-    assert part_by_map(given, OPTIONS) is given
+    assert not decide_parts(given, OPTIONS).parts
 
 
 def test_a_whole_body_keeps_its_number_and_nothing_but_the_map_ties_it(evidence, part):
@@ -223,7 +229,106 @@ def test_what_is_decided_depends_on_no_clock(evidence, parted, monkeypatch):
         return place_bodies(evidence, options, **fields)
 
     monkeypatch.setattr(linecad.ties.parting, "place_bodies", place)
-    found = part_by_map(evidence, replace(OPTIONS, time_limit_s=1e-6))
+    found = with_parts(evidence, replace(OPTIONS, time_limit_s=1e-6))
     assert found.setting.bodies.body.tolist() == parted.setting.bodies.body.tolist()
     assert asked[0].time_limit_s is None
     assert asked[0].node_limit == NODES
+
+
+@pytest.fixture(scope="module")
+def look(avenue_walls, exact):
+    graph, sight = avenue_walls[0].graph, replace(avenue_walls[0].sight, depth=exact)
+
+    def look_(*parts, cut=(), sight=sight, **called):
+        facts = [ToldFact(Cut(tuple(anchor(graph, line) for line in cut)), cut)] if cut else ()
+        return find_evidence(graph, sight, SolveOptions(**called), facts, parts=parts)
+
+    return look_
+
+
+@pytest.fixture(scope="module")
+def plain(look):
+    return look()
+
+
+@pytest.fixture(scope="module")
+def half(plain, exact):
+    lines = plain.setting.lines[0][:7]
+    return MapPart(lines, hear_lines(plain.setting, exact, plain.heard.reading)[lines], 0.2)
+
+
+class TestWhatIsToldOfParts:
+    """Who says something of lines sees parts as bodies; lines of the first of three walls are one here."""
+
+    def test_a_part_is_tied_to_nothing_and_all_else_is_as_without_it(self, look, plain, half):
+        evidence = look(half)
+        assert evidence.setting.bodies.body.tolist() == plain.setting.bodies.body.tolist()
+        [part] = evidence.parts
+        assert (part.lines.tolist(), part.asked) == (half.lines.tolist(), half.asked)
+        parted = part_by_map(evidence)
+        assert parted.setting.lines[3].tolist() == half.lines.tolist()
+        assert (parted.heard.parts, parted.parts) == ({3}, ())
+        holds(parted)
+
+    def test_a_cut_between_a_part_and_its_body_takes_no_line_from_either(self, look, plain, half):
+        own = tuple(plain.setting.lines[0].tolist())
+        for cut in (own[0], own[-1]), (own[-1], own[0]):
+            evidence = part_by_map(look(half, cut=cut))
+            assert evidence.setting.lines[3].tolist() == half.lines.tolist()
+            assert evidence.setting.bodies.count == 4
+            fact = ToldFact(Cut(tuple(anchor(evidence.setting.graph, line) for line in cut)), cut)
+            assert place_bodies(evidence, OPTIONS, [fact]).told.cuts == {(0, 3)}
+
+    def test_a_cut_inside_a_part_makes_two_parts_of_it(self, look, half):
+        first, second = half.lines[[0, -1]].tolist()
+        evidence = look(half, cut=(first, second))
+        assert evidence.setting.bodies.count == 3
+        assert [part.asked for part in evidence.parts] == [0.2, 0.2]
+        assert np.sort(np.concatenate([part.lines for part in evidence.parts])).tolist() == half.lines.tolist()
+        parted = part_by_map(evidence)
+        assert parted.heard.parts == {3, 4}
+        assert parted.setting.bodies.body[first] != parted.setting.bodies.body[second]
+        holds(parted)
+
+    def test_a_cut_of_what_is_left_of_the_body_leaves_the_part(self, look, plain, half):
+        rest = plain.setting.lines[0][7:]
+        evidence = look(half, cut=(int(rest[0]), int(rest[-1])))
+        assert evidence.setting.bodies.count == 4
+        parted = part_by_map(evidence)
+        assert parted.setting.lines[4].tolist() == half.lines.tolist()
+        assert parted.setting.bodies.body[rest[0]] != parted.setting.bodies.body[rest[-1]]
+        holds(parted)
+
+    def test_a_crossing_called_fake_between_the_two_fits_nothing_anew(self, look, plain, half):
+        graph = plain.setting.graph
+        inside = np.isin(graph.edges, half.lines).sum(axis=1)
+        edge = int(np.flatnonzero((inside == 1) & np.isin(graph.edges, plain.setting.lines[0]).all(axis=1))[0])
+        assert look(half, fake=(edge,)).setting.log_depth.tolist() == plain.setting.log_depth.tolist()
+        assert look(fake=(edge,)).setting.log_depth.tolist() != plain.setting.log_depth.tolist()
+
+    def test_where_the_map_is_left_out_there_are_no_parts(self, look, plain, half, exact):
+        own = plain.setting.lines[0]
+        even = replace(plain.setting.sight, depth=replace(exact, values=np.where(exact.valid, 1.0, 0.0)))
+        evidence = look(half, cut=(int(own[0]), int(own[-1])), sight=even)
+        assert isinstance(evidence.heard, str)
+        assert evidence.parts == ()
+        assert evidence.setting.bodies.count > 3, "the cut parts the body as it is"
+        assert part_by_map(evidence) is evidence
+
+
+def test_what_the_map_asks_of_a_part_goes_with_the_scale_of_its_body():
+    part = MapPart(np.array([1, 2, 4]), np.array([0.1, np.nan, 0.3]), 0.2)
+    asked = np.array([np.nan, 0.6, 0.0, 7.0, np.nan])
+    found = heard_again(part, np.array([1, 2]), asked)
+    assert found.asked == pytest.approx(0.7)
+    assert heard_again(part, np.array([2]), asked).asked == pytest.approx(0.7), "as the whole part"
+    assert heard_again(part, np.array([2]), np.full(5, np.nan)).asked == 0.2
+
+
+def test_parts_are_found_again_by_what_their_lines_were(evidence):
+    segments = evidence.setting.graph.segments
+    parts = (MapPart(np.array([1, 3, 5]), np.array([0.1, 0.3, 0.5]), 0.2), MapPart(np.array([2]), np.zeros(1), 0.0))
+    [part] = DecidedParts(segments, parts).now(segments.subset(np.array([5, 0, 1, 1, 4])))
+    assert part.lines.tolist() == [0, 2, 3]
+    assert part.heard.tolist() == [0.5, 0.1, 0.1]
+    assert part.asked == 0.2
