@@ -178,9 +178,9 @@ def _look(
     """What the photo tells of the bodies of a graph's lines, before parts are parted off."""
     limits = with_annotations(options.solve, annotations)
     facts = () if corrected is None else facts_of(graph, corrected)[0]
-    known = () if parts is None else parts.now(as_found(graph, corrected))
+    known = ((), ()) if parts is None else parts.now(as_found(graph, corrected))
     with told_in_the_photo(graph, corrected):
-        return find_evidence(graph, sight, limits, facts, on_stage, known)
+        return find_evidence(graph, sight, limits, facts, on_stage, *known)
 
 
 def reconstruct_prepared(

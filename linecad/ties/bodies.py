@@ -43,9 +43,9 @@ def find_rigid_bodies(graph: LineGraph, log_depth: Float, fits: Fits) -> RigidBo
     that most of their crossings agree with; groups of LEAST_BODY lines that hang on none are bodies of their own.
     """
     body = _cores(log_depth, fits)
-    agrees = graph.informative & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
+    agrees = agreeing(graph, log_depth)
     edges = graph.edges[agrees]
-    body = _with_hanging(body, edges, graph.weight[agrees])
+    body = with_hanging(body, edges, graph.weight[agrees])
     rest = body < 0
     group = group_numbers(len(body), edges[rest[edges].all(axis=1)])
     body = np.where(rest, body.max(initial=-1) + 1 + group, body)
@@ -106,7 +106,12 @@ def togetherness(fits: Fits, shift: Float, core: Bool) -> Float:
     return np.asarray(np.where(seen > 0, together / np.maximum(seen, 1), 0.0))
 
 
-def _with_hanging(body: Int, edges: Int, weight: Float) -> Int:
+def agreeing(graph: LineGraph, log_depth: Float) -> Bool:
+    """(E,) crossings that tell something and agree with log depths (N,)."""
+    return graph.informative & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
+
+
+def with_hanging(body: Int, edges: Int, weight: Float) -> Int:
     """The bodies (N,), other lines (-1) with the body that the heaviest of their edges (E, 2) lead to."""
     body, count = body.copy(), int(body.max(initial=-1)) + 1
     both = np.concatenate([edges, edges[:, ::-1]])

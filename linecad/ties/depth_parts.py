@@ -76,6 +76,12 @@ class MapPart:
     heard: Float  # log by which the map asks each to grow, at its own body's scale; NaN where it is mute
     asked: float  # the same of all of them
 
+    def joined(self, lines: Int) -> "MapPart":
+        """With more lines, of which the map was not asked."""
+        own, heard = np.append(self.lines, lines), np.append(self.heard, np.full(len(lines), np.nan))
+        order = np.argsort(own)
+        return MapPart(own[order], heard[order], self.asked)
+
 
 def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading) -> Float:
     """By which log a map asks each line of a body to grow (N,), at its body's own scale; NaN where it is mute.

@@ -11,7 +11,7 @@ from linecad.corrections.edits import Cut
 from linecad.decide.stability import LEAST_TOLERANCE, resample
 from linecad.line_graph import LineGraph
 from linecad.progress import StageReport, silent
-from linecad.ties.bodies import RigidBodies, find_rigid_bodies
+from linecad.ties.bodies import RigidBodies, agreeing, find_rigid_bodies, with_hanging
 from linecad.ties.candidates import Candidate, find_candidates
 from linecad.ties.depth_parts import MapPart, hear_lines, heard_again
 from linecad.ties.depth_ties import DepthWitness, hear
@@ -56,19 +56,21 @@ def find_evidence(
     facts: Sequence[ToldFact] = (),
     on_stage: StageReport = silent,
     parts: Sequence[MapPart] = (),
+    new: Sequence[int] = (),
 ) -> Evidence:
     """What a photo tells of the bodies of a graph's lines; of `facts` about its nodes only cuts matter here.
 
     Keeps to the crossings that `options` call real or fake. Who says so, or tells facts, sees `parts` of bodies as
-    bodies, though here they are of those that they were decided on. Raises SolverError, ContradictionError, or
-    DepthMapError where nothing tells what the photo's depth map measures.
+    bodies, though here they are of those that they were decided on; of lines that are `new` since then, those are of a
+    part that hang on it. Raises SolverError, ContradictionError, or DepthMapError where nothing tells what the photo's
+    depth map measures.
     """
     real, fake = read_annotations(graph, options)
     if real.any():
         ratios = end_ratios(graph)
         check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
     on_stage("fitting depths, with and without some of the lines")
-    setting, reference, of_parts = _setting(graph, sight, options, (real, fake), facts, parts)
+    setting, reference, of_parts = _setting(graph, sight, options, (real, fake), facts, parts, new)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
     looks = Looks(setting)
     candidates = find_candidates(setting, looks)
@@ -91,6 +93,7 @@ def _setting(
     called: tuple[Bool, Bool],
     facts: Sequence[ToldFact],
     parts: Sequence[MapPart],
+    new: Sequence[int],
 ) -> tuple[Setting, int, list[tuple[MapPart, Int]]]:
     """Bodies of the lines as they were found; fitted again only where what a person said contradicts them inside.
 
@@ -103,13 +106,15 @@ def _setting(
     log_depth = RobustFit(graph).depths()
     bodies = find_rigid_bodies(graph, log_depth, fits := resample(graph, options.seed, FITS))
     believed = replace(graph, informative=graph.informative & ~fake)
-    if _contradicts(graph, log_depth, _parted(bodies, parts), real, fake):
+    known = _with_new(parts, new, bodies, believed, log_depth)
+    if _contradicts(graph, log_depth, _parted(bodies, known), real, fake):
         believed = replace(believed, weight=np.where(real, CERTAIN, graph.weight))
         log_depth = RobustFit(believed).depths()
         bodies = find_rigid_bodies(believed, log_depth, fits := resample(believed, options.seed, FITS))
-    told = cut_bodies(_parted(bodies, parts), believed, log_depth, facts)
-    of_parts = [(part, lines) for part in parts for lines in _by_body(part, told.body)]
-    cut = _together(told, bodies, parts)
+        known = _with_new(parts, new, bodies, believed, log_depth)
+    told = cut_bodies(_parted(bodies, known), believed, log_depth, facts)
+    of_parts = [(part, lines) for part in known for lines in _by_body(part, told.body)]
+    cut = _together(told, bodies, known)
     return Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut), of_parts
 
 
@@ -128,6 +133,25 @@ def _by_body(part: MapPart, body: Int) -> list[Int]:
     """The lines of a part by the body (N,) that they are of."""
     own = body[part.lines]
     return [part.lines[own == number] for number in np.unique(own[own >= 0])]
+
+
+def _with_new(
+    parts: Sequence[MapPart], new: Sequence[int], bodies: RigidBodies, graph: LineGraph, log_depth: Float
+) -> Sequence[MapPart]:
+    """The parts with those new lines that crossings which agree tie to one more than to what is left of its body.
+
+    What a person draws on a wall stands with it, also where the map has the wall.
+    """
+    if not parts or not len(new):
+        return parts
+    lines = np.array(new, np.int64)
+    apart = _parted(bodies, parts).body
+    own = bodies.body[graph.edges]
+    inside = agreeing(graph, log_depth) & (own[:, 0] == own[:, 1]) & (own[:, 0] >= 0)
+    loose = apart.copy()
+    loose[lines] = -1
+    hung = with_hanging(loose, graph.edges[inside], graph.weight[inside])[lines]
+    return [part.joined(lines[np.isin(hung, apart[part.lines]) & (hung >= 0)]) for part in parts]
 
 
 def _together(told: RigidBodies, bodies: RigidBodies, parts: Sequence[MapPart]) -> RigidBodies:
@@ -167,7 +191,7 @@ def cut_bodies(bodies: RigidBodies, graph: LineGraph, log_depth: Float, facts: S
     that was placed by itself: of its lines those that are of one body with the line that it was placed by.
     """
     body, count = bodies.body.copy(), bodies.count
-    agrees = graph.informative & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
+    agrees = agreeing(graph, log_depth)
     for told in facts:
         if told.part:
             own = part_of_body(body, told)

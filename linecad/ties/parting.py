@@ -1,9 +1,8 @@
 """Evidence in which parts of bodies that a depth map has elsewhere are bodies of their own, which it places.
 
-Who is right about a part, its body or the map, is decided at the places that crossings, a person's labels of them among
-these, and the map give (`linecad.ties.depth_parts`); where a person puts bodies does not count there. From then on a
-part is a body as any other, on the page too, and what a person says moves it: a crossing called real ties it to its
-body again.
+Who is right about a part, its body or the map, is decided once, at the places that crossings and the map give to a
+photo of which nobody has said anything (`linecad.ties.depth_parts`). From then on a part is a body as any other, on the
+page too: what a person says is of it, and moves it, and a crossing called real ties it to its body again.
 """
 
 from dataclasses import dataclass, replace
@@ -32,15 +31,18 @@ class DecidedParts:
     segments: Segments  # of the graph that they were decided on
     parts: tuple[MapPart, ...]  # by its nodes
 
-    def now(self, as_found: Segments) -> tuple[MapPart, ...]:
-        """The same by the lines (N,) of a graph that were found as such segments; those that are gone are left out."""
+    def now(self, as_found: Segments) -> tuple[tuple[MapPart, ...], Int]:
+        """The same by the lines (N,) of a graph that were found as such segments, and the lines that are new there.
+
+        Lines that are gone are left out.
+        """
         row, found = self.segments.rows(as_found), []
         for part in self.parts:
             lines = np.flatnonzero(np.isin(row, part.lines))
             if len(lines):
                 heard = part.heard[np.searchsorted(part.lines, row[lines])]
                 found.append(MapPart(lines, heard, part.asked))
-        return tuple(found)
+        return tuple(found), np.flatnonzero(row < 0)
 
 
 def decide_parts(evidence: Evidence, options: SolveOptions, on_stage: StageReport = silent) -> DecidedParts:

@@ -298,6 +298,16 @@ class TestPartsOfAMap:
             for line, ends in depths(state, number).items():
                 assert ends == pytest.approx(depths(before, 2)[line], rel=0.01)
 
+    def test_a_line_that_is_drawn_on_a_part_is_of_it(self, parted):
+        before = parted.state()
+        beside = [line for line in lines_of(before, 2) if line["axis"] == "z"][-1]
+        parted.edit(op="draw", ends=[[x + 40, y] for x, y in beside["segment"]], axis="z")
+        parted.solve()
+        known = {line["id"] for line in before["lines"]}
+        [drawn] = [line for line in parted.state()["lines"] if line["id"] not in known]
+        assert drawn["body"] == 2
+        assert by_body(parted.state())[2] - {drawn["id"]} == by_body(before)[2]
+
     def test_a_line_taken_away_leaves_the_parts_of_others(self, parted):
         before = parted.state()
         gone = lines_of(before, 2)[0]["id"]

@@ -8,6 +8,7 @@ import pytest
 import linecad.ties.parting
 from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Anchor, Cut, PlaceAt
+from linecad.line_graph import Segments
 from linecad.ties.candidates import find_candidates
 from linecad.ties.depth_parts import WIDEST, MapPart, Part, hear_lines, heard_again, right_by_map
 from linecad.ties.depth_ties import hear
@@ -239,9 +240,9 @@ def test_what_is_decided_depends_on_no_clock(evidence, parted, monkeypatch):
 def look(avenue_walls, exact):
     graph, sight = avenue_walls[0].graph, replace(avenue_walls[0].sight, depth=exact)
 
-    def look_(*parts, cut=(), sight=sight, **called):
+    def look_(*parts, cut=(), sight=sight, new=(), **called):
         facts = [ToldFact(Cut(tuple(anchor(graph, line) for line in cut)), cut)] if cut else ()
-        return find_evidence(graph, sight, SolveOptions(**called), facts, parts=parts)
+        return find_evidence(graph, sight, SolveOptions(**called), facts, parts=parts, new=new)
 
     return look_
 
@@ -306,6 +307,16 @@ class TestWhatIsToldOfParts:
         assert look(half, fake=(edge,)).setting.log_depth.tolist() == plain.setting.log_depth.tolist()
         assert look(fake=(edge,)).setting.log_depth.tolist() != plain.setting.log_depth.tolist()
 
+    def test_new_lines_are_of_the_part_that_they_hang_on(self, look, plain, exact):
+        """Ten upright lines of the first wall cross its five level ones and nothing else."""
+        asked = hear_lines(plain.setting, exact, plain.heard.reading)
+        upright, level = np.split(plain.setting.lines[0], [10])
+        other = int(plain.setting.lines[1][0])
+        for lines, more in ((np.append(upright[1:6], level), [int(upright[0])]), (upright[1:6], [])):
+            [part] = look(MapPart(lines, asked[lines], 0.2), new=(int(upright[0]), other)).parts
+            assert part.lines.tolist() == [*more, *lines.tolist()]
+            assert part.asked == 0.2
+
     def test_where_the_map_is_left_out_there_are_no_parts(self, look, plain, half, exact):
         own = plain.setting.lines[0]
         even = replace(plain.setting.sight, depth=replace(exact, values=np.where(exact.valid, 1.0, 0.0)))
@@ -328,7 +339,9 @@ def test_what_the_map_asks_of_a_part_goes_with_the_scale_of_its_body():
 def test_parts_are_found_again_by_what_their_lines_were(evidence):
     segments = evidence.setting.graph.segments
     parts = (MapPart(np.array([1, 3, 5]), np.array([0.1, 0.3, 0.5]), 0.2), MapPart(np.array([2]), np.zeros(1), 0.0))
-    [part] = DecidedParts(segments, parts).now(segments.subset(np.array([5, 0, 1, 1, 4])))
+    drawn = Segments(np.array([[[300.0, 300.0], [380.0, 290.0]]]), np.array([0]))
+    [part], new = DecidedParts(segments, parts).now(segments.subset(np.array([5, 0, 1, 1, 4])).joined(drawn))
+    assert new.tolist() == [5]
     assert part.lines.tolist() == [0, 2, 3]
     assert part.heard.tolist() == [0.5, 0.1, 0.1]
     assert part.asked == 0.2
