@@ -130,9 +130,10 @@ def prepare(
     evidence = None
     if options.uses_bodies:
         sight = Sight(found.camera.matrix, found.frame.axes, found.camera.width, found.pixels, depth)
+        changed = corrected is not None and corrected.changes_evidence(before.segments)
         if parts is None and depth is not None:
-            parts, evidence = _parts_of(before, sight, options, on_stage)
-        if evidence is None or (corrected is not None and corrected.changes_evidence(before.segments)):
+            parts, evidence = _parts_of(before, sight, options, changed, on_stage)
+        if evidence is None or changed:
             evidence = _look(graph, sight, options, annotations, corrected, parts, on_stage)
         evidence = part_by_map(evidence)
     return Prepared(found, whole, graph, annotations, details, corrected, evidence, parts)
@@ -151,17 +152,19 @@ def prepared_for(
 
 
 def _parts_of(
-    found: FoundLines, sight: Sight, options: Options, on_stage: StageReport
+    found: FoundLines, sight: Sight, options: Options, changed: bool, on_stage: StageReport
 ) -> tuple[DecidedParts, Evidence] | tuple[None, None]:
     """The parts of bodies that a photo's depth map has elsewhere, and what the photo by itself tells, which decides.
 
-    None where the photo by itself gives no scene.
+    None where the photo by itself gives no scene; raises what is in the way where it is not `changed` by corrections.
     """
     try:
         graph, annotations = annotate(connect(found, options)[1], None)
         evidence = _look(graph, sight, options, annotations, None, None, on_stage)
-    except (ReconstructionError, DepthMapError):  # which corrections may have mended; if not, it is raised again
-        return None, None
+    except (ReconstructionError, DepthMapError):
+        if changed:  # which may have mended it
+            return None, None
+        raise
     parts = decide_parts(evidence, options.solve, on_stage)
     return parts, replace(evidence, parts=parts.parts)
 

@@ -18,6 +18,7 @@ from linecad.errors import DepthMapError, ReconstructionError
 from linecad.lines.segments import find_segments
 from linecad.options import Options
 from linecad.pipeline import reconstruct
+from linecad.ties.evidence import find_evidence
 from linecad.ties.parting import decide_parts
 from solver.options import Progress
 
@@ -159,6 +160,26 @@ def test_parts_of_a_map_are_decided_once_and_the_command_decides_the_same(
     known = solver.answer(replace(session.task(session.now().version), number=99), lambda _: None)
     assert known.made.scene.lines.ends.tolist() == alone
     assert len(decided) == 2
+
+
+def test_a_map_that_needs_corrections_to_be_read_has_no_parts(made_photo, raw, map_with_a_part, monkeypatch):
+    looked = []
+
+    def look(*given):
+        looked.append(given)
+        if len(looked) == 1:
+            raise DepthMapError("of the photo by itself")
+        return find_evidence(*given)
+
+    monkeypatch.setattr(linecad.pipeline, "find_evidence", look)
+    session = Session(made_photo, raw, Options(), Corrections("made.jpg", 1600, 1200), lambda _: None)
+    session.edit(session.now().version, lambda _: Delete(session.editing.anchor(0)))
+    answer = TaskSolver(made_photo, Options(), map_with_a_part).answer(
+        session.task(session.now().version), lambda _: None
+    )
+    assert not answer.error
+    assert len(looked) == 2
+    assert not answer.made.places.evidence.heard.parts
 
 
 def test_a_stage_is_told_until_the_search_begins(made_photo):
