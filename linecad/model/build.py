@@ -143,7 +143,10 @@ def build_scene(
     whole = planes
     drawn = ToldOpenings(view.faces, planes, lines, view.camera, view.frame.rotation, graph.turns)
     planes, openings, told = _opened(planes, holes.openings, drawn)
-    on_faces = add_lines(framed, planes, view.details, view.camera, sight, cleaned.intersections, regions.roofs)
+    by_hand = cleaned.row[np.zeros(0, np.int64) if placed is None else new_id[found.kept & placed.told]]
+    on_faces = add_lines(
+        framed, planes, view.details, view.camera, sight, cleaned.intersections, regions.roofs, by_hand
+    )
     ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight), sight)
     framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))

@@ -17,7 +17,7 @@ from linecad.lines.details import apart_from, left_of, repeats
 from linecad.model.clean.absorbing import absorbed
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, sight_in, together
-from linecad.model.on_faces.better import better_faces
+from linecad.model.on_faces.better import better_places
 from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
 from linecad.model.on_faces.posts import standing
@@ -26,6 +26,7 @@ from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.model.regions.roofs import Roof
 from linecad.scene import Camera, Intersections, Lines, Plane
 
+NO_ROWS = np.zeros(0, np.int64)
 UNKNOWN = 0.5  # the probability of a plane that no line shows
 LEAST_ON_GROUND = PhotoLength(150.0, floor=30.0)  # px; shorter edges there are stones, stains and leaves
 
@@ -38,6 +39,7 @@ class LinesOnFaces:
     planes: tuple[Plane, ...]  # with their lines
     kept: Bool  # (N,) which of the lines that were there are among the K; ids were rows
     put: Int  # ids that those have now which faces and the ground placed better
+    nowhere: int = 0  # lines that were left out
 
     def crossings(self, crossings: Intersections) -> Intersections:
         """The crossings of lines that stayed; the tree is one again."""
@@ -68,6 +70,11 @@ class LinesOnFaces:
         if put:
             where = "lie on a face in the photo or stand on its ground or roofs"
             notes.append(f"{put} lines in doubtful places {where}, and were put there")
+        if self.nowhere:
+            notes.append(
+                f"{self.nowhere} doubtful lines are left out: they would lie behind the wall, floor or ceiling that "
+                "they are seen on or before, and no face places them"
+            )
         return tuple(notes)
 
 
@@ -79,25 +86,28 @@ def add_lines(
     sight: Sight,
     crossings: Intersections,
     roofs: tuple[Roof, ...] = (),
+    told: Int = NO_ROWS,
 ) -> LinesOnFaces:
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
     The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
     whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these, but for lines of
-    which a person said something at one of their `crossings`. Nothing changes where `details` are None.
+    which a person said something at one of their `crossings`, and those `told` (rows) that are where a person put them.
+    Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))
     turns, rotation = framed.turns, sight.rotation
     seen = SeenFaces.of(planes, camera, rotation, turns)
-    better = better_faces(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
+    places = better_places(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
+    better, nowhere = places.face, places.nowhere
     nearer, below = standing(framed.in_world(), seen)
     farther, carrying = on_roofs(framed.in_world(), roofs, seen, rotation)
     nearer, below = np.where(below == NO_FACE, farther, nearer), np.where(below == NO_FACE, carrying, below)
-    said = crossings.lines[np.asarray(crossings.reason) == "annotated"]
-    better[said], below[said] = NO_FACE, NO_FACE
-    better[below != NO_FACE] = NO_FACE
-    kept = (better == NO_FACE) & (below == NO_FACE)
+    said = np.append(crossings.lines[np.asarray(crossings.reason) == "annotated"], told)
+    better[said], below[said], nowhere[said] = NO_FACE, NO_FACE, False
+    better[below != NO_FACE], nowhere[below != NO_FACE] = NO_FACE, False
+    kept = (better == NO_FACE) & (below == NO_FACE) & ~nowhere
     posts = _nearer(framed.of_rows(np.flatnonzero(below != NO_FACE)), nearer[below != NO_FACE])
     moved = framed.of_rows(np.flatnonzero(better != NO_FACE))
     framed = framed.of_rows(np.flatnonzero(kept))
@@ -123,7 +133,7 @@ def add_lines(
         members[seen.plane[each].id].append(number)
     full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)
     put = np.r_[lines.id[: len(moved.lines)], lines.id[count:]]
-    return LinesOnFaces(*without_repeats(every, full, sight), kept, put)
+    return LinesOnFaces(*without_repeats(every, full, sight), kept, put, int(nowhere.sum()))
 
 
 def without_repeats(

@@ -126,6 +126,12 @@ class Placed:
         return self.places.evidence.setting
 
     @property
+    def told(self) -> Bool:
+        """(N,) lines of bodies that a person says something of, but for the one that others are placed against."""
+        evidence, told = self.places.evidence, self.places.told.ties.bodies
+        return np.isin(evidence.setting.bodies.body, told[told != evidence.reference])
+
+    @property
     def ties(self) -> Ties:
         """What ties the bodies."""
         return self.places.ties

@@ -22,6 +22,7 @@ class SeenFaces:
     plane: tuple[Plane, ...]  # F
     face: tuple[Face, ...]  # F
     polygon: NDArray[np.object_]  # (F,) px
+    hidden: NDArray[np.object_]  # (F,) px, what things before the faces hide of them
     camera: Camera
     axes: Float  # (3, K) directions in the camera frame
     turns: Turns = ()  # of further frames
@@ -30,17 +31,18 @@ class SeenFaces:
     def of(cls, planes: tuple[Plane, ...], camera: Camera, rotation: Float, turns: Turns = ()) -> "SeenFaces":
         """Those of all planes; `rotation` (3, 3) takes world to camera, `turns` are of further frames."""
         faces = [(plane, face) for plane in planes for face in plane.faces]
-        polygons = np.array([_seen(face, camera, rotation) for _, face in faces], object)
-        shapely.prepare(polygons)
+        shapes = np.array([_shown(face, camera, rotation) for _, face in faces], object).reshape(-1, 2)
+        shapely.prepare(shapes)
         planes, shown = (tuple(each) for each in zip(*faces, strict=True)) if faces else ((), ())
-        return cls(planes, shown, polygons, camera, components(rotation, turns), turns)
+        return cls(planes, shown, shapes[:, 0], shapes[:, 1], camera, components(rotation, turns), turns)
 
     def at(self, pixels: Float) -> Int:
         """The face (M,) that each pixel (M, 2) shows, NO_FACE for none."""
-        found = np.full(len(pixels), NO_FACE)
-        for number, polygon in enumerate(self.polygon):
-            found[shapely.contains_xy(polygon, pixels)] = number
-        return found
+        return _which(self.polygon, pixels)
+
+    def hidden_at(self, pixels: Float) -> Int:
+        """The face (M,) that a thing hides at each pixel (M, 2), NO_FACE for none."""
+        return _which(self.hidden, pixels)
 
     @property
     def axis(self) -> Int:
@@ -63,8 +65,16 @@ class SeenFaces:
         return self.at(pixels + across), self.at(pixels - across)
 
 
-def _seen(face: Face, camera: Camera, rotation: Float) -> shapely.Geometry:
+def _shown(face: Face, camera: Camera, rotation: Float) -> tuple[shapely.Geometry, shapely.Geometry]:
+    """What the photo shows of a face, and what it does not for a thing before it, px."""
     outline, *others = (project(ring, camera.matrix, rotation) for ring in (face.outline, *face.holes, *face.hidden))
     whole = shapely.make_valid(shapely.Polygon(outline, others[: len(face.holes)]))
-    hidden = [shapely.make_valid(shapely.Polygon(ring)) for ring in others[len(face.holes) :]]
-    return shapely.difference(whole, shapely.union_all(hidden)) if hidden else whole
+    hidden = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in others[len(face.holes) :]])
+    return shapely.difference(whole, hidden) if face.hidden else whole, hidden
+
+
+def _which(polygons: NDArray[np.object_], pixels: Float) -> Int:
+    found = np.full(len(pixels), NO_FACE)
+    for number, polygon in enumerate(polygons):
+        found[shapely.contains_xy(polygon, pixels)] = number
+    return found

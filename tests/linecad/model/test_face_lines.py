@@ -1,6 +1,7 @@
 """Lines that faces place: of a made house, whose walls are known, with what the photo shows on them."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,9 +10,10 @@ from linecad.arrays import rows_of
 from linecad.geometry import project
 from linecad.line_graph import Segments
 from linecad.model.clean.sight import Sight
-from linecad.model.face_lines import LEAST_ON_GROUND, UNKNOWN, add_lines
+from linecad.model.face_lines import LEAST_ON_GROUND, NO_ROWS, UNKNOWN, add_lines
 from linecad.model.faces import find_faces
 from linecad.model.frames import FramedLines, together
+from linecad.model.on_faces.better import LEAST_LIKELY
 from linecad.scene import Face, Intersections, Lines, Plane
 
 X, Y, Z = range(3)
@@ -157,7 +159,14 @@ def inner_row(house):
 
 
 @pytest.mark.parametrize(
-    ("factor", "probability", "moves"), [(1.3, 0.2, True), (0.8, 0.2, True), (1.3, 0.6, False), (1.004, 0.2, False)]
+    ("factor", "probability", "moves"),
+    [
+        (1.3, 0.2, True),
+        (0.8, 0.2, True),
+        (0.8, 0.6, False),
+        (1.3, 0.6, False),  # the wall may be one that is not there
+        (1.004, 0.2, False),
+    ],
 )
 def test_a_doubtful_line_goes_to_the_face_that_it_lies_on(add, house, factor, probability, moves):
     row = inner_row(house)
@@ -245,11 +254,105 @@ def test_lines_on_a_street_go_there_unless_they_are_surer_than_it(house, planes,
     far = Face(99, np.array([[60.0, 60, -9], [61, 60, -9], [61, 61, -9]]), kind="ground")
     street = (*planes, Plane(99, Z, -9.0, (), (far,)))[: len(planes) + levels - 1]
     bare = tuple(replace(plane, lines=()) for plane in street)
-    lines = with_line(house, Y, np.array([KERB[1]]), 1.3)
+    lines = with_line(house, Y, np.array([KERB[1]]), 0.8)
     lines = replace(lines, probability=np.r_[np.full(len(lines) - 1, 0.9), probability])
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
     found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
     assert found.kept[-1] != moves
+
+
+def moved_behind(house, planes, sight, axis, ends, probability, factor=1.0, told=NO_ROWS):
+    """What faces make of the house and one more line with ends (2, 3) at `factor` times its distance."""
+    lines = with_line(house, axis, np.array([ends], float), factor)
+    lines = replace(lines, probability=np.r_[np.full(len(lines) - 1, 0.9), probability])
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    return add_lines(framed, planes, Segments.none(), house.camera, sight, NONE, told=told)
+
+
+@pytest.mark.parametrize(("likely", "moves"), [(LEAST_LIKELY, True), (LEAST_LIKELY - 0.01, False)])
+def test_a_face_that_is_hardly_likely_hides_nothing(house, planes, sight, likely, moves):
+    row = inner_row(house)
+    lines = doubtful(house, row, 1.3, 0.45)
+    lines = replace(lines, probability=np.where(np.arange(len(lines)) == row, 0.45, likely))
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    found = add_lines(framed, planes, Segments.none(), house.camera, sight, NONE)
+    assert found.kept[row] != moves
+
+
+@pytest.mark.parametrize(("factor", "moves"), [(1.3, True), (1.03, False), (0.8, False)])
+def test_a_line_below_the_ground_goes_there_however_sure_it_was(house, planes, sight, factor, moves):
+    assert moved_behind(house, planes, sight, *KERB, 0.95, factor).kept[-1] != moves
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_line_behind_two_faces_goes_to_the_farther_one(house, planes, sight, turned):
+    """An upright before the corner of the house, the side on its left, which stands nearer here, and the front."""
+    side = next(plane for plane in planes if plane.axis == X and plane.faces)
+    near = tuple(replace(face, outline=0.9 * face.outline) for face in side.faces)
+    moved = (*(plane for plane in planes if plane is not side), replace(side, offset=0.9 * side.offset, faces=near))
+    bare = tuple(replace(plane, lines=()) for plane in moved)
+    corner = np.flatnonzero((house.lines.ends == [SIDE, FRONT, GROUND]).all(axis=2).any(axis=1))
+    row = corner[house.lines.axis[corner] == Z][0]
+    lines = doubtful(house, row, 1.3, 0.45)
+    if turned:  # so that its sides change places
+        lines = replace(lines, segment=lines.segment[:, ::-1], ends=lines.ends[:, ::-1])
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
+    there = [np.array(ends) for axis, ends in new(found) if axis == Z]
+    assert any(np.allclose(ends[:, :2], [SIDE, FRONT], atol=0.02) and np.ptp(ends[:, Z]) > 3 for ends in there)
+
+
+def test_what_runs_over_several_faces_of_a_plane_lies_in_it(house, planes, sight):
+    """As the edge of a wall and its panes: no face has most of the line."""
+    front = next(plane for plane in planes if plane.axis == Y and plane.faces)
+    bounds = np.linspace(SIDE, 5.5, 4)
+    parts = tuple(
+        Face(number, np.array([[a, FRONT, GROUND], [b, FRONT, GROUND], [b, FRONT, 1.6], [a, FRONT, 1.6]]), kind="wall")
+        for number, (a, b) in enumerate(pairwise(bounds))
+    )
+    whole = (*(plane for plane in planes if plane is not front), replace(front, faces=parts))
+    found = moved_behind(house, whole, sight, X, [[2.3, FRONT, 0.1], [5.2, FRONT, 0.1]], 0.45, 1.3)
+    assert not found.kept[-1]
+
+
+def test_a_line_on_the_ground_may_be_as_long_as_it_was(house, planes, sight):
+    """Its far end is more than three times as far as its middle, and was before."""
+    long = [[0.5, 5.0, GROUND], [0.5, 60.0, GROUND]]
+    found = moved_behind(house, planes, sight, Y, long, 0.9, 1.3)
+    assert not found.kept[-1]
+
+
+ACROSS = (Y, [[3.6, 9.0, -0.2], [3.6, 12.0, -0.2]])  # seen on the front, between its windows
+
+
+@pytest.mark.parametrize(("factor", "probability", "stays"), [(1.0, 0.3, False), (1.0, 0.6, True), (0.6, 0.3, True)])
+def test_a_doubtful_line_across_what_it_is_seen_on_and_behind_it_is_nowhere(
+    house, planes, sight, factor, probability, stays
+):
+    found = moved_behind(house, planes, sight, *ACROSS, probability, factor)
+    assert found.kept.tolist() == [True] * len(house.lines) + [stays]
+    notes = [note for note in found.notes(found.lines.lines) if "left out" in note]
+    assert [note[:16] for note in notes] == ["1 doubtful lines"] * (not stays)
+    assert not any(axis == Y and np.ptp(np.array(ends)[:, Y]) > 2.5 for axis, ends in new(found) if not stays)
+
+
+def test_a_doubtful_line_on_a_thing_before_a_wall_does_not_lie_behind_that_wall(house, planes, sight):
+    bush = np.array([[2.4, FRONT, -1.9], [5.2, FRONT, -1.9], [5.2, FRONT, 1.5], [2.4, FRONT, 1.5]])
+    hidden = tuple(
+        replace(plane, faces=tuple(replace(face, hidden=(bush,)) for face in plane.faces)) if plane.axis == Y else plane
+        for plane in planes
+    )
+    twig = [[3.0, FRONT, 0.1], [4.5, FRONT, 0.1]]
+    assert not moved_behind(house, hidden, sight, X, twig, 0.3, 1.3).kept[-1]
+    assert moved_behind(house, hidden, sight, X, twig, 0.6, 1.3).kept[-1]
+    assert moved_behind(house, hidden, sight, X, twig, 0.3, 0.7).kept[-1]
+
+
+def test_what_a_person_put_behind_a_wall_stays_there(house, planes, sight):
+    last = np.array([len(house.lines)])
+    for axis, ends, probability in ((*ACROSS, 0.3), (Y, KERB[1], 0.9)):
+        assert not moved_behind(house, planes, sight, axis, ends, probability, 1.3).kept[-1]
+        assert moved_behind(house, planes, sight, axis, ends, probability, 1.3, last).kept[-1]
 
 
 def test_a_line_that_a_person_said_something_of_stays(add, house):

@@ -32,6 +32,7 @@ def pixels_of(points):
 )
 def test_a_place_shows_the_face_there_but_not_what_something_hides(x, z, face):
     assert SEEN.at(pixels_of([[x, 10, z]])).tolist() == [face]
+    assert SEEN.hidden_at(pixels_of([[x, 10, z]])).tolist() == [0 if (x, z) == (2.5, -1) else NO_FACE]
 
 
 def test_depths_are_those_of_the_planes_on_the_rays():
