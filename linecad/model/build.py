@@ -18,7 +18,7 @@ from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.coplanar import join_planes
 from linecad.model.depth_evidence import depths_of, normals_of
-from linecad.model.face_lines import add_lines, without_repeats
+from linecad.model.face_lines import add_lines, lines_told, without_repeats
 from linecad.model.faces import find_faces, with_roofs
 from linecad.model.finishing import finished
 from linecad.model.frame_crossings import clean_and_cross, inexact_crossings
@@ -143,10 +143,9 @@ def build_scene(
     whole = planes
     drawn = ToldOpenings(view.faces, planes, lines, view.camera, view.frame.rotation, graph.turns)
     planes, openings, told = _opened(planes, holes.openings, drawn)
-    by_hand = cleaned.row[np.zeros(0, np.int64) if placed is None else new_id[found.kept & placed.told]]
-    on_faces = add_lines(
-        framed, planes, view.details, view.camera, sight, cleaned.intersections, regions.roofs, by_hand
-    )
+    of_bodies = None if placed is None else cleaned.row[new_id[found.kept & placed.told]]
+    said = lines_told(cleaned.intersections, of_bodies)
+    on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions.roofs)
     ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight), sight)
     framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))

@@ -78,22 +78,26 @@ class LinesOnFaces:
         return tuple(notes)
 
 
+def lines_told(crossings: Intersections, of_bodies: Int | None = None) -> Int:
+    """The rows of the lines that a person said something of: at one of their crossings, or of bodies, given by rows."""
+    at_crossings = crossings.lines[np.asarray(crossings.reason) == "annotated"].ravel()
+    return at_crossings if of_bodies is None else np.append(at_crossings, of_bodies)
+
+
 def add_lines(
     framed: FramedLines,
     planes: tuple[Plane, ...],
     details: Segments | None,
     camera: Camera,
     sight: Sight,
-    crossings: Intersections,
+    said: Int = NO_ROWS,
     roofs: tuple[Roof, ...] = (),
-    told: Int = NO_ROWS,
 ) -> LinesOnFaces:
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
     The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
-    whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these, but for lines of
-    which a person said something at one of their `crossings`, and those `told` (rows) that are where a person put them.
-    Nothing changes where `details` are None.
+    whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these, but for lines
+    (rows) of which a person `said` something. Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))
@@ -104,7 +108,6 @@ def add_lines(
     nearer, below = standing(framed.in_world(), seen)
     farther, carrying = on_roofs(framed.in_world(), roofs, seen, rotation)
     nearer, below = np.where(below == NO_FACE, farther, nearer), np.where(below == NO_FACE, carrying, below)
-    said = np.append(crossings.lines[np.asarray(crossings.reason) == "annotated"], told)
     better[said], below[said], nowhere[said] = NO_FACE, NO_FACE, False
     better[below != NO_FACE], nowhere[below != NO_FACE] = NO_FACE, False
     kept = (better == NO_FACE) & (below == NO_FACE) & ~nowhere

@@ -62,11 +62,13 @@ def better_places(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) ->
         near = there.max(axis=0) / there[1]
     sure = (likely[face] > own) & ((own < DOUBTFUL) | street[face])
     below = street | np.array([each.kind == "ground" for each in seen.face], bool)
-    must = (now[1] > BEHIND * there[1]) & (likely[face] >= LEAST_LIKELY) & ((own < DOUBTFUL) | below[face])
+    # Where a depth map has a line, it saw what is there; faces by their lines did not.
+    heard = np.asarray(lines.by_depth_map, bool) if len(lines.by_depth_map) else np.zeros(len(lines), bool)
+    must = ~heard & (now[1] > BEHIND * there[1]) & (likely[face] >= LEAST_LIKELY) & ((own < DOUBTFUL) | below[face])
     fits = near <= np.maximum(FURTHEST, STRETCHED * now.max(axis=0) / now[1])
     placed = (share >= LEAST_SHARE) & (sure | must) & (np.abs(there[1] / now[1] - 1) > APART) & fits
     lost = np.bincount(samples.row, before.lost, len(lines)) / np.bincount(samples.row) >= LEAST_SHARE
-    return BetterPlaces(np.where(placed, face, NO_FACE), ~placed & lost & (own < DOUBTFUL))
+    return BetterPlaces(np.where(placed, face, NO_FACE), ~placed & lost & ~heard & (own < DOUBTFUL))
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,14 +10,13 @@ from linecad.arrays import rows_of
 from linecad.geometry import project
 from linecad.line_graph import Segments
 from linecad.model.clean.sight import Sight
-from linecad.model.face_lines import LEAST_ON_GROUND, NO_ROWS, UNKNOWN, add_lines
+from linecad.model.face_lines import LEAST_ON_GROUND, NO_ROWS, UNKNOWN, add_lines, lines_told
 from linecad.model.faces import find_faces
 from linecad.model.frames import FramedLines, together
 from linecad.model.on_faces.better import LEAST_LIKELY
 from linecad.scene import Face, Intersections, Lines, Plane
 
 X, Y, Z = range(3)
-NONE = Intersections([], [], [], [], [], [])
 SIDE, FRONT, GROUND = 2.0, 8.0, -2.0
 
 
@@ -35,13 +34,13 @@ def sight(house):
 def add(house, planes, sight):
     """What faces add to lines of the house, given edges (axis, ends) in the world that the photo shows."""
 
-    def added(edges, lines=house.lines, crossings=NONE):
+    def added(edges, lines=house.lines, said=NO_ROWS):
         ends = np.array([each for _, each in edges], float).reshape(-1, 2, 3)
         details = Segments(
             project(ends, house.camera.matrix, house.rotation), np.array([axis for axis, _ in edges], np.int64)
         )
         framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-        return add_lines(framed, planes, details, house.camera, sight, crossings)
+        return add_lines(framed, planes, details, house.camera, sight, said)
 
     return added
 
@@ -97,7 +96,7 @@ def test_the_feet_of_walls_are_lines_though_no_crossing_placed_the_ground(house,
     lines = replace(rows_of(house.lines, rows), id=np.arange(len(rows)))
     bare = tuple(replace(plane, lines=()) for plane in planes)
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-    found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight)
     feet = [np.array(ends) for axis, ends in new(found) if axis != Z and (np.array(ends)[:, Z] == GROUND).all()]
     assert sum((ends[:, Y] == FRONT).all() for ends in feet) == 1
     assert sum((ends[:, X] == SIDE).all() for ends in feet) == 1
@@ -219,7 +218,7 @@ def test_the_number_of_a_line_that_went_may_be_given_again_but_is_no_longer_in_i
     last = len(lines) - 1
     planes = tuple(replace(plane, lines=(*plane.lines, last)) for plane in planes)
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-    found = add_lines(framed, planes, Segments.none(), house.camera, sight, NONE)
+    found = add_lines(framed, planes, Segments.none(), house.camera, sight)
     assert not found.kept[last]
     after = found.lines.lines
     assert last in after.id
@@ -243,7 +242,7 @@ def test_a_post_that_a_person_said_something_of_stays(add, house):
         lines=[[0, len(house.lines)]], kind=["X"], pixel=[[0, 0]], real=[True], in_tree=[True], weight=[1],
         reason=["annotated"],
     )  # fmt: skip
-    assert add([], with_line(house, Z, POST, 1.4), said).kept.all()
+    assert add([], with_line(house, Z, POST, 1.4), lines_told(said)).kept.all()
 
 
 @pytest.mark.parametrize(
@@ -257,7 +256,7 @@ def test_lines_on_a_street_go_there_unless_they_are_surer_than_it(house, planes,
     lines = with_line(house, Y, np.array([KERB[1]]), 0.8)
     lines = replace(lines, probability=np.r_[np.full(len(lines) - 1, 0.9), probability])
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-    found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight)
     assert found.kept[-1] != moves
 
 
@@ -266,7 +265,7 @@ def moved_behind(house, planes, sight, axis, ends, probability, factor=1.0, told
     lines = with_line(house, axis, np.array([ends], float), factor)
     lines = replace(lines, probability=np.r_[np.full(len(lines) - 1, 0.9), probability])
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-    return add_lines(framed, planes, Segments.none(), house.camera, sight, NONE, told=told)
+    return add_lines(framed, planes, Segments.none(), house.camera, sight, told)
 
 
 @pytest.mark.parametrize(("likely", "moves"), [(LEAST_LIKELY, True), (LEAST_LIKELY - 0.01, False)])
@@ -275,13 +274,22 @@ def test_a_face_that_is_hardly_likely_hides_nothing(house, planes, sight, likely
     lines = doubtful(house, row, 1.3, 0.45)
     lines = replace(lines, probability=np.where(np.arange(len(lines)) == row, 0.45, likely))
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-    found = add_lines(framed, planes, Segments.none(), house.camera, sight, NONE)
+    found = add_lines(framed, planes, Segments.none(), house.camera, sight)
     assert found.kept[row] != moves
 
 
 @pytest.mark.parametrize(("factor", "moves"), [(1.3, True), (1.03, False), (0.8, False)])
 def test_a_line_below_the_ground_goes_there_however_sure_it_was(house, planes, sight, factor, moves):
     assert moved_behind(house, planes, sight, *KERB, 0.95, factor).kept[-1] != moves
+
+
+def test_what_a_depth_map_has_behind_a_face_stays_there(house, planes, sight):
+    for edge, probability in ((KERB, 0.9), (ACROSS, 0.3)):
+        lines = with_line(house, edge[0], np.array([edge[1]], float), 1.3)
+        last = np.arange(len(lines)) == len(lines) - 1
+        lines = replace(lines, probability=np.where(last, probability, 0.9), by_depth_map=last)
+        framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+        assert add_lines(framed, planes, Segments.none(), house.camera, sight).kept[-1]
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -297,7 +305,7 @@ def test_a_line_behind_two_faces_goes_to_the_farther_one(house, planes, sight, t
     if turned:  # so that its sides change places
         lines = replace(lines, segment=lines.segment[:, ::-1], ends=lines.ends[:, ::-1])
     framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
-    found = add_lines(framed, bare, Segments.none(), house.camera, sight, NONE)
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight)
     there = [np.array(ends) for axis, ends in new(found) if axis == Z]
     assert any(np.allclose(ends[:, :2], [SIDE, FRONT], atol=0.02) and np.ptp(ends[:, Z]) > 3 for ends in there)
 
@@ -360,8 +368,8 @@ def test_a_line_that_a_person_said_something_of_stays(add, house):
     said = Intersections(
         lines=[[0, row]], kind=["X"], pixel=[[0, 0]], real=[True], in_tree=[True], weight=[1], reason=["annotated"]
     )
-    assert add([], doubtful(house, row, 1.3, 0.1), said).kept.all()
-    assert not add([], doubtful(house, row, 1.3, 0.1), replace(said, reason=["chosen"])).kept.all()
+    assert add([], doubtful(house, row, 1.3, 0.1), lines_told(said)).kept.all()
+    assert not add([], doubtful(house, row, 1.3, 0.1), lines_told(replace(said, reason=["chosen"]))).kept.all()
 
 
 def test_crossings_of_lines_that_went_go_too_and_the_tree_stays_one(add, house):
@@ -384,7 +392,7 @@ def test_crossings_of_lines_that_went_go_too_and_the_tree_stays_one(add, house):
 
 def test_without_details_nothing_changes(house, planes, sight):
     framed = FramedLines(house.lines, np.zeros(len(house.lines), np.int64), ())
-    found = add_lines(framed, planes, None, house.camera, sight, NONE)
+    found = add_lines(framed, planes, None, house.camera, sight)
     assert found.lines is framed
     assert found.planes is planes
     assert found.kept.all()
