@@ -3,7 +3,7 @@
 from dataclasses import dataclass, replace
 
 from linecad.camera.photo import Photo
-from linecad.corrections.annotations import Annotations, as_found, facts_of
+from linecad.corrections.annotations import Annotations, as_found, by_hand, facts_of
 from linecad.corrections.apply import correct
 from linecad.corrections.corrected import CorrectedLines, ToldFact
 from linecad.corrections.edits import Corrections
@@ -205,6 +205,7 @@ def reconstruct_prepared(
         limits = with_annotations(options.solve, annotations)
         with told_in_the_photo(graph, corrected):
             placed = place_on(evidence, graph, limits, facts, on_progress, on_stage)
+        placed = replace(placed, by_hand=by_hand(graph, corrected))
         solution = placed.solution
         on_facts += placed.places.told.notes(facts)
     else:

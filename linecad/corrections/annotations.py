@@ -72,3 +72,13 @@ def as_found(graph: LineGraph, corrected: CorrectedLines | None) -> Segments:
     """What each line of a graph was before any edit; a line that was drawn is as it was drawn."""
     segments = graph.segments
     return segments if corrected is None else corrected.as_found.subset(rows_of(segments, corrected))
+
+
+def by_hand(graph: LineGraph, corrected: CorrectedLines | None) -> Bool | None:
+    """(N,) the lines of a graph that a person drew or told the length of; None without corrections."""
+    if corrected is None:
+        return None
+    own = np.array([each == "drawn" for each in corrected.origin], bool) | np.isin(
+        corrected.ids, list(corrected.lengths)
+    )
+    return own[rows_of(graph.segments, corrected)]

@@ -119,6 +119,7 @@ class Placed:
     probability: Float  # (N,) that a line's depth relative to component 0 is right within 5 %
     by_map: Bool  # (N,) lines of bodies that a depth map alone ties to the reference
     depth_map: DepthMapReport | None  # its scale is that of the solution's depths; None where no map was given
+    by_hand: Bool | None = None  # (N,) lines that a person drew, or told the length of; None for none
 
     @property
     def setting(self) -> Setting:
@@ -127,9 +128,12 @@ class Placed:
 
     @property
     def told(self) -> Bool:
-        """(N,) lines of bodies that a person says something of, but for the one that others are placed against."""
-        evidence, told = self.places.evidence, self.places.told.ties.bodies
-        return np.isin(evidence.setting.bodies.body, told[told != evidence.reference])
+        """(N,) lines that a person drew or measured, or of bodies that a person placed against the reference."""
+        evidence, body = self.places.evidence, self.setting.bodies.body
+        own = body[self.setting.graph.edges[evidence.real]]
+        placed = np.append(self.places.told.ties.bodies, own[own[:, 0] != own[:, 1]])
+        told = np.isin(body, placed[(placed >= 0) & (placed != evidence.reference)])
+        return told if self.by_hand is None else told | self.by_hand
 
     @property
     def ties(self) -> Ties:

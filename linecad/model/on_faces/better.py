@@ -56,7 +56,8 @@ def better_places(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) ->
     before = _before(samples, lines, seen, turns)
     face, share = before.most_of(len(lines), samples.row)
     at = np.stack([segments.ends[:, 0], middles(segments.ends), segments.ends[:, 1]])
-    now = np.stack([_depths(lines.ends[:, 0], segments.axis, pixels, seen, turns) for pixels in at])
+    with np.errstate(invalid="ignore"):  # an end may lie on the vanishing point of its line
+        now = np.stack([_depths(lines.ends[:, 0], segments.axis, pixels, seen, turns) for pixels in at])
     there = np.stack([seen.depths(face, pixels) for pixels in at])
     with np.errstate(invalid="ignore"):
         near = there.max(axis=0) / there[1]

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from linecad.corrections.annotations import annotations_of
-from linecad.corrections.edits import LabelCrossing, Split
+from linecad.corrections.annotations import annotations_of, by_hand
+from linecad.corrections.edits import Anchor, Draw, KnownLength, LabelCrossing, Split
 from linecad.graph.build import build_line_graph
 
 
@@ -70,3 +70,14 @@ class TestAnnotations:
         assert noted.notes == (
             "the crossing at (10, 20) that was called real is not in the line graph; raise --option extension=PX",
         )
+
+
+def test_what_a_person_drew_or_measured_is_by_hand(made, applied, anchor):
+    drawn = Anchor(((300.0, 300.0), (380.0, 290.0)), 0)
+    lines = applied(Draw(drawn), KnownLength(anchor(1), 2.5))
+    graph = build_line_graph(lines.segments, made.camera, made.frame)
+    rows = lines.segments.rows(graph.segments)
+    wanted = [lines.origin[row] == "drawn" or lines.ids[row] == 1 for row in rows.tolist()]
+    assert by_hand(graph, lines).tolist() == wanted
+    assert sum(wanted) == 2
+    assert by_hand(graph, None) is None
