@@ -96,8 +96,9 @@ def add_lines(
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
     The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
-    whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these, but for lines
-    (rows) of which a person `said` something. Nothing changes where `details` are None.
+    whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these; those that faces
+    show to be nowhere are left out. Lines (rows) of which a person `said` something stay. Nothing changes where
+    `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))

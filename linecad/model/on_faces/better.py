@@ -58,8 +58,7 @@ def better_places(lines: Lines, likely: Float, seen: SeenFaces, turns: Turns) ->
     at = np.stack([segments.ends[:, 0], middles(segments.ends), segments.ends[:, 1]])
     with np.errstate(invalid="ignore"):  # an end may lie on the vanishing point of its line
         now = np.stack([_depths(lines.ends[:, 0], segments.axis, pixels, seen, turns) for pixels in at])
-    there = np.stack([seen.depths(face, pixels) for pixels in at])
-    with np.errstate(invalid="ignore"):
+        there = np.stack([seen.depths(face, pixels) for pixels in at])
         near = there.max(axis=0) / there[1]
     sure = (likely[face] > own) & ((own < DOUBTFUL) | street[face])
     below = street | np.array([each.kind == "ground" for each in seen.face], bool)
