@@ -145,7 +145,7 @@ def build_scene(
     planes, openings, told = _opened(planes, holes.openings, drawn)
     of_bodies = None if placed is None else cleaned.row[new_id[found.kept & placed.told]]
     said = lines_told(cleaned.intersections, of_bodies)
-    on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions.roofs)
+    on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)
     ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight), sight)
     framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))

@@ -19,11 +19,12 @@ from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, sight_in, together
 from linecad.model.on_faces.better import better_places
 from linecad.model.on_faces.edges import edges_of
+from linecad.model.on_faces.in_sky import in_the_sky
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
 from linecad.model.on_faces.posts import standing
 from linecad.model.on_faces.roofed import on_roofs
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
-from linecad.model.regions.roofs import Roof
+from linecad.model.regions.filling import Filled
 from linecad.scene import Camera, Intersections, Lines, Plane
 
 NO_ROWS = np.zeros(0, np.int64)
@@ -39,7 +40,8 @@ class LinesOnFaces:
     planes: tuple[Plane, ...]  # with their lines
     kept: Bool  # (N,) which of the lines that were there are among the K; ids were rows
     put: Int  # ids that those have now which faces and the ground placed better
-    nowhere: int = 0  # lines that were left out
+    nowhere: int = 0  # lines that were left out, as no face places them,
+    in_sky: int = 0  # and as they are in the sky
 
     def crossings(self, crossings: Intersections) -> Intersections:
         """The crossings of lines that stayed; the tree is one again."""
@@ -75,6 +77,8 @@ class LinesOnFaces:
                 f"{self.nowhere} doubtful lines are left out: they would lie behind the wall, floor or ceiling that "
                 "they are seen on or before, and no face places them"
             )
+        if self.in_sky:
+            notes.append(f"{self.in_sky} lines with the sky on both sides, as wires have, are left out")
         return tuple(notes)
 
 
@@ -91,14 +95,14 @@ def add_lines(
     camera: Camera,
     sight: Sight,
     said: Int = NO_ROWS,
-    roofs: tuple[Roof, ...] = (),
+    shown: Filled | None = None,
 ) -> LinesOnFaces:
     """The lines with the edges of faces and the `details` that lie on faces; `planes` have their openings.
 
     The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
-    whose foot the photo shows on the ground stand there, and what it shows on `roofs` stands on these; those that faces
-    show to be nowhere are left out. Lines (rows) of which a person `said` something stay. Nothing changes where
-    `details` are None.
+    whose foot the photo shows on the ground stand there, and what it shows on the roofs of what is `shown` stands on
+    these; those that faces show to be nowhere are left out, and those in the sky. Lines (rows) of which a person `said`
+    something stay. Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))
@@ -107,11 +111,13 @@ def add_lines(
     places = better_places(framed.in_world(), _typical_of(framed.lines, seen), seen, turns)
     better, nowhere = places.face, places.nowhere
     nearer, below = standing(framed.in_world(), seen)
-    farther, carrying = on_roofs(framed.in_world(), roofs, seen, rotation)
+    farther, carrying = on_roofs(framed.in_world(), () if shown is None else shown.roofs, seen, rotation)
     nearer, below = np.where(below == NO_FACE, farther, nearer), np.where(below == NO_FACE, carrying, below)
-    better[said], below[said], nowhere[said] = NO_FACE, NO_FACE, False
+    wires = _wires(framed, shown, camera.width)
+    better[wires], below[wires], nowhere[wires] = NO_FACE, NO_FACE, False
+    better[said], below[said], nowhere[said], wires[said] = NO_FACE, NO_FACE, False, False
     better[below != NO_FACE], nowhere[below != NO_FACE] = NO_FACE, False
-    kept = (better == NO_FACE) & (below == NO_FACE) & ~nowhere
+    kept = (better == NO_FACE) & (below == NO_FACE) & ~nowhere & ~wires
     posts = _nearer(framed.of_rows(np.flatnonzero(below != NO_FACE)), nearer[below != NO_FACE])
     moved = framed.of_rows(np.flatnonzero(better != NO_FACE))
     framed = framed.of_rows(np.flatnonzero(kept))
@@ -137,7 +143,7 @@ def add_lines(
         members[seen.plane[each].id].append(number)
     full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)
     put = np.r_[lines.id[: len(moved.lines)], lines.id[count:]]
-    return LinesOnFaces(*without_repeats(every, full, sight), kept, put, int(nowhere.sum()))
+    return LinesOnFaces(*without_repeats(every, full, sight), kept, put, int(nowhere.sum()), int(wires.sum()))
 
 
 def without_repeats(
@@ -161,6 +167,13 @@ def _without_repeats(framed: FramedLines, sight: Sight) -> FramedLines:
     order = np.concatenate(rows)
     lines = rows_of(together(parts), np.argsort(order))
     return FramedLines(lines, framed.frame[np.sort(order)], framed.turns)
+
+
+def _wires(framed: FramedLines, shown: Filled | None, width: int) -> Bool:
+    """Which lines (N,) are in the sky that is shown."""
+    if shown is None:
+        return np.zeros(len(framed.lines), bool)
+    return in_the_sky(framed.in_world(), shown.sky, width)
 
 
 def _nearer(framed: FramedLines, factor: Float) -> FramedLines:

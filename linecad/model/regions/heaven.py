@@ -1,8 +1,9 @@
 """What is above the lines of the scene: sky, with its clouds, up to where it ends, or a ceiling.
 
-Smooth parts at the top of the photo of the sky's colours are the seed. From there the sky is what looks more like it
-than like the rest of the photo (GrabCut: Rother, Kolmogorov and Blake, SIGGRAPH 2004), as far as no line of the scene
-is crossed but for wires. A small part that looks like what is smooth below it is plaster.
+Smooth parts at the top of the photo of the sky's colours are the seed, and so are parts anywhere above the horizon that
+are as light and blue as only a clear sky is: under a bridge, or beyond leaves. From there the sky is what looks more
+like it than like the rest of the photo (GrabCut: Rother, Kolmogorov and Blake, SIGGRAPH 2004), as far as no line of the
+scene is crossed but for wires. A small part that looks like what is smooth below it is plaster.
 """
 
 from dataclasses import dataclass
@@ -18,6 +19,9 @@ SMOOTH = 0.30  # gradient of the sky
 LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
 MOST_LINES = 0.02  # share of samples on lines inside the sky
 BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
+CLEAR, LIGHT = 120, 185  # of b* at most, and of L* at least: sky wherever it is; panes and roads as blue are darker
+LEAST_CLEAR = 0.004  # of the photo
+MOST_WITHIN, MOST_PANELS = 0.03, 1.5  # as MOST_LINES, gaps included; as MOST_ALIKE, of a clear sky
 WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
 EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
@@ -40,13 +44,13 @@ class Heaven:
 def look_up(raster: Raster) -> Heaven:
     """Whether what is at the top of the photo is sky or ceiling, and how far it reaches."""
     pieces, smooth = _smooth_pieces(raster)
-    nothing = np.zeros(raster.size, bool)
-    if not pieces:
-        return Heaven(nothing, is_sky=False, is_ceiling=False)
-    skies = _of_sky(pieces, raster)
+    clear, smooth = _clear_pieces(smooth, raster)
+    skies = _of_sky(pieces, raster) + clear
+    at_top = np.any([np.zeros(raster.shape, bool), *pieces], axis=0)
     if not skies:
-        return Heaven(nothing, is_sky=False, is_ceiling=bool(np.any(pieces, axis=0).mean() > LEAST_CEILING))
-    sky = _grown(skies, np.any(pieces, axis=0), smooth, raster)
+        is_ceiling = bool(at_top.mean() > LEAST_CEILING)
+        return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=is_ceiling)
+    sky = _grown(skies, at_top, smooth, raster)
     return Heaven(sky.ravel(), bool(sky.any()), is_ceiling=False)
 
 
@@ -67,6 +71,33 @@ def _smooth_pieces(raster: Raster) -> tuple[list[Bool], Bool]:
     return pieces, np.asarray((piece > 0) & ~np.isin(piece, piece[0]))
 
 
+def _clear_pieces(smooth: Bool, raster: Raster) -> tuple[list[Bool], Bool]:
+    """The parts (H, W) of what is `smooth` (H, W) that show a clear sky; and what is left of it.
+
+    No line runs through them or lies in a gap within, as windows do in a blue wall, and nothing else that is smooth
+    looks the same, as the other panels of such a wall do.
+    """
+    count, piece = cv2.connectedComponents(smooth.astype(np.uint8), connectivity=4)
+    area, on_line = np.bincount(piece.ravel(), minlength=count), _on_lines(raster)
+    clear, left = [], smooth
+    for number in (np.flatnonzero(area[1:] >= LEAST_CLEAR * raster.size) + 1).tolist():
+        own = piece == number
+        middle = np.median(raster.colour[own], axis=0)
+        if middle[2] > CLEAR or middle[0] < LIGHT or on_line[_filled(own)].mean() > MOST_WITHIN:
+            continue
+        others = raster.colour[smooth & ~own].astype(np.float64)
+        if _samples_like(middle, others) <= MOST_PANELS * own.sum():
+            clear.append(own)
+            left = left & ~own
+    return clear, left
+
+
+def _filled(part: Bool) -> Bool:
+    """A part (H, W) with what lies within it."""
+    outlines, _ = cv2.findContours(part.astype(np.uint8), cv2.RETR_EXTERNAL, cv2.CHAIN_APPROX_NONE)
+    return np.asarray(cv2.drawContours(np.zeros(part.shape, np.uint8), outlines, -1, 1, cv2.FILLED) > 0)
+
+
 def _is_up(raster: Raster) -> Bool:
     """(S,) above the horizon."""
     return np.asarray(raster.rays[:, UP] > 0)
@@ -79,6 +110,8 @@ def _on_lines(raster: Raster) -> Bool:
 
 def _of_sky(pieces: list[Bool], raster: Raster) -> list[Bool]:
     """Those smooth parts that have colours of the sky."""
+    if not pieces:
+        return []
     colours = [np.median(raster.colour[own], axis=0) for own in pieces]
     brightest = max(light for light, _, _ in colours)
     rest = _is_up(raster).reshape(raster.shape) & ~np.any(pieces, axis=0)
@@ -116,7 +149,12 @@ def _is_plaster(own: Picture, others: Float, size: int) -> bool:
     middle = np.median(own, axis=0)
     if len(own) > MOST_PLASTER * size or middle[2] < BLUE:
         return False
-    return int((np.abs(others - middle) < ALIKE).all(axis=1).sum()) > MOST_ALIKE * len(own)
+    return _samples_like(middle, others) > MOST_ALIKE * len(own)
+
+
+def _samples_like(middle: Float, others: Float) -> int:
+    """How many of other colours (N, 3) look like the middle one (3,) of a part."""
+    return int((np.abs(others - middle) < ALIKE).all(axis=1).sum())
 
 
 def _like(seed: Bool, is_none: Bool, raster: Raster) -> Bool:

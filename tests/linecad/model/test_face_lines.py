@@ -397,3 +397,15 @@ def test_without_details_nothing_changes(house, planes, sight):
     assert found.planes is planes
     assert found.kept.all()
     assert found.notes(found.lines.lines) == ()
+
+
+def test_a_wire_before_the_sky_is_left_out_unless_a_person_said_something_of_it(house, planes, sight, house_regions):
+    wire = np.array([[[-2.0, FRONT, 2.5], [1.0, FRONT, 2.5]]])
+    lines = with_line(house, X, wire, 1.0)
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    last = len(lines) - 1
+    found = add_lines(framed, planes, Segments.none(), house.camera, sight, shown=house_regions)
+    assert np.flatnonzero(~found.kept).tolist() == [last]
+    assert found.notes(found.lines.lines)[-1].startswith("1 lines with the sky on both sides")
+    assert add_lines(framed, planes, Segments.none(), house.camera, sight, np.array([last]), house_regions).kept.all()
+    assert add_lines(framed, planes, Segments.none(), house.camera, sight).kept.all()

@@ -183,6 +183,43 @@ def test_a_photo_that_is_all_panels_has_neither_sky_nor_ceiling(house):
     assert (heaven.is_sky, heaven.is_ceiling) == (False, False)
 
 
+CLEAR_SKY = (190, 215, 245)
+
+
+def framed(colour, *bars):
+    """A dark photo with a smooth opening of some colour above the horizon, dark bars (x, y, w, h) across it."""
+    photo = np.full((720, 960, 3), (60, 60, 60), np.uint8)
+    photo[80:260, 200:700] = colour
+    for x, y, width, height in bars:
+        photo[y : y + height, x : x + width] = (60, 60, 60)
+    return photo
+
+
+@pytest.mark.parametrize(
+    ("colour", "is_sky"), [(CLEAR_SKY, True), (BLUE_SKY, False), (WHITE, False), ((252, 252, 252), False)]
+)
+def test_a_clear_sky_is_sky_under_a_bridge_and_beyond_leaves_too(colour, is_sky, house):
+    """It was a wall, with the sky as its texture."""
+    seed = sky_over(framed(colour), house, [[300, 500], [600, 500]])
+    assert seed[45:125, 105:345].all() == is_sky
+    assert seed.any() == is_sky
+    assert not seed[:38].any()
+
+
+def test_a_blue_wall_in_panels_is_no_clear_sky(house):
+    bars = [(x, 80, 12, 180) for x in (300, 400, 500, 600)]
+    assert not sky_over(framed(CLEAR_SKY, *bars), house, [[300, 500], [600, 500]]).any()
+    assert sky_over(framed(CLEAR_SKY, bars[1]), house, [[300, 500], [600, 500]]).any()  # a post before the sky
+
+
+def test_a_blue_wall_with_windows_is_no_clear_sky(house):
+    windows = [(x, 130, 40, 60) for x in (260, 360, 460, 560)]
+    frames = [[[x, y], [x + 40, y]] for x, *_ in windows for y in range(130, 191, 6)]
+    photo = framed(CLEAR_SKY, *windows)
+    assert sky_over(photo, house, [[300, 500], [600, 500]]).any()  # birds
+    assert not sky_over(photo, house, *frames).any()
+
+
 def test_the_same_photo_has_the_same_sky(house):
     raster = take_raster(house.lines, house.camera, house.rotation, house.photo)
     first = look_up(raster)
