@@ -164,6 +164,8 @@ def _without_repeats(framed: FramedLines, sight: Sight) -> FramedLines:
             found, left = absorbed(lines, np.asarray(lines.by_face), sight_in(sight, frame, framed.turns).forward)
             parts.append(found)
             rows.append(own[left])
+    if not parts:
+        return framed
     order = np.concatenate(rows)
     lines = rows_of(together(parts), np.argsort(order))
     return FramedLines(lines, framed.frame[np.sort(order)], framed.turns)

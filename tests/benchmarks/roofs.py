@@ -141,8 +141,11 @@ def main() -> None:
         make(arguments.dataset, arguments.make)
     rows, all_found = [], 0
     for folder in sorted(path.parent for path in arguments.dataset.glob("*/truth.npz")):
+        truth = read_truth(folder)
+        if truth.frames is None:
+            parser.error(f"{folder} is no town; give a dataset of linecad dataset --towns")
         scene = found_scene(folder / "photo.jpg", folder / "camera.json")
-        of_town, count = compare(scene, read_truth(folder))
+        of_town, count = compare(scene, truth)
         print(f"{folder.name}: {len(of_town)} true, {count} found, right {sum(row[3] for row in of_town)}", flush=True)
         rows += of_town
         all_found += count

@@ -169,8 +169,12 @@ export class FaceTools {
   apply() {
     if (this.store.tool !== "area") return;
     const polygon = this.outline;
+    if (!polygon.length) return;
+    if (polygon.length < 3) {
+      this.actions.messages.tell("An area has three corners or more. Set one more, or press Escape.");
+      return;
+    }
     this.#clear();
-    if (polygon.length < 3) return;
     this.#edit({ op: "region", polygon, is: this.area });
   }
 

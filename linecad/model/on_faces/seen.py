@@ -68,9 +68,16 @@ class SeenFaces:
 def _shown(face: Face, camera: Camera, rotation: Float) -> tuple[shapely.Geometry, shapely.Geometry]:
     """What the photo shows of a face, and what it does not for a thing before it, px."""
     outline, *others = (project(ring, camera.matrix, rotation) for ring in (face.outline, *face.holes, *face.hidden))
-    whole = shapely.make_valid(shapely.Polygon(outline, others[: len(face.holes)]))
-    hidden = shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in others[len(face.holes) :]])
-    return shapely.difference(whole, hidden) if face.hidden else whole, hidden
+    holes, hidden = others[: len(face.holes)], _union(others[len(face.holes) :])
+    whole = shapely.make_valid(shapely.Polygon(outline, holes))
+    if not face.hidden:
+        return whole, hidden
+    # A ring around an opening covers it, though what is seen there is its pane.
+    return shapely.difference(whole, hidden), shapely.difference(hidden, _union(holes))
+
+
+def _union(rings: list[Float]) -> shapely.Geometry:
+    return shapely.union_all([shapely.make_valid(shapely.Polygon(ring)) for ring in rings])
 
 
 def _which(polygons: NDArray[np.object_], pixels: Float) -> Int:

@@ -10,7 +10,7 @@ from linecad.arrays import rows_of
 from linecad.geometry import project
 from linecad.line_graph import Segments
 from linecad.model.clean.sight import Sight
-from linecad.model.face_lines import LEAST_ON_GROUND, NO_ROWS, UNKNOWN, add_lines, lines_told
+from linecad.model.face_lines import LEAST_ON_GROUND, NO_ROWS, UNKNOWN, add_lines, lines_told, without_repeats
 from linecad.model.faces import find_faces
 from linecad.model.frames import FramedLines, together
 from linecad.model.on_faces.better import LEAST_LIKELY
@@ -409,3 +409,10 @@ def test_a_wire_before_the_sky_is_left_out_unless_a_person_said_something_of_it(
     assert found.notes(found.lines.lines)[-1].startswith("1 lines with the sky on both sides")
     assert add_lines(framed, planes, Segments.none(), house.camera, sight, np.array([last]), house_regions).kept.all()
     assert add_lines(framed, planes, Segments.none(), house.camera, sight).kept.all()
+
+
+def test_no_line_at_all_repeats_another(house, planes, sight):
+    framed = FramedLines(rows_of(house.lines, NO_ROWS), np.zeros(0, np.int64), ())
+    found, bare = without_repeats(framed, planes, sight)
+    assert len(found.lines) == 0
+    assert [plane.lines for plane in bare] == [()] * len(planes)

@@ -78,6 +78,20 @@ def test_clicks_are_corners_of_an_area_that_enter_closes(screen):
     assert edit.shows == "ground"
 
 
+def test_two_corners_are_no_area_and_stay_until_there_are_more(screen):
+    """Enter cleared them without a word."""
+    take(screen, "Shift+A", "ground")
+    for place in ON_GROUND[:2]:
+        screen.click(place)
+    screen.press("Enter")
+    assert "three corners" in screen.page.locator("#messages").inner_text()
+    assert screen.run("linecad.actions.faces.outline.length") == 2
+    screen.click(ON_GROUND[2])
+    screen.press("Enter")
+    (edit,) = corrections(screen)
+    assert len(edit.polygon) == 3
+
+
 def test_news_over_the_photo_catches_no_click(screen):
     take(screen, "Shift+A", "ground")
     screen.run(

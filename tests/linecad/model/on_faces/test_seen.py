@@ -35,6 +35,14 @@ def test_a_place_shows_the_face_there_but_not_what_something_hides(x, z, face):
     assert SEEN.hidden_at(pixels_of([[x, 10, z]])).tolist() == [0 if (x, z) == (2.5, -1) else NO_FACE]
 
 
+def test_a_window_in_what_a_tree_hides_is_not_hidden():
+    tree = Plane(4, 1, 10.0, (), (Face(0, ring(-4, 4, -3, 3), (HOLE,), "wall", (ring(-2, 2, -2, 2),)),))
+    seen = SeenFaces.of((tree, PANE), CAMERA, AHEAD)
+    pixels = pixels_of([[0, 10, 0], [1.5, 10, 0], [3, 10, 0]])
+    assert seen.hidden_at(pixels).tolist() == [NO_FACE, 0, NO_FACE]
+    assert seen.at(pixels).tolist() == [1, NO_FACE, 0]
+
+
 def test_depths_are_those_of_the_planes_on_the_rays():
     pixels = pixels_of([[-2, 10, 2], [0, 10, 0]])
     depth = SEEN.depths(np.array([0, 1]), pixels)
