@@ -101,8 +101,8 @@ def add_lines(
 
     The ids of the lines that were there are their rows. Those that faces place better are put onto these, and uprights
     whose foot the photo shows on the ground stand there, and what it shows on the roofs of what is `shown` stands on
-    these; those that faces show to be nowhere are left out, and those in the sky. Lines (rows) of which a person `said`
-    something stay. Nothing changes where `details` are None.
+    these; those that faces show to be nowhere are left out, and those in the sky that are not upright. Lines (rows) of
+    which a person `said` something stay. Nothing changes where `details` are None.
     """
     if details is None:
         return LinesOnFaces(framed, planes, np.ones(len(framed.lines), bool), np.zeros(0, np.int64))
@@ -113,7 +113,7 @@ def add_lines(
     nearer, below = standing(framed.in_world(), seen)
     farther, carrying = on_roofs(framed.in_world(), () if shown is None else shown.roofs, seen, rotation)
     nearer, below = np.where(below == NO_FACE, farther, nearer), np.where(below == NO_FACE, carrying, below)
-    wires = _wires(framed, shown, camera.width)
+    wires = _wires(framed, shown, camera)
     better[wires], below[wires], nowhere[wires] = NO_FACE, NO_FACE, False
     better[said], below[said], nowhere[said], wires[said] = NO_FACE, NO_FACE, False, False
     better[below != NO_FACE], nowhere[below != NO_FACE] = NO_FACE, False
@@ -171,11 +171,11 @@ def _without_repeats(framed: FramedLines, sight: Sight) -> FramedLines:
     return FramedLines(lines, framed.frame[np.sort(order)], framed.turns)
 
 
-def _wires(framed: FramedLines, shown: Filled | None, width: int) -> Bool:
+def _wires(framed: FramedLines, shown: Filled | None, camera: Camera) -> Bool:
     """Which lines (N,) are in the sky that is shown."""
     if shown is None:
         return np.zeros(len(framed.lines), bool)
-    return in_the_sky(framed.in_world(), shown.sky, width)
+    return in_the_sky(framed.in_world(), shown.sky, camera)
 
 
 def _nearer(framed: FramedLines, factor: Float) -> FramedLines:

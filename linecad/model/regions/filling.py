@@ -44,7 +44,7 @@ class Filled:
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
     roofs: tuple[Roof, ...] = ()  # before whatever the labels say
     drop: float | None = None  # of the road below the pavement, in heights of the camera above this; None: no kerb
-    sky: shapely.Geometry = NOWHERE  # px, what has the sky's colours, whatever the labels say
+    sky: shapely.Geometry = NOWHERE  # px, what is sky for sure, whatever the labels say
     told: tuple[str, ...] = ()  # what a person said and could not be taken, for people
 
     @property

@@ -20,7 +20,7 @@ from linecad.model.regions.overgrown import is_in_the_open
 from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets
-from linecad.model.regions.skyline import find_sky
+from linecad.model.regions.skyline import sure_sky
 from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet
 from linecad.model.regions.telling import tell
 from linecad.model.regions.told import Before
@@ -63,7 +63,7 @@ def find_regions(
     filled = with_told(on_ground(filled, raster, view), told)
     if any(surface is trodden for surface in surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
-    filled = replace(with_hidden(filled, raster), sky=find_sky(heaven, raster))
+    filled = replace(with_hidden(filled, raster), sky=sure_sky(heaven, raster))
     if look.sketch is not None:
         filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, heaven, raster, view))
     return uncovered(filled, told)

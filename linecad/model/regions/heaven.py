@@ -34,7 +34,7 @@ MOST_ALIKE = 0.6  # samples that look like a part of the sky and are none, for e
 
 @dataclass(frozen=True, eq=False)
 class Heaven:
-    """What is above the lines."""
+    """What is above the lines: sky, a ceiling, or both, as under a bridge."""
 
     seed: Bool  # (S,) sky for sure: all of it but for a sample at its end
     is_sky: bool  # whether there is any
@@ -44,14 +44,15 @@ class Heaven:
 def look_up(raster: Raster) -> Heaven:
     """Whether what is at the top of the photo is sky or ceiling, and how far it reaches."""
     pieces, smooth = _smooth_pieces(raster)
-    clear, smooth = _clear_pieces(smooth, raster)
-    skies = _of_sky(pieces, raster) + clear
+    skies = _of_sky(pieces, raster)
     at_top = np.any([np.zeros(raster.shape, bool), *pieces], axis=0)
+    is_ceiling = not skies and bool(at_top.mean() > LEAST_CEILING)
+    clear, smooth = _clear_pieces(smooth, raster)
+    skies = skies + clear  # below a ceiling too: through a window, or under a bridge
     if not skies:
-        is_ceiling = bool(at_top.mean() > LEAST_CEILING)
         return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=is_ceiling)
     sky = _grown(skies, at_top, smooth, raster)
-    return Heaven(sky.ravel(), bool(sky.any()), is_ceiling=False)
+    return Heaven(sky.ravel(), bool(sky.any()), is_ceiling)
 
 
 def _smooth_pieces(raster: Raster) -> tuple[list[Bool], Bool]:
@@ -74,18 +75,20 @@ def _smooth_pieces(raster: Raster) -> tuple[list[Bool], Bool]:
 def _clear_pieces(smooth: Bool, raster: Raster) -> tuple[list[Bool], Bool]:
     """The parts (H, W) of what is `smooth` (H, W) that show a clear sky; and what is left of it.
 
-    No line runs through them or lies in a gap within, as windows do in a blue wall, and nothing else that is smooth
-    looks the same, as the other panels of such a wall do.
+    No line runs through them or lies in a gap within, as windows do in a blue wall, and little else that is smooth
+    looks the same, as the other panels of such a wall do. The largest is asked first.
     """
     count, piece = cv2.connectedComponents(smooth.astype(np.uint8), connectivity=4)
     area, on_line = np.bincount(piece.ravel(), minlength=count), _on_lines(raster)
     clear, left = [], smooth
-    for number in (np.flatnonzero(area[1:] >= LEAST_CLEAR * raster.size) + 1).tolist():
+    for number in (np.argsort(-area[1:], kind="stable") + 1).tolist():
+        if area[number] < LEAST_CLEAR * raster.size:
+            break
         own = piece == number
         middle = np.median(raster.colour[own], axis=0)
         if middle[2] > CLEAR or middle[0] < LIGHT or on_line[_filled(own)].mean() > MOST_WITHIN:
             continue
-        others = raster.colour[smooth & ~own].astype(np.float64)
+        others = raster.colour[left & ~own].astype(np.float64)
         if _samples_like(middle, others) <= MOST_PANELS * own.sum():
             clear.append(own)
             left = left & ~own

@@ -38,15 +38,21 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
     return narrow
 
 
+def sure_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
+    """The part of the photo that is sky for sure, px, without the rims and all that is before it."""
+    mask = np.pad(heaven.seed.reshape(raster.shape), ((1, 0), (1, 1)), mode="edge")
+    return _padded_shape(mask, raster.step, 0.0)
+
+
 def find_plants(raster: Raster) -> shapely.Geometry:
     """The parts of the photo that trees, hedges and bushes cover, px."""
     mask = np.pad(raster.plants.reshape(raster.shape), 1, mode="edge")  # they go on beyond the photo
     return shapely.MultiPolygon(partition.polygons_of(_padded_shape(mask, raster.step)))
 
 
-def _padded_shape(mask: Bool, step: float) -> shapely.Geometry:
+def _padded_shape(mask: Bool, step: float, least_hole: float = LEAST_HOLE) -> shapely.Geometry:
     """The shape, px of the photo, of a mask with a row more above and a column more to the left than the samples."""
-    parts = [shapely.make_valid(part) for part in traced(mask, step, LEAST_HOLE)]
+    parts = [shapely.make_valid(part) for part in traced(mask, step, least_hole)]
     return shapely.transform(shapely.union_all(parts), lambda padded: padded - step)
 
 

@@ -4,23 +4,26 @@ import numpy as np
 import pytest
 import shapely
 
+from linecad.geometry import central_camera
 from linecad.model.on_faces.in_sky import LONG, in_the_sky
-from linecad.scene import Lines
+from linecad.scene import Camera, Lines
 
 WIDTH = 3840
+CAMERA = Camera(WIDTH, 2160, central_camera(3000.0, WIDTH, 2160), "file")
 X, Y, Z = range(3)
 WALL = shapely.box(1800, 500, WIDTH, 1000)
-SKY = shapely.difference(shapely.box(0, 0, WIDTH, 1000), WALL)
+SKY = shapely.difference(shapely.box(-1, -1, WIDTH, 1000), WALL)  # beyond the border, as that of a photo
 
 
-def found(*segments, axis=X, probability=0.9, sky=SKY):
+def found(*segments, axis=X, probability=0.9, sky=SKY, pieces=()):
     """Whether each segment is in the sky."""
     count = len(segments)
     lines = Lines(
         np.arange(count), np.full(count, axis), np.array(segments, float), np.ones((count, 2, 3)),
         np.zeros(count, bool), np.zeros(count, int), np.full(count, "weak"), np.full(count, probability),
+        pieces=pieces,
     )  # fmt: skip
-    return in_the_sky(lines, sky, WIDTH).tolist()
+    return in_the_sky(lines, sky, CAMERA).tolist()
 
 
 WIRE = [[200, 300], [1600, 250]]
@@ -52,6 +55,20 @@ def test_a_wire_may_end_at_a_house(before, is_wire):
 )
 def test_a_ledge_that_is_likely_stays(length, probability, goes):
     assert found([[500, 400], [500 + length, 400]], probability=probability) == [goes]
+
+
+def test_a_line_joined_of_pieces_is_where_they_are():
+    """A cornice on two towers with the sky between."""
+    towers = shapely.union_all([shapely.box(0, 300, 400, 1000), shapely.box(2000, 300, 2400, 1000)])
+    whole, parts = [[50, 400], [2350, 400]], np.array([[[50, 400], [390, 400]], [[2010, 400], [2350, 400]]], float)
+    sky = shapely.difference(shapely.box(0, 0, WIDTH, 1000), towers)
+    assert found(whole, sky=sky) == [True]
+    assert found(whole, sky=sky, pieces=(parts,)) == [False]
+
+
+@pytest.mark.parametrize("y", [2, 60])
+def test_a_wire_at_the_border_of_the_photo_is_in_the_sky(y):
+    assert found([[200, y], [1600, y]]) == [True]
 
 
 def test_without_a_sky_nothing_is_in_it():

@@ -206,6 +206,21 @@ def test_a_clear_sky_is_sky_under_a_bridge_and_beyond_leaves_too(colour, is_sky,
     assert not seed[:38].any()
 
 
+def test_several_openings_show_one_sky(house):
+    """Arches of a bridge: the largest is sky, and those that look like it tell nothing against each other."""
+    seed = sky_over(framed(CLEAR_SKY, (400, 80, 10, 180), (560, 80, 10, 180)), house, [[300, 500], [600, 500]])
+    assert seed[45:125, [150, 240, 320]].all()
+
+
+@pytest.mark.parametrize("above", [(60, 60, 60), (66, 62, 60)])
+def test_a_ceiling_stays_one_where_a_window_shows_the_sky(above, house):
+    photo = framed(CLEAR_SKY)
+    photo[:70] = above
+    heaven = look_up(take_raster(house.lines, house.camera, house.rotation, photo))
+    assert (heaven.is_sky, heaven.is_ceiling) == (True, True)
+    assert not heaven.seed.reshape(360, COLUMNS)[:38].any()
+
+
 def test_a_blue_wall_in_panels_is_no_clear_sky(house):
     bars = [(x, 80, 12, 180) for x in (300, 400, 500, 600)]
     assert not sky_over(framed(CLEAR_SKY, *bars), house, [[300, 500], [600, 500]]).any()
