@@ -86,6 +86,13 @@ def lengths(vectors: Float) -> Float:
     return found
 
 
+def unit_normals(vectors: Float) -> Float:
+    """Unit vectors (N, 2) a quarter turn from vectors (N, 2), and 0 for those of no length."""
+    turned = np.column_stack([-vectors[:, 1], vectors[:, 0]])
+    normals: Float = turned / np.maximum(lengths(vectors), np.finfo(float).tiny)[:, None]
+    return normals
+
+
 def middles(ends: Float) -> Float:
     """Middles (N, 2) of segments (N, 2, 2)."""
     found: Float = (ends[:, 0] + ends[:, 1]) / 2

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
 from linecad.arrays import Float
+from linecad.geometry import unit_normals
 from linecad.ties.setting import Setting
 
 BLUR = 1.5  # px, against the grain
@@ -57,8 +58,7 @@ def seen_beside(setting: Setting) -> Seen | None:
     height, width = blurred.shape[:2]
     ends = setting.graph.segments.ends
     whole = ends[:, 1] - ends[:, 0]
-    along = whole / np.maximum(np.linalg.norm(whole, axis=1, keepdims=True), 1e-9)
-    across = np.column_stack([-along[:, 1], along[:, 0]])
+    across = unit_normals(whole)
     steps = np.array([side * far for side in (-1, 1) for far in BESIDE]) / setting.scale
     middle = ends[:, None, 0] + ALONG[None, :, None] * whole[:, None]
     places = middle[:, :, None] + steps[None, None, :, None] * across[:, None, None]

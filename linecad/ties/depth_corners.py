@@ -12,7 +12,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.depth.depth_map import DepthMap, Kind, camera_depths
 from linecad.directions import MAIN
-from linecad.geometry import lengths, world_rays
+from linecad.geometry import lengths, unit_normals, world_rays
 from linecad.line_graph import Segments
 from linecad.ties.setting import Sight
 
@@ -49,7 +49,7 @@ def jumps_at_corners(depth: DepthMap, kind: Kind, shift: float, segments: Segmen
     chosen = chosen[np.argsort(-length[chosen], kind="stable")]
     ends, axis = segments.ends[chosen], segments.axis[chosen]
     on = ends[:, None, 0] + ALONG[:, None] * (ends[:, 1] - ends[:, 0])[:, None]  # lines, along, x and y
-    across = np.column_stack([-along[chosen, 1], along[chosen, 0]]) / length[chosen, None]
+    across = unit_normals(along[chosen])
     one, other = (_side(depth, kind, shift, on, sign * sight.width * across, axis, sight) for sign in (1, -1))
     told = (one.normal >= 0) & (other.normal >= 0) & (one.normal != other.normal)
     if not told.any():

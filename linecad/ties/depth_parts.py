@@ -14,7 +14,7 @@ from scipy.special import expit, logit
 from linecad.arrays import Float, Int
 from linecad.depth.depth_map import DepthMap, camera_depths
 from linecad.directions import MAIN, across
-from linecad.geometry import lengths, world_rays
+from linecad.geometry import lengths, unit_normals, world_rays
 from linecad.ties.depth_kind import DepthReading
 from linecad.ties.depth_samples import weighted_median
 from linecad.ties.setting import Setting, densest_groups
@@ -92,7 +92,7 @@ def hear_lines(setting: Setting, depth: DepthMap, reading: DepthReading) -> Floa
     graph, sight = setting.graph, setting.sight
     ends = graph.segments.ends
     along = np.diff(ends, axis=1)[:, 0]
-    beside = np.column_stack([-along[:, 1], along[:, 0]]) / np.maximum(lengths(along), np.finfo(float).tiny)[:, None]
+    beside = unit_normals(along)
     on = ends[:, None, 0] + ALONG[:, None] * along[:, None]  # lines, along, x and y
     at = sight.width * np.concatenate([-BESIDE, BESIDE])
     pixels = on[:, :, None] + at[:, None] * beside[:, None, None]

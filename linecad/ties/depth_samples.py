@@ -11,7 +11,7 @@ import numpy as np
 
 from linecad.arrays import Float, Int
 from linecad.depth.depth_map import DepthMap, Kind, camera_depths
-from linecad.geometry import world_rays
+from linecad.geometry import unit_normals, world_rays
 from linecad.ties.planes import BodyPlane, find_planes_of_bodies
 from linecad.ties.setting import Setting, densest_groups
 
@@ -67,8 +67,7 @@ def _sample(setting: Setting, depth: DepthMap, plane: BodyPlane) -> tuple[Float,
     sight = setting.sight
     ends = setting.graph.segments.ends[plane.lines]
     direction = ends[:, 1] - ends[:, 0]
-    beside = np.column_stack([-direction[:, 1], direction[:, 0]])
-    beside /= np.maximum(np.linalg.norm(beside, axis=1, keepdims=True), np.finfo(float).tiny)
+    beside = unit_normals(direction)
     on = ends[:, None, None, 0] + ALONG[:, None, None] * direction[:, None, None]  # lines, along, beside, x and y
     pixels = on + np.array(BESIDE)[:, None] * sight.width * beside[:, None, None]
     on = np.broadcast_to(on, pixels.shape).reshape(-1, 2)

@@ -25,6 +25,7 @@ from linecad.geometry import (
     ring_sides,
     rotation_about,
     segment_coordinates,
+    unit_normals,
     vanishing_points,
     world_rays,
 )
@@ -203,3 +204,11 @@ def test_the_gap_is_found_between_crossing_parallel_and_far_segments():
     segment = np.array([[-1.0, 0, 0], [1, 0, 0]])
     others = np.array([[[0, -1, 0.5], [0, 1, 0.5]], [[0, 0.25, 0], [5, 0.25, 0]], [[2, 0, 0], [3, 0, 0]]])
     np.testing.assert_allclose(gaps_between(segment, others), [0.5, 0.25, 1.0])
+
+
+def test_normals_are_a_quarter_turn_from_vectors_and_of_length_1():
+    vectors = np.array([[3.0, 4.0], [-2.0, 0.0], [0.0, 1e-200], [0.0, 0.0]])
+    found = unit_normals(vectors)
+    assert np.allclose((found * vectors).sum(axis=1), 0)
+    assert np.allclose(found[:2], [[-0.8, 0.6], [0.0, -1.0]])
+    assert found[3].tolist() == [0.0, 0.0]

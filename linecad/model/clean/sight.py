@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float
-from linecad.geometry import project
+from linecad.geometry import project, unit_normals
 from linecad.scene import Camera
 
 Float32 = NDArray[np.float32]
@@ -62,9 +62,7 @@ class Sight:
         known = np.flatnonzero(np.isfinite(lines).all(axis=(1, 2)) & np.isfinite(ways).all(axis=(1, 2)))
         if self.grey is None or len(known) == 0:
             return shown
-        along = lines[known, 1] - lines[known, 0]
-        along = along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
-        across = np.column_stack([-along[:, 1], along[:, 0]])
+        across = unit_normals(lines[known, 1] - lines[known, 0])
         typical = np.median(_steps(self.grey, lines[known], across, BESIDE), axis=2)  # (P, B)
         best = np.abs(typical).argmax(axis=1)
         step = typical[np.arange(len(known)), best][:, None]

@@ -5,7 +5,7 @@ import shapely
 
 from linecad.arrays import Bool
 from linecad.directions import UP
-from linecad.geometry import PhotoLength, lengths
+from linecad.geometry import PhotoLength, lengths, unit_normals
 from linecad.model.on_faces.places import Samples
 from linecad.scene import Camera, Lines
 
@@ -25,8 +25,7 @@ def in_the_sky(lines: Lines, sky: shapely.Geometry, camera: Camera) -> Bool:
     shown = [lines.segments_of(row) for row in rows.tolist()]
     pieces, line = np.concatenate(shown), np.repeat(np.arange(len(rows)), [len(each) for each in shown])
     samples = Samples.of(pieces, width)
-    across = np.column_stack([-samples.along[:, 1], samples.along[:, 0]])
-    across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
+    across = unit_normals(samples.along)
     both = np.ones(len(across), bool)
     for side in (side * off.px(width) for off in BESIDE for side in (-1, 1)):
         # Beyond the photo's border the sky goes on.

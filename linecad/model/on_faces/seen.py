@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
 from linecad.directions import Turns, components
-from linecad.geometry import PhotoLength, project, world_rays
+from linecad.geometry import PhotoLength, project, unit_normals, world_rays
 from linecad.scene import Camera, Face, Plane
 
 NO_FACE = -1
@@ -60,8 +60,7 @@ class SeenFaces:
 
     def beside(self, pixels: Float, along: Float) -> tuple[Int, Int]:
         """The faces (M,) on both sides of lines that run through pixels (M, 2) in directions (M, 2)."""
-        across = np.column_stack([-along[:, 1], along[:, 0]])
-        across = across * (BESIDE.px(self.camera.width) / np.maximum(np.linalg.norm(along, axis=1), 1e-9))[:, None]
+        across = BESIDE.px(self.camera.width) * unit_normals(along)
         return self.at(pixels + across), self.at(pixels - across)
 
 

@@ -30,27 +30,25 @@ def find_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
     """The part of the photo that is sky for sure and up to where that ends, px."""
     if not heaven.is_sky:
         return shapely.Polygon()
-    # A row more above and a column to either side: the sky goes on beyond the photo.
-    mask = np.pad(heaven.seed.reshape(raster.shape), ((1, 0), (1, 1)), mode="edge")
-    sky = _padded_shape(mask, raster.step)
-    wide = shapely.buffer(sky, (MARGIN + SPIRE) * raster.step, quad_segs=4)
+    wide = shapely.buffer(sure_sky(heaven, raster, LEAST_HOLE), (MARGIN + SPIRE) * raster.step, quad_segs=4)
     narrow: shapely.Geometry = shapely.buffer(wide, -SPIRE * raster.step, quad_segs=4)
     return narrow
 
 
-def sure_sky(heaven: Heaven, raster: Raster) -> shapely.Geometry:
-    """The part of the photo that is sky for sure, px, without the rims and all that is before it."""
+def sure_sky(heaven: Heaven, raster: Raster, least_hole: float = 0.0) -> shapely.Geometry:
+    """The part of the photo that is sky for sure, px, without its rim and things before it of `least_hole` or more."""
+    # A row more above and a column to either side: the sky goes on beyond the photo.
     mask = np.pad(heaven.seed.reshape(raster.shape), ((1, 0), (1, 1)), mode="edge")
-    return _padded_shape(mask, raster.step, 0.0)
+    return _padded_shape(mask, raster.step, least_hole)
 
 
 def find_plants(raster: Raster) -> shapely.Geometry:
     """The parts of the photo that trees, hedges and bushes cover, px."""
     mask = np.pad(raster.plants.reshape(raster.shape), 1, mode="edge")  # they go on beyond the photo
-    return shapely.MultiPolygon(partition.polygons_of(_padded_shape(mask, raster.step)))
+    return shapely.MultiPolygon(partition.polygons_of(_padded_shape(mask, raster.step, LEAST_HOLE)))
 
 
-def _padded_shape(mask: Bool, step: float, least_hole: float = LEAST_HOLE) -> shapely.Geometry:
+def _padded_shape(mask: Bool, step: float, least_hole: float) -> shapely.Geometry:
     """The shape, px of the photo, of a mask with a row more above and a column more to the left than the samples."""
     parts = [shapely.make_valid(part) for part in traced(mask, step, least_hole)]
     return shapely.transform(shapely.union_all(parts), lambda padded: padded - step)
