@@ -108,7 +108,8 @@ def _is_large(part: shapely.Geometry, sky: shapely.Geometry, raster: Raster) -> 
     A strip that runs up into the sky is as thin as a rim, but has a short piece of the outline.
     """
     least, thin = LEAST_PART * raster.size * raster.step**2, THIN * raster.step
-    wide = shapely.buffer(part, -thin, join_style="mitre")
+    # A part exactly twice as wide as a rim shrinks to a polygon without area, which shapely warns about when it grows.
+    wide = shapely.set_precision(shapely.buffer(part, -thin, join_style="mitre"), partition.GRID)
     if shapely.buffer(wide, thin, join_style="mitre").area >= least:
         return True
     outline = shapely.intersection(shapely.boundary(sky), part).length

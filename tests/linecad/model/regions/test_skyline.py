@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from linecad.model.regions import partition
 from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.raster import take_raster
-from linecad.model.regions.skyline import MARGIN, cut_at, find_plants, find_sky, near_outline
+from linecad.model.regions.skyline import MARGIN, THIN, _is_large, cut_at, find_plants, find_sky, near_outline
 
 PHOTO = shapely.box(-0.5, -0.5, 959.5, 719.5)
 HEIGHT = 150  # samples of sky from the top
@@ -111,6 +111,14 @@ def test_what_is_thin_is_not_cut_off(raster, drawn):
     above = shapely.box(-0.5, -0.5, 959.5, 296)  # a line 3 px above the outline, and another one below
     below = shapely.box(-0.5, 296, 959.5, 719.5)
     assert cut_at([above, below], sky, raster) == [above, below]
+
+
+def test_a_part_twice_as_wide_as_a_rim_is_large(raster):
+    """Without its rim a polygon of no area is left of it, of which shapely warned."""
+    left, top = 326.24534935066754, 504.84530734784875
+    low = top + 2 * THIN * raster.step
+    part = shapely.Polygon([(left, top), (left + 250, top), (left + 250, np.nextafter(low, 1000)), (left, low)])
+    assert _is_large(part, shapely.box(0, 0, 900, top), raster)
 
 
 def test_a_strip_of_a_wall_that_runs_up_into_the_sky_is_cut(raster, drawn):
