@@ -16,6 +16,7 @@ import shapely
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
+from linecad.geometry import unit_normals
 from linecad.model.regions import partition
 from linecad.model.regions.below import with_feet
 from linecad.model.regions.corners import Known, Side, find_ends, find_sides, with_sides
@@ -281,9 +282,7 @@ def _bordering(found: Labels, lines: Float, least: float, least_of_sides: float)
     edges = np.concatenate(
         [_edges(region, least_of_sides if found.is_side(n) else least) for n, region in found.regions]
     )
-    along = lines[:, 1] - lines[:, 0]
-    along = along / np.linalg.norm(along, axis=1, keepdims=True)
-    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    across = unit_normals(lines[:, 1] - lines[:, 0])
     off = np.abs(((edges[:, None] - lines[None, :, :1]) * across[None, :, None]).sum(axis=3)).max(axis=2)
     return np.asarray((off < ON_BORDER).any(axis=0)) if len(edges) else np.zeros(len(lines), bool)
 

@@ -10,7 +10,7 @@ import shapely
 
 from linecad.arrays import Float, Int
 from linecad.directions import MAIN, Turns, components, directions_of, partner
-from linecad.geometry import angles_to, directions_to, project, vanishing_points
+from linecad.geometry import angles_to, directions_to, project, unit_normals, vanishing_points
 from linecad.model.regions.raster import COLUMNS, Picture, Raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Lines
@@ -72,12 +72,10 @@ def find_segments(lines: Lines, surfaces: list[Surface], raster: Raster, view: V
 def _contrast(segments: Float, raster: Raster) -> Float:
     """How far (N,) the colours on both sides of segments differ."""
     colour = cv2.GaussianBlur(raster.colour, (0, 0), 1.5).astype(np.float64)
-    along = segments[:, 1] - segments[:, 0]
-    along /= np.maximum(np.linalg.norm(along, axis=1, keepdims=True), np.finfo(float).tiny)
     places = raster.samples_of(
         segments[:, :1] + np.linspace(0.1, 0.9, 9)[None, :, None] * (segments[:, 1:] - segments[:, :1])
     )
-    off = OFF * np.stack([-along[:, 1], along[:, 0]], axis=1)[:, None]
+    off = OFF * unit_normals(segments[:, 1] - segments[:, 0])[:, None]
     height, width = raster.shape
     sides = []
     for side in (places + off, places - off):
