@@ -8,9 +8,10 @@ export class Messages {
   #notices = document.querySelector("#notices");
   #lasting = new Map(); // name -> element
 
-  /** Say something for some seconds. The same text is not said twice at a time. */
+  /** Say something for some seconds. The same text is not said twice at a time, nor beside a notice that says it. */
   tell(text, kind = "info") {
-    for (const shown of this.#list.children) if (shown.dataset.text === text) shown.remove();
+    if ([...this.#notices.children].some((notice) => notice.dataset.text === text)) return;
+    this.#dismiss(text);
     const message = this.#add(this.#list, text, kind);
     message.append(button("×", () => message.remove(), "Close this message"));
     while (this.#list.children.length > MOST) this.#list.firstChild.remove();
@@ -24,9 +25,14 @@ export class Messages {
     shown?.remove();
     this.#lasting.delete(name);
     if (text === null) return;
+    this.#dismiss(text);
     const message = this.#add(this.#notices, text, kind);
     message.append(...choices.map(([label, action]) => button(label, action)));
     this.#lasting.set(name, message);
+  }
+
+  #dismiss(text) {
+    for (const shown of [...this.#list.children]) if (shown.dataset.text === text) shown.remove();
   }
 
   #add(list, text, kind) {
