@@ -57,7 +57,7 @@ def score_openings(scene: Scene, truth: Truth, kind: OpeningKind, everywhere: bo
         return None
     known = truth.openings
     facade = _facades(known)
-    shown = np.array([_in_photo(truth, corners) for corners in known.corners], object)
+    shown = np.array([shape_in_photo(truth, corners) for corners in known.corners], object)
     own = known.is_door == (kind == "door")
     is_in = _facades_in_scene(scene, truth, facade)[facade]
     is_in |= everywhere
@@ -102,7 +102,7 @@ def _facades_in_scene(scene: Scene, truth: Truth, facade: Int) -> Bool:
     return there
 
 
-def _in_photo(truth: Truth, corners: Float) -> shapely.Polygon | None:
+def shape_in_photo(truth: Truth, corners: Float) -> shapely.Polygon | None:
     """An opening (4, 3) in the photo; None where it is too small or too much of it lies outside."""
     if (corners @ truth.rotation[2] < NEAREST).any():
         return None

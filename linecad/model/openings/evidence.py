@@ -14,7 +14,7 @@ PLAIN = 0.4  # mean step below which a rectangle is hardly told from what is aro
 OPEN = 1.6  # cover of the four sides in sum, below which hardly any is seen
 LEVELS = 25.0  # grey levels; differences are counted in these, most of a facade's are a few
 NAMES = (
-    "one", "uprights", "weaker upright", "weaker level", "levels", "beyond uprights", "beyond levels",
+    "uprights", "weaker upright", "weaker level", "levels", "beyond uprights", "beyond levels",
     "contrast", "darker", "rough inside", "rough around", "weakest step", "steps", "edges inside", "edges around",
     "slender", "flat", "plain", "open",
 )  # fmt: skip
@@ -74,7 +74,6 @@ def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
     slender = np.log((raster.v[high] - raster.v[low]) / (raster.u[right] - raster.u[left]))
     return np.column_stack(
         [
-            np.ones(len(box)),
             cover[:, 0] + cover[:, 1],
             np.minimum(cover[:, 0], cover[:, 1]),
             np.minimum(cover[:, 2], cover[:, 3]),

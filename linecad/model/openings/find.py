@@ -1,9 +1,10 @@
 """Windows and doors of the walls of a scene, found in the photo and put where its lines are.
 
-Each wall is looked at straight on (`raster`). Rectangles that edges close (`rectangles`) are judged by what the photo
-shows in and around them (`evidence`) and by the rows and columns they stand in (`lattice`, which proposes what edges
-missed). The best set of which no two overlap is taken (`choice`), gaps in its rows and columns are filled (`gaps`), and
-all are made regular (`regular`); then windows of one size tell together how deep their panes are (`recess`).
+Each wall is looked at straight on (`raster`). Rectangles that edges close (`rectangles`) and those that rows and
+columns ask for (`lattice`) are judged (`pool`) by what the photo shows in and around them (`evidence`) and by how they
+lie to the others (`neighbours`). The best set of which no two overlap is taken (`choice`), gaps in its rows and columns
+are filled (`gaps`), and all are made regular (`regular`); then windows of one size tell together how deep their panes
+are (`recess`).
 """
 
 from collections.abc import Sequence
@@ -15,18 +16,15 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
 from linecad.model.openings.choice import Choice, choose, not_overlapping
-from linecad.model.openings.evidence import Sums, measure
-from linecad.model.openings.gaps import Pool, are_odd, find_gaps, may_be
-from linecad.model.openings.lattice import distinct, propose, support
-from linecad.model.openings.odds import LEAST_FILLED, LEAST_ODDS, first_odds, odds
+from linecad.model.openings.gaps import are_odd, find_gaps, may_be
+from linecad.model.openings.odds import LEAST_FILLED, LEAST_ODDS
+from linecad.model.openings.pool import Pool, build_pool
 from linecad.model.openings.raster import Raster, build_raster, look
 from linecad.model.openings.recess import depth_ratios
-from linecad.model.openings.rectangles import count_edges, find_rectangles
 from linecad.model.openings.regular import Seen, make_regular
 from linecad.model.openings.walls import Wall, find_walls
 from linecad.scene import Camera, Lines, Opening, Plane
 
-ALMOST_SAME = 0.8  # overlap of rectangles of which one is judged
 SEEN_COVER = 1.2  # of the four sides in sum: with less, an opening was not seen
 
 
@@ -52,9 +50,7 @@ class _Likely:
 
     def shapes(self) -> list[shapely.Polygon]:
         """The rectangles in the photo."""
-        u, v = self.raster.u[self.box[:, :2]], self.raster.v[self.box[:, 2:]]
-        corners = np.stack([np.column_stack([u[:, i], v[:, j]]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1)
-        return list(shapely.polygons(self.wall.pixels(corners)))
+        return shapes_of(self.wall, self.raster, self.box)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +59,13 @@ class Found:
 
     openings: tuple[Opening, ...] = ()
     notes: tuple[str, ...] = ()  # for people
+
+
+def shapes_of(wall: Wall, raster: Raster, box: Int) -> list[shapely.Polygon]:
+    """Rectangles (N, 4) of a wall in the photo."""
+    u, v = raster.u[box[:, :2]], raster.v[box[:, 2:]]
+    corners = np.stack([np.column_stack([u[:, i], v[:, j]]) for i, j in ((0, 0), (1, 0), (1, 1), (0, 1))], axis=1)
+    return list(shapely.polygons(wall.pixels(corners)))
 
 
 def find_openings(frames: Sequence[FrameView], camera: Camera, pixels: NDArray[np.uint8] | None) -> Found:
@@ -160,19 +163,7 @@ def _with_recess(openings: list[Opening], likely: _Likely) -> list[Opening]:
 
 def _likely(wall: Wall, lines: Lines, raster: Raster, is_inside: bool) -> _Likely:
     """The rectangles of one wall that may be openings; seen from inside, only those that light comes through."""
-    edges = count_edges(raster)
-    box = find_rectangles(raster, edges)
-    sums = Sums(raster)
-    evidence = measure(box, edges, sums, raster)
-    first = first_odds(evidence)
-    kept = distinct(box, first, ALMOST_SAME)
-    box, evidence, first = box[kept], evidence[kept], first[kept]
-    core = distinct(box, first)
-    others, other_odds = box[core], first[core]
-    proposed = propose(others, raster)
-    box = np.concatenate([box, proposed])
-    evidence = np.concatenate([evidence, measure(proposed, edges, sums, raster)])
-    # Once: asked again with what was proposed, rows and columns would support themselves.
-    whole = odds(evidence, support(box, raster, others, other_odds))
-    likely = may_be(whole, LEAST_ODDS, evidence, is_inside)
-    return _Likely(wall, lines, raster, box[likely], whole[likely], Pool(raster, edges, sums, box, evidence, is_inside))
+    pool = build_pool(raster, is_inside)
+    odds = pool.odds()
+    likely = may_be(odds, LEAST_ODDS, pool.evidence, is_inside)
+    return _Likely(wall, lines, raster, pool.box[likely], odds[likely], pool)

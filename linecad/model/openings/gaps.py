@@ -5,16 +5,15 @@ size stand in its row and its column, so that gaps are filled. Only taken ones a
 support each other. And a rectangle that is tiny beside all others, with none of its size in its row or column, is none.
 """
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.model.openings.evidence import NAMES, Sums, measure
+from linecad.model.openings.evidence import NAMES, measure
 from linecad.model.openings.lattice import propose, support
+from linecad.model.openings.neighbours import compare
 from linecad.model.openings.odds import LEAST_FILLED, odds
+from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import Raster
-from linecad.model.openings.rectangles import Edges
 
 BRIGHTER = 1.0  # than the wall around it, by LEVELS of the evidence, a window is from inside; shelves are not
 TINY, FEWEST = 0.1, 4  # of the median area of taken ones, so many at least: smaller ones need a mate
@@ -23,18 +22,6 @@ LEAST_COVER = 1.2  # of the four sides in sum: between two windows is often wall
 LOOK = [NAMES.index("contrast"), NAMES.index("edges inside")]
 ALIKE = 0.5  # of what those taken show of these, in the median
 SURE = 3.0  # log-odds of what was taken, at least, for what it says about others
-
-
-@dataclass(frozen=True, eq=False)
-class Pool:
-    """All rectangles of a wall that were judged, likely or not."""
-
-    raster: Raster
-    edges: Edges
-    sums: Sums
-    box: Int  # (N, 4)
-    evidence: Float  # (N, F)
-    is_inside: bool  # seen below a ceiling
 
 
 def may_be(odds: Float, least: float, evidence: Float, is_inside: bool) -> Bool:
@@ -61,8 +48,9 @@ def find_gaps(pool: Pool, taken: Int, taken_odds: Float) -> tuple[Int, Float]:
     proposed = propose(taken[np.argsort(-taken_odds, kind="stable")], pool.raster)
     box = np.concatenate([pool.box, proposed])
     evidence = np.concatenate([pool.evidence, measure(proposed, pool.edges, pool.sums, pool.raster)])
-    mates = support(box, pool.raster, taken, np.maximum(taken_odds, SURE))
-    found = odds(evidence, mates)
+    sure = np.maximum(taken_odds, SURE)
+    mates = support(box, pool.raster, taken, sure)
+    found = odds(evidence, compare(box, pool.raster, taken, sure))
     asked = may_be(found, LEAST_FILLED, evidence, pool.is_inside) & (mates.sum(axis=1) >= LEAST_MATES)
     asked &= pool.edges.cover(box).sum(axis=1) >= LEAST_COVER
     # The sides of its neighbours close a piece of wall too, but in it is nothing.

@@ -14,6 +14,7 @@ SAME_POINTS = 2.0  # or so many columns or rows of the raster
 DOUBLE = 0.5  # intersection over union, from which two rectangles mean the same opening
 MOST = 300  # rectangles that are compared
 SEEDS = 60  # rectangles from which others are proposed
+LEAST_SIDE = 4  # columns or rows of those that are proposed
 
 
 def distinct(box: Int, value: Float, double: float = DOUBLE, most: int = MOST) -> Int:
@@ -35,12 +36,12 @@ def distinct(box: Int, value: Float, double: float = DOUBLE, most: int = MOST) -
 
 def support(box: Int, raster: Raster, others: Int, other_value: Float) -> Float:
     """How much the rows and the columns of rectangles (N, 4) support them (N, 2), log of 1 + the sum of odds shares."""
-    same_row, same_column = _mates(box, others, raster)
+    same_row, same_column = mates(box, others, raster)
     sure = 1 / (1 + np.exp(-other_value))
     return np.log1p(np.column_stack([same_row @ sure, same_column @ sure]))
 
 
-def _mates(box: Int, others: Int, raster: Raster) -> tuple[Bool, Bool]:
+def mates(box: Int, others: Int, raster: Raster) -> tuple[Bool, Bool]:
     """Which of others (M, 4) stand in the row, or the column, of boxes (N, 4) and are of their size."""
     one, other = _in_plane(box, raster), _in_plane(others, raster)
     step_v = raster.v[1] - raster.v[0]
@@ -71,7 +72,7 @@ def propose(box: Int, raster: Raster) -> Int:
     if len(seeds) < 2:
         return np.zeros((0, 4), np.int64)
     flat = _in_plane(seeds, raster)
-    same_row, same_column = _mates(seeds, seeds, raster)
+    same_row, same_column = mates(seeds, seeds, raster)
     found = []
     # The columns of one meet the rows of another that is about as wide.
     wide, tall = flat[:, 1] - flat[:, 0], flat[:, 3] - flat[:, 2]
@@ -98,4 +99,5 @@ def propose(box: Int, raster: Raster) -> Int:
         inside = (start_v >= 0) & (end_v < len(raster.v))
         found.append(np.column_stack([seeds[a, :2], start_v, end_v])[inside])
     every = np.unique(np.concatenate(found), axis=0)
-    return np.asarray(every[(every[:, 1] - every[:, 0] >= 4) & (every[:, 3] - every[:, 2] >= 4)], np.int64)
+    size = np.column_stack([every[:, 1] - every[:, 0], every[:, 3] - every[:, 2]])
+    return np.asarray(every[(size >= LEAST_SIDE).all(axis=1)], np.int64)

@@ -19,8 +19,11 @@ WIDEST = 1280  # px; larger photos are made smaller first
 MARGIN = 0.05  # of a wall's extent, beyond its outermost lines
 MOST_ROWS, MOST_COLUMNS = 480, 1000
 LEAST_EXTENT = 24  # columns and rows of a raster worth looking at
+SMOOTH = 0.8  # px, standard deviation, before the gradient
+SCHARR = 32.0  # what the operator makes of one level a px
 EDGE = (2.5, 4.0)  # grey levels a px, from which a gradient is an edge: on plain walls, on rough ones
 TEXTURE = 1.5  # times the median gradient of a wall, between the two
+CHROMA = 2.0  # grey levels for a step of OpenCV's a* or b*; to the eye 2.55, which noise of colours does not
 ALONG = float(np.cos(np.radians(12.0)))  # of the angle between a gradient and the normal of the side
 TRIM = 1.0  # per cent of the lines' ends at either side that do not count for the extent
 NEAREST = 0.05  # of the wall's distance: what is nearer along the view is not looked at
@@ -31,7 +34,7 @@ class Sight:
     """The photo, small enough to be looked at often."""
 
     colours: NDArray[np.uint8]  # (H, W, 3) Lab
-    gradient: Single  # (H, W, 2) grey levels a px, x and y
+    gradient: Single  # (H, W, 2) grey levels a px, x and y, of lightness or colour, whichever changes more
     scale: float  # px of it over px of the photo
 
 
@@ -54,9 +57,20 @@ def look(pixels: NDArray[np.uint8]) -> Sight:
     if scale < 1:
         size = (round(pixels.shape[1] * scale), round(pixels.shape[0] * scale))
         small = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
-    grey = cv2.GaussianBlur(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY).astype(np.float32), (0, 0), 0.8)
-    gradient = np.dstack([cv2.Scharr(grey, cv2.CV_32F, 1, 0), cv2.Scharr(grey, cv2.CV_32F, 0, 1)]) / np.float32(32)
-    return Sight(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), np.uint8), gradient, scale)
+    colours = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), np.uint8)
+    gradient = _gradient(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), 1.0)
+    for channel in (1, 2):
+        other = _gradient(colours[..., channel], CHROMA)
+        steeper = np.linalg.norm(other, axis=2) > np.linalg.norm(gradient, axis=2)
+        gradient = np.where(steeper[..., None], other, gradient)
+    return Sight(colours, gradient, scale)
+
+
+def _gradient(channel: NDArray[np.uint8], levels: float) -> Single:
+    """The gradient (H, W, 2) of a channel (H, W), of which a step counts as so many grey levels."""
+    smooth = cv2.GaussianBlur(channel.astype(np.float32), (0, 0), SMOOTH)
+    along = [cv2.Scharr(smooth, cv2.CV_32F, 1, 0), cv2.Scharr(smooth, cv2.CV_32F, 0, 1)]
+    return np.dstack(along) * np.float32(levels / SCHARR)
 
 
 def build_raster(wall: Wall, sight: Sight) -> Raster | None:

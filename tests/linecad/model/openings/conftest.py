@@ -112,3 +112,9 @@ def facade_of():
 def sides():
     """How the sides of rectangles, and lines of them, are made."""
     return edges_of, lines_of
+
+
+@pytest.fixture(scope="session")
+def painted():
+    """How rectangles of the wall are filled."""
+    return paint

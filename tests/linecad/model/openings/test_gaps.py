@@ -7,7 +7,8 @@ import pytest
 
 from linecad.model.openings import gaps
 from linecad.model.openings.evidence import NAMES, Sums, measure
-from linecad.model.openings.gaps import Pool, are_odd, find_gaps, may_be
+from linecad.model.openings.gaps import are_odd, find_gaps, may_be
+from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import build_raster, look
 from linecad.model.openings.rectangles import count_edges
 from linecad.model.openings.walls import find_walls
@@ -28,7 +29,7 @@ def pool(facade):
     raster = build_raster(wall, look(facade.pixels))
     edges, sums = count_edges(raster), Sums(raster)
     none = np.zeros((0, 4), np.int64)
-    return Pool(raster, edges, sums, none, measure(none, edges, sums, raster), False)
+    return Pool(raster, edges, sums, none, measure(none, edges, sums, raster), none, np.zeros(0), False)
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,10 @@
 """What counts as an edge on a wall."""
 
+import cv2
 import numpy as np
 import pytest
 
-from linecad.model.openings.raster import EDGE, TEXTURE, least_edge
+from linecad.model.openings.raster import EDGE, TEXTURE, least_edge, look
 
 
 @pytest.mark.parametrize(
@@ -17,3 +18,29 @@ def test_fainter_edges_count_on_plainer_walls(usual, least):
 
 def test_a_wall_that_the_photo_does_not_show_is_plain():
     assert least_edge(np.zeros(0, np.float32)) == EDGE[0]
+
+
+def painted(*colours):
+    """Stripes of 20 px of these L*, a*, b* as bytes, side by side."""
+    stripes = np.repeat(np.array(colours, np.uint8)[None], 20, axis=1)
+    return cv2.cvtColor(np.repeat(stripes, 40, axis=0), cv2.COLOR_LAB2RGB)
+
+
+def steepest(pixels):
+    """The gradient of the middle of its height that is steepest, x and y."""
+    along = look(pixels).gradient[20]
+    return along[np.linalg.norm(along, axis=1).argmax()]
+
+
+def test_colours_as_light_as_the_wall_have_edges_too():
+    beige, blue = (200, 130, 142), (200, 126, 118)
+    grey = cv2.cvtColor(painted(beige, blue), cv2.COLOR_RGB2GRAY).astype(int)
+    assert np.ptp(grey[20]) <= 8  # hardly an edge to who sees no colours
+    across, along = steepest(painted(beige, blue))
+    assert -across > 2 * EDGE[1]  # b* falls by 24
+    assert along == 0
+
+
+def test_where_lightness_changes_more_colour_adds_nothing():
+    plain, tinted = painted((200, 128, 128), (150, 128, 128)), painted((200, 128, 134), (150, 128, 128))
+    assert steepest(tinted)[0] == pytest.approx(steepest(plain)[0], rel=0.05)

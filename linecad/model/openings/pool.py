@@ -1,0 +1,66 @@
+"""The rectangles of a wall that are judged: those that edges close, windows of panes, what rows and columns ask for."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.model.openings.evidence import Sums, measure
+from linecad.model.openings.lattice import distinct, propose
+from linecad.model.openings.neighbours import compare, windows_of_panes
+from linecad.model.openings.odds import first_odds, odds
+from linecad.model.openings.raster import Raster
+from linecad.model.openings.rectangles import Edges, count_edges, find_rectangles
+
+ALMOST_SAME = 0.8  # overlap of rectangles of which one is judged
+MOST = 1500  # rectangles of a wall that are judged, beside those that are proposed
+
+
+@dataclass(frozen=True, eq=False)
+class Pool:
+    """All rectangles of a wall that are judged, likely or not."""
+
+    raster: Raster
+    edges: Edges
+    sums: Sums
+    box: Int  # (N, 4)
+    evidence: Float  # (N, F)
+    others: Int  # (M, 4) distinct ones that they are compared with, as likely as they look by themselves
+    other_odds: Float  # (M,)
+    is_inside: bool  # seen below a ceiling
+
+    def odds(self) -> Float:
+        """Log-odds (N,) that each is an opening, by itself and beside the others."""
+        # Once: asked again with what was proposed, rows and columns would support themselves.
+        return odds(self.evidence, compare(self.box, self.raster, self.others, self.other_odds))
+
+
+def build_pool(raster: Raster, is_inside: bool) -> Pool:
+    """The rectangles of one wall."""
+    edges = count_edges(raster)
+    box = find_rectangles(raster, edges)
+    sums = Sums(raster)
+    evidence = measure(box, edges, sums, raster)
+    likeliness = first_odds(evidence)
+    kept = distinct(box, likeliness, ALMOST_SAME, MOST)
+    box, evidence, likeliness = box[kept], evidence[kept], likeliness[kept]
+    core = distinct(box, likeliness)
+    whole = windows_of_panes(box[core], likeliness[core], raster)
+    whole_odds = first_odds(measure(whole, edges, sums, raster))
+    others = np.concatenate([box[core], whole])
+    other_odds = np.concatenate([likeliness[core], whole_odds])
+    asked = [
+        propose(some[np.argsort(-value, kind="stable")], raster)
+        for some, value in ((others, other_odds), (whole, whole_odds))
+    ]
+    proposed = np.unique(np.concatenate([whole, *asked]), axis=0)
+    return Pool(
+        raster,
+        edges,
+        sums,
+        np.concatenate([box, proposed]),
+        np.concatenate([evidence, measure(proposed, edges, sums, raster)]),
+        others,
+        other_odds,
+        is_inside,
+    )
