@@ -58,19 +58,21 @@ def look(pixels: NDArray[np.uint8]) -> Sight:
         size = (round(pixels.shape[1] * scale), round(pixels.shape[0] * scale))
         small = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
     colours = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), np.uint8)
-    gradient = _gradient(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), 1.0)
-    for channel in (1, 2):
-        other = _gradient(colours[..., channel], CHROMA)
-        steeper = np.linalg.norm(other, axis=2) > np.linalg.norm(gradient, axis=2)
-        gradient = np.where(steeper[..., None], other, gradient)
-    return Sight(colours, gradient, scale)
+    along_x, along_y = _gradient(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), 1.0)
+    for channel in cv2.split(colours)[1:]:
+        other_x, other_y = _gradient(np.asarray(channel, np.uint8), CHROMA)
+        steeper = other_x * other_x + other_y * other_y > along_x * along_x + along_y * along_y
+        along_x, along_y = np.where(steeper, other_x, along_x), np.where(steeper, other_y, along_y)
+    return Sight(colours, np.dstack([along_x, along_y]), scale)
 
 
-def _gradient(channel: NDArray[np.uint8], levels: float) -> Single:
-    """The gradient (H, W, 2) of a channel (H, W), of which a step counts as so many grey levels."""
+def _gradient(channel: NDArray[np.uint8], levels: float) -> tuple[Single, Single]:
+    """The gradient (H, W) along x and y of a channel (H, W), of which a step counts as so many grey levels."""
     smooth = cv2.GaussianBlur(channel.astype(np.float32), (0, 0), SMOOTH)
-    along = [cv2.Scharr(smooth, cv2.CV_32F, 1, 0), cv2.Scharr(smooth, cv2.CV_32F, 0, 1)]
-    return np.dstack(along) * np.float32(levels / SCHARR)
+    along_x, along_y = (
+        np.asarray(cv2.Scharr(smooth, cv2.CV_32F, dx, 1 - dx, scale=levels / SCHARR), np.float32) for dx in (1, 0)
+    )
+    return along_x, along_y
 
 
 def build_raster(wall: Wall, sight: Sight) -> Raster | None:

@@ -1,6 +1,7 @@
 """What is judged of a wall: a window of which only the panes have edges is one of the rectangles, and is taken."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -15,13 +16,13 @@ NEAR = 0.12
 
 @pytest.fixture(scope="module")
 def white(facade, painted):
-    """The facade in white, its frames and bars as white as the wall: of each window only two by three panes are seen."""
+    """The facade, its frames and bars as white as the wall: of each window only two by three panes are seen."""
     pixels = facade.pixels.copy()
     painted(pixels, -6, 6, -2.0, 3.8, WALL)
     for u0, u1, v0, v1 in facade.boxes:
         across, up = np.linspace(u0, u1, 3), np.linspace(v0, v1, 4)
-        for left, right in zip(across[:-1], across[1:], strict=True):
-            for low, high in zip(up[:-1], up[1:], strict=True):
+        for left, right in pairwise(across):
+            for low, high in pairwise(up):
                 painted(pixels, left + 0.04, right - 0.04, low + 0.04, high - 0.04, GLASS)
     return replace(facade, pixels=pixels)
 
