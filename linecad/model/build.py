@@ -1,6 +1,7 @@
 """From a decided line graph to a scene: lines lifted into space, components with their scales, planes and faces."""
 
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -270,7 +271,8 @@ def _look(view: View, placed: Placed | None, scales: Float) -> Look:
     """What the faces are found by, in a scene of which the placed lines are `scales[0]` times as far."""
     scale, camera = float(scales[0]), view.camera
     feet, depths = _ground_of_feet(placed, scale), depths_of(placed, scale, camera.matrix)
-    return Look(view.pixels, feet, normals_of(placed), view.sketch, depths, view.faces)
+    ceiling = None if placed is None else partial(placed.height_of_ceiling, scale)
+    return Look(view.pixels, feet, normals_of(placed), view.sketch, depths, view.faces, ceiling)
 
 
 def _report_on_map(placed: Placed | None, scale: float) -> DepthMapReport | None:

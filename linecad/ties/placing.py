@@ -18,6 +18,7 @@ from linecad.ties.depth_parts import right_by_map
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
 from linecad.ties.evidence import Evidence, find_evidence
 from linecad.ties.facts import CERTAIN, IMPLIED, FactTies, ties_of_facts
+from linecad.ties.heads import log_height_of_ceiling
 from linecad.ties.links import find_links, told_links
 from linecad.ties.pieces import ties_between_bodies, with_pieces_heard
 from linecad.ties.probability import chances, main_lines, probabilities
@@ -162,6 +163,12 @@ class Placed:
         if not says_so.any():
             return None
         return float(self.placement.log_scale[number]), float(self.ties.weight[says_so].sum())
+
+    def height_of_ceiling(self, scale: float = 1.0) -> float | None:
+        """Height of a ceiling above the camera, `scale` times that of the solution's depths; None if no wall tells."""
+        ground = None if self.ground is None else self.ground[0]
+        found = log_height_of_ceiling(self.setting, self.places.log_scale, ground)
+        return None if found is None else scale * float(np.exp(found))
 
 
 def place_lines(

@@ -4,6 +4,7 @@ A wall whose scale is not known is a fan of walls, one behind the other, that lo
 tells which one it is. A *strip* shows the wall from the horizon down to the photo's border. Its rows are logs of the
 height below the camera, so that the scale of the body moves a strip up or down and does not change it; its columns
 follow the wall. Lines along the wall are rows, uprights are columns, and what lies on the ground before the wall leans.
+Towards a ceiling it is the same, upside down.
 """
 
 from dataclasses import dataclass
@@ -52,7 +53,7 @@ class Wall:
 
 @dataclass(frozen=True, eq=False)
 class Strip:
-    """A wall below the horizon."""
+    """A wall below the horizon, or above it."""
 
     wall: Wall
     layers: Strips  # (6, ROWS, COLUMNS): Lab less its median over its spread, is it seen, the wall's lines, resolution
@@ -60,7 +61,7 @@ class Strip:
     along: Float  # (COLUMNS,) the wall's horizontal coordinate, at the body's own scale
 
     def log_height(self, row: float) -> float:
-        """Log of the height below the camera of the middle of a row, at the body's own scale."""
+        """Log of the height below the camera, or above, of the middle of a row, at the body's own scale."""
         return self.top + ROW * (row + 0.5)
 
 
@@ -91,19 +92,20 @@ def reach_below(setting: Setting, wall: Wall) -> Float:
 
 
 class StripDrawer:
-    """Draws the strips of one photo's walls. The setting must have pixels."""
+    """Draws the strips of one photo's walls, from the horizon down or up. The setting must have pixels."""
 
-    def __init__(self, setting: Setting) -> None:
+    def __init__(self, setting: Setting, is_above: bool = False) -> None:
         pixels = setting.sight.pixels
         assert pixels is not None
         self._setting, self._sight = setting, setting.sight
+        self._way = 1.0 if is_above else -1.0
         self._projection = setting.sight.matrix @ setting.sight.rotation
         self._shrunk = min(1.0, WIDEST / pixels.shape[1])
         size = (round(pixels.shape[1] * self._shrunk), round(pixels.shape[0] * self._shrunk))
         self._pixels = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA) if self._shrunk < 1 else pixels
 
     def draw(self, wall: Wall) -> Strip | None:
-        """The strip of a wall; None where too little of the wall is below the horizon in the photo."""
+        """The strip of a wall; None where too little of the wall is on that side of the horizon in the photo."""
         across = self._columns(wall)
         if across is None:
             return None
@@ -111,7 +113,7 @@ class StripDrawer:
         width, focal = self._sight.width, self._sight.matrix[0, 0]
         top = float(np.log(TOP * width * np.median(depth) / focal))
         log_height = top + ROW / FINER * np.arange(ROWS * FINER)
-        pixels, depth = self.seen_at(wall, along[None], -np.exp(log_height)[:, None])
+        pixels, depth = self.seen_at(wall, along[None], self._way * np.exp(log_height)[:, None])
         height, width = self._pixels.shape[:2]
         at = pixels * self._shrunk
         seen = depth > 0
@@ -169,7 +171,7 @@ class StripDrawer:
         points = rays * (wall.offset / rays[..., wall.plane.normal])[..., None]
         forth = 1.0 if along[-1] >= along[0] else -1.0
         column = np.interp(forth * points[..., int(partner(wall.plane.normal))], forth * along, np.arange(len(along)))
-        row = (np.log(np.maximum(-points[..., 2], 1e-9)) - top) * FINER / ROW
+        row = (np.log(np.maximum(self._way * points[..., 2], 1e-9)) - top) * FINER / ROW
         drawn = np.zeros((ROWS * FINER, COLUMNS * FINER), np.float32)
         corners = np.rint(np.stack([column, np.clip(row, -50, 10 * ROWS)], axis=2)).astype(np.int64)
         for first, second in corners.tolist():

@@ -31,6 +31,7 @@ NARROWEST = 0.02  # of its offset, of a surface: what is less is relief
 FURTHEST, NEARLY_ALL = 1.25, 0.98  # times the depth of so many of a surface's lines; it does not go on for ever
 RARE_COST = 0.3  # of levels that are no ground: soffits and tops of walls are small
 WALLED_COST = 0.5  # of ground and ceiling behind a wall
+ROOM_COST = 3.0  # the same below a ceiling and behind all walls there: the walls of a room close it
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
 MAPPED_COST = 0.8  # of a wall that only a depth map shows
@@ -80,7 +81,9 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
         turned = (raster.facing != UNTOLD) & (raster.facing != surface.axis)
         is_level = surface.kind in ("ground", "ceiling")
         if is_level:
-            cost = cost + WALLED_COST * _behind_walls(raster, lines, surfaces, depth, number)
+            some, every = _behind_walls(raster, lines, surfaces, depth, number)
+            in_room = every & heaven.is_ceiling & (raster.map_depth is None)
+            cost = cost + np.where(in_room, ROOM_COST, WALLED_COST) * some
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
@@ -159,9 +162,12 @@ def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Fl
     return over
 
 
-def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> Bool:
-    """Where (S,) a level would be seen through a wall between the wall's ends, by the depths (S, K) of surfaces."""
-    hidden = np.zeros(raster.size, bool)
+def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> tuple[Bool, Bool]:
+    """Where (S,) a level would be seen through a wall between the wall's ends, and where through all that are there.
+
+    By the depths (S, K) of surfaces.
+    """
+    some, every = np.zeros(raster.size, bool), np.ones(raster.size, bool)
     reach = depth[:, level] / BEHIND
     for number, surface in enumerate(surfaces):
         if surface.kind != "wall":
@@ -173,8 +179,10 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
             low, high = surface.box[:, along]
         before = depth[:, number]
         at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
-        hidden |= (before < reach) & (at > low) & (at < high)
-    return hidden
+        is_there, is_before = (at > low) & (at < high), before < reach
+        some |= is_before & is_there
+        every &= is_before | ~is_there
+    return some, some & every
 
 
 def _beyond(raster: Raster, kind: str) -> Float:

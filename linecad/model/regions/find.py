@@ -1,5 +1,6 @@
 """The stages of finding what the photo shows, in order."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +22,7 @@ from linecad.model.regions.raster import Picture, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets
 from linecad.model.regions.skyline import sure_sky
-from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet
+from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet, level_of_ends
 from linecad.model.regions.telling import tell
 from linecad.model.regions.told import Before
 from linecad.scene import Camera, Lines, Plane
@@ -37,6 +38,7 @@ class Look:
     sketch: Sketch | None = None
     mapped: MappedDepths | None = None  # what a depth map says
     faces: tuple[FaceEdit, ...] = ()  # what a person says
+    height_of_ceiling: Callable[[], float | None] | None = None  # above the camera, by the heads of walls
 
 
 def find_regions(
@@ -47,7 +49,7 @@ def find_regions(
     raster = laid_on(take_raster(lines, camera, rotation, look.photo, look.normals, turns), look.mapped, camera)
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
-    surfaces = find_surfaces(planes, lines, camera, feet, heaven.is_ceiling)
+    surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)
@@ -67,3 +69,9 @@ def find_regions(
     if look.sketch is not None:
         filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, heaven, raster, view))
     return uncovered(filled, told)
+
+
+def _ceiling(look: Look, lines: Lines) -> float | None:
+    """The height of the ceiling above the camera: where heads of walls put it, but not below nearly all lines' ends."""
+    by_heads = None if look.height_of_ceiling is None else look.height_of_ceiling()
+    return max(filter(None, (by_heads, level_of_ends(lines, above=True))), default=None)

@@ -51,11 +51,11 @@ class GroundOfFeet:
 
 
 def find_surfaces(
-    planes: tuple[Plane, ...], lines: Lines, camera: Camera, feet: GroundOfFeet | None, has_ceiling: bool
+    planes: tuple[Plane, ...], lines: Lines, camera: Camera, feet: GroundOfFeet | None, ceiling: float | None
 ) -> list[Surface]:
     """The walls and levels of a scene, those with the longest lines first, then its ground and its ceiling.
 
-    A scene whose lines all end above the horizon has no ground.
+    A scene whose lines all end above the horizon has no ground. `ceiling` is the height of one above the camera.
     """
     length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
     row = {number: index for index, number in enumerate(lines.id.tolist())}
@@ -74,7 +74,6 @@ def find_surfaces(
             found.append(Surface(kind, plane.axis, plane.offset, own, plane.id))
     walls = [wall for wall in found if length[wall.lines].sum() >= LEAST_LENGTH * camera.width][:MOST_SURFACES]
     ground = ground_height(lines, feet)
-    ceiling = level_of_ends(lines, above=True) if has_ceiling else None
     for kind, height in (("ground", None if ground is None else -ground), ("ceiling", ceiling)):
         if height is not None:
             found_by_feet = kind == "ground" and feet is not None and height == -feet.height

@@ -13,6 +13,7 @@ from linecad.model.regions.evidence import (
     GREEN_COST,
     NEAR_COST,
     NEVER,
+    ROOM_COST,
     SKY,
     SMOOTH_COST,
     THROUGH_COST,
@@ -41,7 +42,7 @@ def raster(house):
 
 @pytest.fixture(scope="module")
 def surfaces(house):
-    return find_surfaces(house.planes, house.lines, house.camera, None, has_ceiling=False)
+    return find_surfaces(house.planes, house.lines, house.camera, None, ceiling=None)
 
 
 def sample(x, y):
@@ -198,3 +199,22 @@ def test_cells_in_the_colour_of_a_label_are_likely_to_have_it(house):
     assert (costs[2:, 1] < 0).all()
     assert (costs[2:, 0] > 0).all()
     assert (costs[:, 2:] == 0).all()  # labels that none has
+
+
+def test_in_a_room_no_level_is_seen_through_all_of_its_walls(house, raster):
+    ground = Surface("ground", 2, -2.0, NO_LINES, None)
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()]
+    below = replace(NO_HEAVEN, is_ceiling=True)
+    at = sample(700, 520)
+
+    def cost_behind(*offsets, heaven=below, seen=raster):
+        walls = [wall(offset, rows) for offset in offsets]
+        alone, more = (sample_costs(seen, house.lines, [ground, *some], heaven, np.inf)[:, 0] for some in ([], walls))
+        return more[at] - alone[at]
+
+    assert cost_behind(8.0) == pytest.approx(ROOM_COST)
+    assert cost_behind(7.0, 8.0) == pytest.approx(ROOM_COST)
+    assert cost_behind(8.0, 11.5) == pytest.approx(WALLED_COST)  # the other one stands beyond what is seen of it
+    assert cost_behind(8.0, heaven=NO_HEAVEN) == pytest.approx(WALLED_COST)
+    mapped = replace(raster, map_depth=np.full(raster.size, np.nan))
+    assert cost_behind(8.0, seen=mapped) == pytest.approx(WALLED_COST)

@@ -20,7 +20,7 @@ def labels_of(house, more=()):
     """Labels by the lines and the picture of a house; `more` are surfaces that it does not have."""
     view = View(house.camera, house.rotation, house.photo)
     raster = take_raster(house.lines, house.camera, house.rotation, house.photo)
-    surfaces = [*find_surfaces(house.planes, house.lines, house.camera, None, has_ceiling=False), *more]
+    surfaces = [*find_surfaces(house.planes, house.lines, house.camera, None, ceiling=None), *more]
     return find_labels(house.lines, surfaces, raster, look_up(raster), view)
 
 

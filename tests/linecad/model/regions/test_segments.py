@@ -17,7 +17,7 @@ NO_LINES = np.zeros(0, np.int64)
 
 def seen(house, photo=None):
     """Surfaces, raster and view of the house, or of another photo with its lines."""
-    surfaces = find_surfaces(house.planes, house.lines, house.camera, None, has_ceiling=False)
+    surfaces = find_surfaces(house.planes, house.lines, house.camera, None, ceiling=None)
     return surfaces, take_raster(house.lines, house.camera, house.rotation, photo), View(
         house.camera, house.rotation, photo
     )  # fmt: skip

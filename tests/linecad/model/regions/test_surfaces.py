@@ -1,7 +1,6 @@
 """The walls, the ground and the ceiling of lines."""
 
 import numpy as np
-import pytest
 
 from linecad.geometry import central_camera
 from linecad.model.regions.surfaces import (
@@ -35,9 +34,9 @@ def upright(*spans, length=100.0, probability=(), component=None):
     )  # fmt: skip
 
 
-def surfaces(planes, lines, feet=None, has_ceiling=False):
+def surfaces(planes, lines, feet=None, ceiling=None):
     """What is found, as tuples."""
-    found = find_surfaces(tuple(planes), lines, CAMERA, feet, has_ceiling)
+    found = find_surfaces(tuple(planes), lines, CAMERA, feet, ceiling)
     return [(each.kind, each.axis, each.offset, each.lines.tolist(), each.plane) for each in found]
 
 
@@ -116,6 +115,6 @@ def test_levels_near_the_ground_become_it_and_kerbs_join_it():
     assert surfaces([Plane(1, 2, far, (12,))], BOTH) == [("level", 2, far, [2], 1), ("ground", 2, -2.0, [], None)]
 
 
-def test_a_ceiling_is_where_nearly_all_lines_end_above():
-    assert surfaces([], BOTH, has_ceiling=True) == [("ground", 2, -2.0, [], None), ("ceiling", 2, 2.0, [], None)]
-    assert surfaces([Plane(4, 2, 2.0, (10,))], ABOVE, has_ceiling=True) == [("ceiling", 2, pytest.approx(2), [0], 4)]
+def test_a_ceiling_is_at_its_height_or_at_the_level_that_is_nearly_there():
+    assert surfaces([], BOTH, ceiling=3.0) == [("ground", 2, -2.0, [], None), ("ceiling", 2, 3.0, [], None)]
+    assert surfaces([Plane(4, 2, 2.0, (10,))], ABOVE, ceiling=2.05) == [("ceiling", 2, 2.0, [0], 4)]

@@ -16,7 +16,7 @@ EVERYWHERE = shapely.box(-0.5, -0.5, 959.5, 719.5)
 
 
 def surfaces_of(house, feet=None):
-    return find_surfaces(house.planes, house.lines, house.camera, feet, has_ceiling=False)
+    return find_surfaces(house.planes, house.lines, house.camera, feet, ceiling=None)
 
 
 def anchor(house, row):
