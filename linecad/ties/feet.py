@@ -50,7 +50,7 @@ class Reading:
 
 
 class FootReader:
-    """Reads the feet of one photo's walls, or what is above, of each wall once, whatever body it is a wall of."""
+    """Reads the feet, or the heads, of one photo's walls, each wall once, whatever body it is a wall of."""
 
     def __init__(self, setting: Setting, is_above: bool = False) -> None:
         self._drawer = None if setting.sight.pixels is None else StripDrawer(setting, is_above)

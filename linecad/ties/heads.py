@@ -11,7 +11,7 @@ from linecad.ties.feet import SAME, FootReader
 from linecad.ties.setting import Setting
 from linecad.ties.walls import find_walls
 
-# Of the log of a ceiling's height above the camera over the camera's above the ground: rooms of 2.4 to 4 m.
+# Of the log of a ceiling's height above the camera over the camera's above the ground: 1.6 m above it, 2.4 to 3.1 m.
 USUAL, SPREAD = -0.4, 0.35
 LEAST_USUAL = 0.1  # what an unusual height counts, halls being higher
 LEAST = 0.25  # sum of the probabilities of walls, from which a ceiling is told by them
@@ -37,5 +37,6 @@ def log_height_of_ceiling(setting: Setting, log_scale: Float, log_ground: float 
     usual = np.ones(len(height))
     if log_ground is not None:
         usual = np.maximum(np.exp(-(((height - log_ground - USUAL) / SPREAD) ** 2) / 2), LEAST_USUAL)
-    best = int((agreeing * usual).argmax())
-    return float(np.average(height[near[best]], weights=share[near[best]])) if agreeing[best] >= LEAST else None
+    worth = np.where(agreeing >= LEAST, agreeing * usual, 0.0)
+    best = int(worth.argmax())
+    return float(np.average(height[near[best]], weights=share[near[best]])) if worth[best] > 0 else None

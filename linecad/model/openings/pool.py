@@ -25,13 +25,13 @@ class Pool:
     sums: Sums
     box: Int  # (N, 4)
     evidence: Float  # (N, F)
-    others: Int  # (M, 4) distinct ones that they are compared with, as likely as they look by themselves
-    other_odds: Float  # (M,)
+    others: Int  # (M, 4) that they are compared with: distinct ones that edges close, and windows of panes
+    other_odds: Float  # (M,) by themselves
     is_inside: bool  # seen below a ceiling
 
     def odds(self) -> Float:
         """Log-odds (N,) that each is an opening, by itself and beside the others."""
-        # Once: asked again with what was proposed, rows and columns would support themselves.
+        # Beside these alone: beside what rows and columns ask for, they would support themselves.
         return odds(self.evidence, compare(self.box, self.raster, self.others, self.other_odds))
 
 

@@ -165,7 +165,7 @@ def _outside(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Fl
 def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: Float, level: int) -> tuple[Bool, Bool]:
     """Where (S,) a level would be seen through a wall between the wall's ends, and where through all that are there.
 
-    By the depths (S, K) of surfaces.
+    `depth` (S, K) is that of each surface.
     """
     some, every = np.zeros(raster.size, bool), np.ones(raster.size, bool)
     reach = depth[:, level] / BEHIND
@@ -179,7 +179,7 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
             low, high = surface.box[:, along]
         before = depth[:, number]
         at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
-        is_there, is_before = (at > low) & (at < high), before < reach
+        is_there, is_before = np.isfinite(before) & (at > low) & (at < high), before < reach
         some |= is_before & is_there
         every &= is_before | ~is_there
     return some, some & every

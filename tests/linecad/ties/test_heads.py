@@ -7,6 +7,7 @@ import pytest
 
 from linecad.line_graph import Segments
 from linecad.ties import heads
+from linecad.ties.feet import FootReader, Reading
 from linecad.ties.heads import SPREAD, USUAL, log_height_of_ceiling
 from linecad.ties.walls import StripDrawer, find_walls
 
@@ -72,6 +73,17 @@ def test_walls_that_do_not_agree_are_weighed_by_how_usual_the_room_is(lane, abov
 def test_a_hall_is_found_too(lane, above):
     high = above - USUAL - 4 * SPREAD
     assert log_height_of_ceiling(lane(), np.zeros(2), high) == pytest.approx(above, abs=FOUND)
+
+
+def test_a_faint_head_of_a_usual_room_is_no_reason_against_a_clear_one(lane, above, monkeypatch):
+    shares = {0: 0.9, 1: 0.2}
+
+    def read(_, walls):
+        return [Reading(((float(above) + (wall.body == 1), shares[wall.body]),), 0.0) for wall in walls]
+
+    monkeypatch.setattr(FootReader, "read", read)
+    found = log_height_of_ceiling(lane(), np.zeros(2), above + 1 - USUAL)
+    assert found == pytest.approx(above)
 
 
 def test_few_walls_tell_no_ceiling(lane, monkeypatch):

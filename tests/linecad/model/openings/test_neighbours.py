@@ -103,7 +103,9 @@ def test_numbers_are_those_counted_one_by_one(box, others, data):
 
 
 def test_without_others_there_is_nothing_to_compare_with():
-    assert not compare(np.array([[0, 9, 0, 9]]), EVEN, np.zeros((0, 4), np.int64), np.zeros(0)).any()
+    box, none = np.array([[0, 9, 0, 9], [0, 9, 9, 20]]), np.zeros((0, 4), np.int64)
+    far = np.array([[100, 150, 100, 190]])
+    np.testing.assert_array_equal(compare(box, EVEN, none, np.zeros(0)), compare(box, EVEN, far, np.zeros(1)))
 
 
 def grid(columns, rows, bar, left=20, low=30):

@@ -207,8 +207,8 @@ def test_in_a_room_no_level_is_seen_through_all_of_its_walls(house, raster):
     below = replace(NO_HEAVEN, is_ceiling=True)
     at = sample(700, 520)
 
-    def cost_behind(*offsets, heaven=below, seen=raster):
-        walls = [wall(offset, rows) for offset in offsets]
+    def cost_behind(*offsets, heaven=below, seen=raster, also=None):
+        walls = [wall(offset, rows) for offset in offsets] + [also] * (also is not None)
         alone, more = (sample_costs(seen, house.lines, [ground, *some], heaven, np.inf)[:, 0] for some in ([], walls))
         return more[at] - alone[at]
 
@@ -218,3 +218,6 @@ def test_in_a_room_no_level_is_seen_through_all_of_its_walls(house, raster):
     assert cost_behind(8.0, heaven=NO_HEAVEN) == pytest.approx(WALLED_COST)
     mapped = replace(raster, map_depth=np.full(raster.size, np.nan))
     assert cost_behind(8.0, seen=mapped) == pytest.approx(WALLED_COST)
+    # One that the ray never meets is not there, also where it reaches to both sides of the camera.
+    behind = Surface("wall", 1, -8.0, NO_LINES, None, box=np.array([[-3.0, -8, -2], [3, -8, 2]]))
+    assert cost_behind(8.0, also=behind) == pytest.approx(ROOM_COST)
