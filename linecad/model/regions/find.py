@@ -72,6 +72,11 @@ def find_regions(
 
 
 def _ceiling(look: Look, lines: Lines) -> float | None:
-    """The height of the ceiling above the camera: where heads of walls put it, but not below nearly all lines' ends."""
-    by_heads = None if look.height_of_ceiling is None else look.height_of_ceiling()
+    """The height of the ceiling above the camera: where heads of walls put it, but not below nearly all lines' ends.
+
+    Where a depth map was heard, heads are not asked: it shows the ceiling itself, beside one of lines that is lower.
+    """
+    by_heads = None
+    if look.height_of_ceiling is not None and look.mapped is None:
+        by_heads = look.height_of_ceiling()
     return max(filter(None, (by_heads, level_of_ends(lines, above=True))), default=None)

@@ -5,13 +5,17 @@ import numpy as np
 import pytest
 import shapely
 
+from linecad.depth.depth_map import DepthMap
 from linecad.depth.normals import Normals
 from linecad.geometry import project
 from linecad.model.faces import find_faces
+from linecad.model.regions import find
 from linecad.model.regions.evidence import NEVER, TURNED_COST
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.heaven import Heaven
+from linecad.model.regions.mapped import MappedDepths
 from linecad.model.regions.roofs import Sketch
-from linecad.model.regions.surfaces import GroundOfFeet
+from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, level_of_ends
 
 
 def surfaces(found):
@@ -91,3 +95,25 @@ def test_a_painted_roof_is_found_and_cut_out_of_the_wall(house, house_regions):
     seen = [shapely.Polygon(project(ring, house.camera.matrix, house.rotation)) for ring in rings]
     assert max(area.intersection(roof.polygon).area for area in seen) < 1
     assert house_regions.roofs == ()
+
+
+def test_heads_put_the_ceiling_above_the_ends_of_lines_where_no_map_shows_it(house, monkeypatch):
+    asked = []
+
+    def no_sky(raster):
+        return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=True)
+
+    def with_ceiling(planes, lines, camera, feet, ceiling):
+        asked.append(ceiling)
+        return find_surfaces(planes, lines, camera, feet, ceiling)
+
+    monkeypatch.setattr(find, "look_up", no_sky)
+    monkeypatch.setattr(find, "find_surfaces", with_ceiling)
+    camera = house.camera
+    nothing = np.zeros(house.photo.shape[:2], np.float32)
+    silent = MappedDepths(DepthMap("map.npz", nothing, nothing > 0, "z"), "z", 0.0, 1.0, camera.matrix, 0.02)
+    ends = level_of_ends(house.lines, above=True)
+    for told, mapped in ((None, None), (ends / 2, None), (2 * ends, None), (2 * ends, silent)):
+        look = Look(house.photo, None, None, mapped=mapped, height_of_ceiling=lambda told=told: told)
+        find_regions(house.planes, house.lines, camera, house.rotation, look)
+    assert asked == [ends, ends, 2 * ends, ends]
