@@ -164,7 +164,7 @@ class Placed:
             return None
         return float(self.placement.log_scale[number]), float(self.ties.weight[says_so].sum())
 
-    def height_of_ceiling(self, scale: float = 1.0) -> float | None:
+    def height_of_ceiling(self, scale: float) -> float | None:
         """Height of a ceiling above the camera, `scale` times that of the solution's depths; None if no wall tells."""
         ground = None if self.ground is None else self.ground[0]
         found = log_height_of_ceiling(self.setting, self.places.log_scale, ground)

@@ -105,22 +105,21 @@ def rows_of(dataset: str, case: Case) -> Rows | None:
     )
 
 
-def split(features: Float, overlap: Float, bounds: tuple[float, float]) -> tuple[Float, Float, Float]:
+def split(features: list[Float], overlap: list[Float], bounds: tuple[float, float]) -> tuple[Float, Float, Float]:
     """Features and whether they are right of those rectangles that clearly are one or none, and their overlap."""
-    clear = (overlap >= bounds[0]) | (overlap < bounds[1])
-    return features[clear], (overlap[clear] >= bounds[0]).astype(float), overlap[clear]
+    every, share = np.concatenate(features), np.concatenate(overlap)
+    clear = (share >= bounds[0]) | (share < bounds[1])
+    return every[clear], (share[clear] >= bounds[0]).astype(float), share[clear]
 
 
 def first_of(rows: list[Rows]) -> tuple[Float, Float, Float]:
     """By the evidence alone."""
-    features, overlap = (np.concatenate([getattr(each, name) for each in rows]) for name in ("first", "first_overlap"))
-    return split(features, overlap, BY_ITSELF)
+    return split([each.first for each in rows], [each.first_overlap for each in rows], BY_ITSELF)
 
 
 def whole_of(rows: list[Rows]) -> tuple[Float, Float, Float]:
     """Beside the others."""
-    features, overlap = (np.concatenate([getattr(each, name) for each in rows]) for name in ("whole", "overlap"))
-    return split(features, overlap, BESIDE)
+    return split([each.whole for each in rows], [each.overlap for each in rows], BESIDE)
 
 
 def fits_to(rows: list[Rows]) -> tuple[logistic.Logistic, logistic.Logistic]:

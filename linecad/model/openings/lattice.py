@@ -98,6 +98,11 @@ def propose(box: Int, raster: Raster) -> Int:
         end_v = start_v + seeds[a, 3] - seeds[a, 2]
         inside = (start_v >= 0) & (end_v < len(raster.v))
         found.append(np.column_stack([seeds[a, :2], start_v, end_v])[inside])
-    every = np.unique(np.concatenate(found), axis=0)
+    return large_ones(np.concatenate(found))
+
+
+def large_ones(box: Int) -> Int:
+    """Those of rectangles (N, 4) that have LEAST_SIDE columns and rows, each once, sorted."""
+    every = np.unique(box, axis=0)
     size = np.column_stack([every[:, 1] - every[:, 0], every[:, 3] - every[:, 2]])
     return np.asarray(every[(size >= LEAST_SIDE).all(axis=1)], np.int64)

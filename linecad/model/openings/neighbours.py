@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from linecad.arrays import Bool, Float, Int
-from linecad.model.openings.lattice import LEAST_SIDE, mates
+from linecad.model.openings.lattice import large_ones, mates
 from linecad.model.openings.raster import Raster
 
 TIGHT, CLOSE = 0.2, 0.5  # of a rectangle's side: gaps to the next one, as bars between panes and posts between windows
@@ -129,5 +129,4 @@ def windows_of_panes(box: Int, odds: Float, raster: Raster) -> Int:
     spans = np.array(found)
     spans[:, :2] = spans[:, :2].clip(0, len(raster.u) - 1)
     spans[:, 2:] = spans[:, 2:].clip(0, len(raster.v) - 1)
-    size = np.column_stack([spans[:, 1] - spans[:, 0], spans[:, 3] - spans[:, 2]])
-    return np.asarray(np.unique(spans[(size >= LEAST_SIDE).all(axis=1)], axis=0), np.int64)
+    return large_ones(spans)
