@@ -19,7 +19,7 @@ from linecad.geometry import world_rays
 from linecad.ties.planes import BodyPlane, find_planes_of_bodies
 from linecad.ties.setting import Setting
 
-ROWS, COLUMNS = 216, 32
+ROWS, COLUMNS = 216, 64
 ROW = 0.02  # log height
 FINER = 2  # samples a row and a column, which are averaged
 TOP = 0.003125  # of the photo's width below the horizon, where a strip begins

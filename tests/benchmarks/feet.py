@@ -1,7 +1,8 @@
 """The network that finds the feet of walls: python tests/benchmarks/feet.py train | measure DATASET ...
 
 DATASET is a folder of made scenes (`linecad dataset`). Each wall of a body of known scale is an example; those whose
-foot is seen in a few columns only are left out.
+foot is seen in a few columns only are left out. Where a ceiling is seen, the heads of walls are examples for training
+too.
 
 `train` fits the network to all examples and writes linecad/ties/foot.onnx; it needs PyTorch and ONNX. `measure` needs
 neither, and prints how well the network of the project finds feet. Measure on scenes that it was not trained on.
@@ -20,7 +21,7 @@ import numpy as np
 # What is trained goes into the checkout that this file is in, whichever linecad is installed.
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from feet_truth import Example, examples_of
+from feet_truth import UNSEEN, Example, examples_of
 from ties_truth import look_at, scene_of
 
 from linecad.arrays import Bool, Float
@@ -29,23 +30,27 @@ from linecad.ties.feet import NETWORK, foot_probabilities, peaks
 from linecad.ties.walls import ROW, ROWS
 
 NEEDED = {"torch": "PyTorch", "onnx": "ONNX"}
-EPOCHS = 44
+EPOCHS = 26
 RIGHT = 0.04  # log height
 LEAST_PROBABILITIES = (0.2, 0.35, 0.5, 0.65, 0.8, 0.9)
 
 
-def examples_in(dataset: str, case: Case) -> list[Example]:
+def examples_in(dataset: str, case: Case, with_heads: bool) -> list[Example]:
     """The clear examples of a photo; none where it has no bodies of known scale."""
     seen = look_at(case)
     if seen is None:
         return []
     assert seen.reference.truth is not None
-    examples = examples_of(scene_of(dataset, case), seen.setting, seen.true_scale, seen.reference.truth)
+    scene, truth = scene_of(dataset, case), seen.reference.truth
+    examples = examples_of(scene, seen.setting, seen.true_scale, truth)
+    heads = examples_of(scene, seen.setting, seen.true_scale, truth, is_above=True) if with_heads else []
+    if any(head.row != UNSEEN for head in heads):  # else there is no ceiling
+        examples += heads
     return [example for example in examples if example.is_clear]
 
 
-def collect(folders: Sequence[Path], workers: int) -> dict[str, list[Example]]:
-    """The clear examples of each dataset. Ends the program where a dataset is not of made scenes."""
+def collect(folders: Sequence[Path], workers: int, with_heads: bool) -> dict[str, list[Example]]:
+    """The clear examples of each dataset. Ends the program where one is not of made scenes."""
     if len({folder.name for folder in folders}) < len(folders):
         raise SystemExit("two datasets have one name")
     cases = {folder.name: find_dataset(folder).cases for folder in folders}
@@ -53,7 +58,7 @@ def collect(folders: Sequence[Path], workers: int) -> dict[str, list[Example]]:
         if any(case.kind != "made" for case in of_dataset):
             raise SystemExit(f"{name} is no dataset of made scenes; only these tell where walls meet the ground")
     with ProcessPoolExecutor(workers) as pool:
-        jobs = {name: [pool.submit(examples_in, name, case) for case in of] for name, of in cases.items()}
+        jobs = {name: [pool.submit(examples_in, name, case, with_heads) for case in of] for name, of in cases.items()}
         return {name: [example for job in of for example in job.result()] for name, of in jobs.items()}
 
 
@@ -130,7 +135,7 @@ def main() -> None:
     missing = [name for module, name in NEEDED.items() if chosen.command == "train" and find_spec(module) is None]
     if missing:
         raise SystemExit(f"not installed: {', '.join(missing)}; training needs PyTorch and ONNX, measuring does not")
-    of_datasets = collect(chosen.datasets, chosen.workers)
+    of_datasets = collect(chosen.datasets, chosen.workers, with_heads=chosen.command == "train")
     empty = [name for name, examples in of_datasets.items() if not examples]
     if empty:
         raise SystemExit(f"no wall of known scale found in {', '.join(empty)}")

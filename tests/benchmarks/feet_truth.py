@@ -1,4 +1,4 @@
-"""Strips of walls with the row in which the wall truly meets the ground; used by feet.py."""
+"""Strips of walls with the row in which the wall truly meets the ground, or the ceiling; used by feet.py."""
 
 from dataclasses import dataclass
 
@@ -14,6 +14,7 @@ STEPPED = 0.2  # m: the ground is what lies flat and at most so much higher than
 SAME_PLANE = 0.04  # log offset
 SAME_HEIGHT = 0.03  # log
 ASIDE = 2  # rows above and below the foot that are looked at
+OF_CORNICE = 8  # rows below a ceiling that may show a cornice, not the wall
 LEAST_SEEN = 0.12  # of the columns that must show the foot; with fewer, but some, an example is left out
 UNSEEN = -1.0
 
@@ -29,9 +30,9 @@ class Example:
     log_height: float  # true, of the foot; NaN where it is not seen
 
 
-def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -> list[Example]:
-    """The walls of all bodies of known scale (B,), NaN where it is not known."""
-    drawer, known = StripDrawer(setting), GroundTruth(truth, setting.graph.turns)
+def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth, is_above: bool = False) -> list[Example]:
+    """The walls of all bodies of known scale (B,), NaN where it is not known; with their heads where `is_above`."""
+    drawer, known = StripDrawer(setting, is_above), GroundTruth(truth, setting.graph.turns, is_above)
     found = []
     for wall in find_walls(setting):
         strip = drawer.draw(wall) if np.isfinite(true_scale[wall.body]) else None
@@ -44,25 +45,29 @@ def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth) -
 
 
 class GroundTruth:
-    def __init__(self, truth: Truth, turns: Turns) -> None:
-        self._truth = truth
+    """Where walls meet the ground, or, where `is_above`, the ceiling."""
+
+    def __init__(self, truth: Truth, turns: Turns, is_above: bool = False) -> None:
+        self._truth, self._way = truth, 1.0 if is_above else -1.0
+        self._wall_ends = OF_CORNICE if is_above else ASIDE
         normal, offset = truth.planes()
         self.normal = components(normal, turns)  # (Q, K) along all directions, by which walls are numbered
         self._offset = np.abs(offset)
         flat = np.abs(self.normal[:, 2]) > 0.99
-        height = truth.quads[..., 2].mean(axis=1)
-        self._log_height = np.log(np.maximum(-height, 1e-9))
-        self._is_ground = flat & (height < height[flat].min() + STEPPED)
+        away = self._way * truth.quads[..., 2].mean(axis=1)
+        self._log_height = np.log(np.maximum(away, 1e-9))
+        self._is_ground = flat & (away > away[flat].max() - STEPPED)
 
     def foot(self, strip: Strip, drawer: StripDrawer, scale: float) -> tuple[float, float]:
         """The lowest row at which a share of the columns shows the wall above and the ground below, and that share."""
         rows = np.arange(ROWS)
         log_height = np.asarray(strip.log_height(0) + ROW * rows, np.float64)
         shown = self._shown(strip, drawer, log_height)
-        above, below = np.roll(shown, ASIDE, axis=0), np.roll(shown, -ASIDE, axis=0)
-        meets = self._is_wall(above, strip, scale) & self._is_ground[below] & (below != NOTHING)
+        is_wall, below = self._is_wall(shown, strip, scale), np.roll(shown, -ASIDE, axis=0)
+        meets = self._is_ground[below] & (below != NOTHING)
+        meets &= np.logical_or.reduce([np.roll(is_wall, by, axis=0) for by in range(ASIDE, self._wall_ends + 1)])
         meets &= np.abs(self._log_height[below] - log_height[:, None] - scale) < SAME_HEIGHT
-        meets[:ASIDE] = meets[-ASIDE:] = False
+        meets[: self._wall_ends] = meets[-ASIDE:] = False
         share = meets.mean(axis=1)
         if share.max() == 0:
             return UNSEEN, 0.0
@@ -79,6 +84,6 @@ class GroundTruth:
 
     def _shown(self, strip: Strip, drawer: StripDrawer, log_height: Float) -> Int:
         """The quads (ROWS, COLUMNS) that the photo shows where the strip looks at it."""
-        pixels, depth = drawer.seen_at(strip.wall, strip.along[None], -np.exp(log_height)[:, None])
+        pixels, depth = drawer.seen_at(strip.wall, strip.along[None], self._way * np.exp(log_height)[:, None])
         quads = self._truth.quad_at(pixels.reshape(-1, 2)).reshape(ROWS, COLUMNS)
         return np.asarray(np.where(depth > 0, quads, NOTHING))

@@ -5,63 +5,90 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from feet_truth import UNSEEN
+from strip_changes import LAYERS, changed_example
 from torch import Tensor, nn
 from torch.nn import functional
 
 from linecad.arrays import Float
 from linecad.ties.walls import COLUMNS, ROWS, Strips
 
-LAYERS = 6
-SHIFT = 30  # rows
-BATCH, RATE, DECAY = 24, 4e-3, 1e-3
+BATCH, RATE, DECAY = 24, 4e-3, 1e-2
+DROPPED = 0.2  # share of what is seen of a strip as a whole that each step of the training does without
 BLURRED = 0.75  # rows: how far from the foot a row still counts
 
 
 def _block(
-    inputs: int, outputs: int, kernel: tuple[int, int], apart: tuple[int, int] = (1, 1), step: int = 1
+    inputs: int, outputs: int, kernel: tuple[int, int] = (3, 3), apart: int = 1, step: tuple[int, int] = (1, 1)
 ) -> nn.Module:
-    padding = (apart[0] * (kernel[0] // 2), apart[1] * (kernel[1] // 2))
+    """Kernel, distance between the rows that it looks at, and step are of rows and columns."""
+    padding = (apart * (kernel[0] // 2), kernel[1] // 2)
     return nn.Sequential(
-        nn.Conv2d(inputs, outputs, kernel, stride=(1, step), padding=padding, dilation=apart, bias=False),
+        nn.Conv2d(inputs, outputs, kernel, stride=step, padding=padding, dilation=(apart, 1), bias=False),
         nn.BatchNorm2d(outputs),
         nn.ReLU(),
     )
 
 
+class _Added(nn.Module):
+    """What two blocks find, added to what they are given."""
+
+    def __init__(self, layers: int) -> None:
+        super().__init__()
+        self.blocks = nn.Sequential(_block(layers, layers), _block(layers, layers))
+
+    def forward(self, seen: Tensor) -> Tensor:
+        return seen + self.blocks(seen)
+
+
 class FootNetwork(nn.Module):
     """From strips (W, LAYERS, ROWS, COLUMNS) to log-odds (W, ROWS + 1): each row, and that no foot is seen.
 
-    Columns are looked at in pairs of twos, then all at once; rows from nearer to farther away.
+    A strip is looked at ever coarser, until an eighth of the rows show it as a whole, and then ever finer again, with
+    what was seen on the way down: what is foot and what is kerb or sill is told by all that stands above and below.
     """
 
     def __init__(self) -> None:
         super().__init__()
-        self.in_the_photo = nn.Sequential(
-            _block(LAYERS, 24, (3, 3)),
-            _block(24, 32, (3, 3), step=2),
-            _block(32, 32, (3, 3), (2, 1)),
-            _block(32, 48, (3, 3), (4, 1), 2),
-        )
-        self.mean, self.most = nn.AvgPool2d((1, COLUMNS // 4)), nn.MaxPool2d((1, COLUMNS // 4))
+        self.fine = nn.Sequential(
+            _block(LAYERS, 16, step=(1, 2)), _block(16, 24, step=(1, 2)), _block(24, 24)
+        )  # rows, a quarter of the columns
+        self.coarse = nn.Sequential(_block(24, 32, step=(2, 1)), _block(32, 32))
+        self.coarser = nn.Sequential(_block(32, 40, step=(2, 2)), _Added(40))
+        self.coarsest = nn.Sequential(_block(40, 40, step=(2, 1)), _Added(40))
+        self.whole = nn.Sequential(_block(80, 40, (5, 1)), _block(40, 40, (5, 1), 2))
+        self.again = nn.ModuleList([_block(40 + 40, 32), _block(32 + 32, 32), _block(32 + 24, 32)])
+        self.halved, self.twice = nn.AvgPool2d((1, 2)), nn.Upsample(scale_factor=(2, 1), mode="nearest")
+        self.eightfold = nn.Upsample(scale_factor=(8, 1), mode="nearest")
+        self.mean, self.most = nn.AvgPool2d((1, COLUMNS // 8)), nn.MaxPool2d((1, COLUMNS // 8))
         self.near, self.far, self.farther = (
-            _block(96, 64, (5, 1)),
-            _block(64, 64, (5, 1), (3, 1)),
-            _block(64, 64, (5, 1), (9, 1)),
+            _block(64 + 40, 48, (5, 1)),
+            _block(48, 48, (5, 1), 3),
+            _block(48, 48, (5, 1), 9),
         )
-        self.row = nn.Conv2d(64, 1, 1)
-        self.mean_row, self.most_row = nn.AvgPool2d((ROWS, 1)), nn.MaxPool2d((ROWS, 1))
-        self.unseen = nn.Conv2d(128, 1, 1)
-        self.drop = nn.Dropout(0.15)
+        self.row = nn.Conv2d(48, 1, 1)
+        self.mean_row, self.most_row = nn.AvgPool2d((ROWS // 8, 1)), nn.MaxPool2d((ROWS // 8, 1))
+        self.unseen = nn.Conv2d(80, 1, 1)
+        self.drop = nn.Dropout(DROPPED)
 
     def forward(self, strips: Tensor) -> Tensor:
         """The log-odds, up to one constant a wall."""
-        seen = self.in_the_photo(strips)
-        rows = self.near(torch.cat([self.mean(seen), self.most(seen)], 1))
+        fine = self.fine(strips)
+        coarse = self.coarse(fine)
+        coarser = self.coarser(coarse)
+        coarsest = self.coarsest(coarser)
+        whole = self.whole(self.drop(self._across(coarsest)))
+        seen = self.again[0](torch.cat([self.twice(coarsest + whole), coarser], 1))
+        seen = self.again[1](torch.cat([self.twice(seen), self.halved(coarse)], 1))
+        seen = self.again[2](torch.cat([self.twice(seen), self.halved(fine)], 1))
+        rows = self.near(self.drop(torch.cat([self._across(seen), self.eightfold(whole)], 1)))
         rows = rows + self.far(self.drop(rows))
         rows = rows + self.farther(rows)
-        unseen = self.unseen(torch.cat([self.mean_row(rows), self.most_row(rows)], 1))
+        unseen = self.unseen(torch.cat([self.mean_row(whole), self.most_row(whole)], 1))
         return torch.cat([self.row(rows), unseen], 2).flatten(1)
+
+    def _across(self, seen: Tensor) -> Tensor:
+        """Mean and most of all columns."""
+        return torch.cat([self.mean(seen), self.most(seen)], 1)
 
 
 def train(strips: Strips, row: Float, epochs: int, seed: int = 0, report: Callable[[str], None] = print) -> FootNetwork:
@@ -78,7 +105,9 @@ def train(strips: Strips, row: Float, epochs: int, seed: int = 0, report: Callab
         total = 0.0
         for images, feet in _batches(strips, row, random):
             descent.zero_grad()
-            loss = _loss(network(images), feet)
+            with torch.autocast("cpu", dtype=torch.bfloat16):
+                log_odds = network(images)
+            loss = _loss(log_odds.float(), feet)
             loss.backward()
             descent.step()
             pace.step()
@@ -110,62 +139,3 @@ def _batches(strips: Strips, row: Float, random: np.random.Generator) -> Iterato
         changed = [changed_example(strips[one], float(row[one]), random) for one in order[start : start + BATCH]]
         images, feet = zip(*changed, strict=True)
         yield torch.from_numpy(np.stack(images)).float(), torch.tensor(feet, dtype=torch.float32)
-
-
-def grain(shape: tuple[int, int], random: np.random.Generator) -> Float:
-    """Noise (3, R, C) of several scales, mostly gray, as stone, grass and plaster have."""
-    found = np.zeros((3, *shape))
-    for scale in (1, 2, 4, 8):
-        rows, columns = (-(-side // scale) for side in shape)
-        gray = random.normal(0, random.uniform(0, 0.35), (1, rows, columns))
-        tinted = gray + random.normal(0, random.uniform(0, 0.12), (3, rows, columns))
-        found += np.kron(tinted, np.ones((1, scale, scale)))[:, : shape[0], : shape[1]]
-    return found
-
-
-def changed_example(strip: Strips, row: float, random: np.random.Generator) -> tuple[Strips, float]:
-    """A strip (LAYERS, ROWS, COLUMNS) as another photo might show it, and its row: other light, ground and things."""
-    strip = strip[:, :, ::-1].copy() if random.random() < 0.5 else strip.copy()
-    if random.random() < 0.5:  # a part of the wall
-        first = int(random.integers(0, 12))
-        last = int(random.integers(max(first + 12, 20), COLUMNS + 1))
-        strip = strip[:, :, np.linspace(first, last - 1, COLUMNS).round().astype(np.int64)]
-    colour = strip[:3]
-    if row >= 0:
-        foot = round(row)
-        if random.random() < 0.45:
-            colour[:, foot:] += random.normal(0, 0.5, (3, 1, 1))
-        if random.random() < 0.5:
-            colour[:, foot:] += grain((ROWS - foot, COLUMNS), random)
-        if random.random() < 0.3:
-            colour[:, :foot] += grain((foot, COLUMNS), random)
-    elif random.random() < 0.3:
-        colour += grain((ROWS, COLUMNS), random)
-    if row >= 0 and random.random() < 0.15:  # a hedge hides the foot and seems to have one
-        hidden = min(ROWS - 8, foot + int(random.integers(3, 15)))
-        ragged = hidden - random.integers(10, 60) - np.abs(np.cumsum(random.normal(0, 2, COLUMNS))).astype(np.int64)
-        is_hedge = (np.arange(ROWS)[:, None] >= ragged) & (np.arange(ROWS)[:, None] < hidden)
-        leaves = random.normal(0, 0.8, (3, 1, 1)) + 2 * grain((ROWS, COLUMNS), random)
-        colour[:] = np.where(is_hedge, leaves, colour)
-        strip[4][is_hedge] = 0
-        row = UNSEEN
-    if random.random() < 0.25:
-        colour[1:] = 0
-    if random.random() < 0.25:  # light that changes down the wall
-        above, below = random.normal(0, 0.6, 2).tolist()
-        colour[:1] += np.linspace(above, below, ROWS)[:, None]
-    colour *= random.uniform(0.6, 1.5, (3, 1, 1))
-    colour += random.normal(0, 0.25, (3, 1, 1))
-    if random.random() < 0.35:
-        colour += random.normal(0, random.uniform(0.02, 0.15), colour.shape)
-    if random.random() < 0.3:  # something stands before it
-        left, top = random.integers(0, COLUMNS - 4), random.integers(0, ROWS - 10)
-        width, height = random.integers(3, 11), random.integers(8, 90)
-        colour[:, top : top + height, left : left + width] = random.normal(0, 1, (3, 1, 1))
-    colour *= strip[3]
-    by = int(random.integers(-SHIFT, SHIFT + 1))
-    if row >= 0 and not 4 < row + by < ROWS - 4:
-        by = 0
-    moved = np.zeros_like(strip)
-    moved[:, max(0, by) : ROWS + min(0, by)] = strip[:, max(0, -by) : ROWS - max(0, by)]
-    return moved, row + by if row >= 0 else row

@@ -144,7 +144,7 @@ def test_the_network_is_small_and_reads_strips():
     # ValueInfoProto.type.tensor_type.shape.dim.dim_value; the first dimension is free and has a name.
     assert list(inside(graph, 11, 2, 1, 2, 1, 1)) == [6, ROWS, COLUMNS]
     assert list(inside(graph, 12, 2, 1, 2, 1, 1)) == [ROWS + 1]
-    assert (ROWS, COLUMNS) == (216, 32)
+    assert (ROWS, COLUMNS) == (216, 64)
     assert foot_probabilities(noise(3)).shape == (3, ROWS + 1)
 
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from feet_truth import STEPPED, UNSEEN, GroundTruth, examples_of
+from feet_truth import OF_CORNICE, STEPPED, UNSEEN, GroundTruth, examples_of
 
 from linecad.dataset.truth import NOTHING, Truth
 from linecad.directions import directions_of
@@ -12,6 +12,7 @@ from linecad.ties.walls import ROW
 
 BELOW = 1.6  # m from the camera down to the ground
 MOVED = 0.3  # log, by how much the body is too large
+HEAD = 1.2  # m from the camera up to the ceiling
 WALL = ((-4.0, 9.0, -BELOW), (0.0, 9.0, 3.0))
 
 
@@ -38,7 +39,7 @@ def known(build_town, build_wall, build_setting, paint_photo, build_facade, buil
     grey = np.full((2880, 3840, 3), 128, np.uint8)
     setting = build_setting(seen, moved=(MOVED,), pixels=grey)
 
-    def look(*quads, scale=-MOVED):
+    def look(*quads, scale=-MOVED, is_above=False):
         numbered = []
         for number, (low, high) in enumerate(quads):
             colour = number_colour(number)
@@ -53,9 +54,13 @@ def known(build_town, build_wall, build_setting, paint_photo, build_facade, buil
         empty, none = np.zeros((0, 2, 3)), np.zeros(0, np.int64)
         truth = Truth("lane", 3840, 2880, sight.matrix, sight.rotation, corners, np.zeros(len(quads), np.int64),
                       empty, none, np.zeros((0, 2, 2)), none, ids)  # fmt: skip
-        return examples_of("lane", setting, np.array([scale]), truth)
+        return examples_of("lane", setting, np.array([scale]), truth, is_above)
 
     return look
+
+
+def ceiling(above):
+    return (-30.0, 3.0, above), (30.0, 60.0, above)
 
 
 def number_colour(number):
@@ -97,6 +102,24 @@ def test_a_pavement_is_ground_and_a_terrace_is_not(known, above, is_ground):
     assert (example.row != UNSEEN) is is_ground
     if is_ground:
         assert example.log_height == pytest.approx(np.log(BELOW - above), abs=0.6 * ROW)
+
+
+def test_the_head_is_where_the_wall_meets_the_ceiling(known):
+    (example,) = known(WALL, floor(BELOW), ceiling(HEAD), is_above=True)
+    assert example.row == pytest.approx((np.log(HEAD) + MOVED - example.strip.top) / ROW - 0.5, abs=0.6)
+    assert example.log_height == pytest.approx(np.log(HEAD), abs=0.6 * ROW)
+
+
+@pytest.mark.parametrize(("rows", "is_seen"), [(OF_CORNICE - 2, True), (OF_CORNICE + 3, False)])
+def test_a_low_cornice_hides_no_head_and_a_high_one_does(known, rows, is_seen):
+    cornice = (-6.0, 8.6, HEAD * np.exp(-ROW * rows) * 8.6 / 9.0), (2.0, 8.6, HEAD)
+    (example,) = known(WALL, floor(BELOW), ceiling(HEAD), cornice, is_above=True)
+    assert (example.row != UNSEEN) is is_seen
+
+
+def test_without_a_ceiling_there_is_no_head(known):
+    (example,) = known(WALL, floor(BELOW), is_above=True)
+    assert (example.row, example.is_clear) == (UNSEEN, True)
 
 
 def test_walls_of_further_frames_are_known_by_their_own_directions():

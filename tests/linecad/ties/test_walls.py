@@ -60,7 +60,8 @@ def front(build_town, build_wall, build_facade, build_ground, paint_photo, build
     """A striped wall across on blue ground, as a setting with its body moved by so much."""
 
     def look(yaw=0.0, pitch=0.0, moved=0.0, block=4):
-        lines = build_wall(1, AWAY, np.arange(ACROSS[0] + 0.5, ACROSS[1], 0.5), np.array([-1.0, -0.3, 0.5, 1.2, 2.0]))
+        across = np.arange(ACROSS[0] + 0.52, ACROSS[1], 0.5)  # not where one column of the strip ends and one begins
+        lines = build_wall(1, AWAY, across, np.array([-1.0, -0.3, 0.5, 1.2, 2.0]))
         seen = build_town(lines, yaw=yaw, pitch=pitch)
         wall = build_facade(1, AWAY, ACROSS, (-BELOW, ABOVE), stripes(0))
         pixels = paint_photo(seen.sight, [wall, build_ground(BELOW, plain(BLUE))], block)
@@ -83,8 +84,9 @@ def only_strip(setting):
 
 def foot_of(strip):
     """The row where the ground begins, that is, the blue; between two rows where it begins in the middle of one."""
-    blue = np.median(strip.layers[B], axis=1)
-    return ROWS - ((blue.max() - blue) / np.ptp(blue)).sum()
+    blue = strip.layers[B]
+    wall, ground = np.median(blue[: ROWS // 2], axis=0), np.median(blue[-1])
+    return float(np.median(ROWS - ((wall - blue) / (wall - ground)).sum(axis=0)))
 
 
 @pytest.mark.parametrize("moved", [0.0, 0.7, -1.2])
