@@ -1,7 +1,7 @@
 """The table of `linecad.ties.weights`: log-odds that a candidate is right, for each unit of a feature.
 
 Logistic regression with a small ridge, by tests/benchmarks/ties.py (docs/results/ties.md). Do not edit by hand. The
-ground was fitted last, with a ridge about what it was before (docs/decisions/0129).
+ground was fitted last, by its `--refit` (docs/decisions/0129).
 """
 
 from linecad.ties.candidates import Kind

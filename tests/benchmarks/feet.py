@@ -44,7 +44,7 @@ def examples_in(dataset: str, case: Case, with_heads: bool) -> list[Example]:
     scene, truth = scene_of(dataset, case), seen.reference.truth
     examples = examples_of(scene, seen.setting, seen.true_scale, truth)
     heads = examples_of(scene, seen.setting, seen.true_scale, truth, is_above=True) if with_heads else []
-    if any(head.row != UNSEEN for head in heads):  # else there is no ceiling
+    if any(head.is_clear and head.row != UNSEEN for head in heads):  # else no ceiling is seen
         examples += heads
     return [example for example in examples if example.is_clear]
 

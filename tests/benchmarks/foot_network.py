@@ -20,7 +20,7 @@ BLURRED = 0.75  # rows: how far from the foot a row still counts
 def _block(
     inputs: int, outputs: int, kernel: tuple[int, int] = (3, 3), apart: int = 1, step: tuple[int, int] = (1, 1)
 ) -> nn.Module:
-    """Kernel, distance between the rows that it looks at, and step are of rows and columns."""
+    """Kernel and step are of rows and columns; the rows that it looks at lie so far `apart`."""
     padding = (apart * (kernel[0] // 2), kernel[1] // 2)
     return nn.Sequential(
         nn.Conv2d(inputs, outputs, kernel, stride=step, padding=padding, dilation=(apart, 1), bias=False),
@@ -51,7 +51,7 @@ class FootNetwork(nn.Module):
         super().__init__()
         self.fine = nn.Sequential(
             _block(LAYERS, 16, step=(1, 2)), _block(16, 24, step=(1, 2)), _block(24, 24)
-        )  # rows, a quarter of the columns
+        )  # all rows, a quarter of the columns
         self.coarse = nn.Sequential(_block(24, 32, step=(2, 1)), _block(32, 32))
         self.coarser = nn.Sequential(_block(32, 40, step=(2, 2)), _Added(40))
         self.coarsest = nn.Sequential(_block(40, 40, step=(2, 1)), _Added(40))

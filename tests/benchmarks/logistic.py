@@ -30,11 +30,13 @@ def fit(
     weight: Float | None = None,
     used: Bool | None = None,
     held: Float | None = None,
+    near: Logistic | None = None,
 ) -> Logistic:
     """The regression of `right` (M,) on features (M, F); the ridge is on features in units of their spread.
 
-    Features that are not `used` (F,) get no slope. Where what is right needs something else too, which is so with the
-    probability `held` (M,), the probability that a row is right is that of the regression times `held`.
+    The ridge draws slopes to 0, or to those of another regression that they shall stay `near`. Features that are
+    not `used` (F,) get no slope. Where what is right needs something else too, which is so with the probability
+    `held` (M,), the probability that a row is right is that of the regression times `held`.
     """
     weight = np.ones(len(right)) if weight is None else weight
     spread = features.std(axis=0) + LEAST
@@ -43,13 +45,16 @@ def fit(
     known = np.r_[np.ones(features.shape[1], bool) if used is None else used, True]
     rows = rows[:, known]
     held_back = np.diag(np.r_[np.full(rows.shape[1] - 1, ridge), 0.0])
+    before = np.zeros(rows.shape[1])
+    if near is not None:
+        before[:-1] = (near.slope * spread)[known[:-1]]
     found = np.zeros(rows.shape[1])
     for _ in range(STEPS if held is None else STEPS_IF_HELD):
         p = 1 / (1 + np.exp(-rows @ found))
         # What is not right may be so for the other reason alone: expectation, then a step of maximisation.
         expected = right if held is None else np.where(right > 0, 1.0, p * (1 - held) / np.maximum(1 - p * held, LEAST))
         curvature = (rows.T * (weight * p * (1 - p))) @ rows + held_back
-        found = found + np.linalg.solve(curvature, rows.T @ (weight * (expected - p)) - held_back @ found)
+        found = found + np.linalg.solve(curvature, rows.T @ (weight * (expected - p)) - held_back @ (found - before))
     slope = np.zeros(features.shape[1])
     slope[known[:-1]] = found[:-1] / spread[known[:-1]]
     return Logistic(float(found[-1] - slope @ middle), slope)

@@ -7,7 +7,7 @@ from linecad.arrays import Float
 from linecad.ties.walls import COLUMNS, ROWS, Strips
 
 LAYERS = 6
-WIDE = COLUMNS // 32  # columns of what would be one of 32
+WIDE = COLUMNS // 32  # columns for one of the 32 that widths below were chosen for
 SHIFT = 30  # rows
 BANDS = 0.4  # share of strips that change at rows which are no foot
 BESIDE = 3  # rows beside a foot, where no band begins or ends
@@ -27,8 +27,9 @@ def grain(shape: tuple[int, int], random: np.random.Generator) -> Float:
 
 def add_hedge(strip: Strips, foot: int, random: np.random.Generator) -> bool:
     """Draw a hedge over a foot, its own foot being lower; whether all of the foot is hidden."""
-    hidden = min(ROWS - 8, foot + int(random.integers(2, 16)))
-    ragged = hidden - random.integers(10, 60) - np.abs(np.cumsum(random.normal(0, 2 / WIDE**0.5, COLUMNS))).astype(int)
+    hidden = min(ROWS, foot + int(random.integers(2, 16)))
+    ragged = np.minimum(foot, hidden - random.integers(10, 60)) - 1
+    ragged = ragged - np.abs(np.cumsum(random.normal(0, 2 / WIDE**0.5, COLUMNS))).astype(int)
     is_hedge = (np.arange(ROWS)[:, None] >= ragged) & (np.arange(ROWS)[:, None] < hidden)
     is_whole = random.random() < 0.75
     if not is_whole:

@@ -5,6 +5,8 @@ right where its ratio is that of the true scales of its two bodies within 3 %. P
 tells right from wrong and what each is worth to the placement. All of it is cross-validated: a scene is judged by the
 others; the photos of one real dataset are one scene, and so are their parts (parts.py). One table tells little:
 ties_tables.py judges by many, and writes the mean of them; probability.py fits how sure the places are.
+
+`--refit KIND` instead fits one kind to whole photos, near what it is in the table of the project, and writes it there.
 """
 
 import argparse
@@ -32,7 +34,7 @@ from linecad.ties.placing import BodyPlaces
 from solver.options import SolveOptions
 
 RIGHT = 0.03  # log ratio of a candidate
-RIDGE = 3.0
+RIDGE, RIDGE_NEAR = 3.0, 30.0
 FEW_NODES = 300  # of the search on parts of photos, of which there are many
 WIDTHS = (0.012, 0.035, 0.08)  # of simulated depth maps
 
@@ -67,13 +69,13 @@ class Rows:
         return logistic.fit(self.features[chosen], self.right[chosen], RIDGE, used=used)
 
 
-def judge_all(folders: list[Path], pool: ProcessPoolExecutor) -> list[Judged]:
+def judge_all(folders: list[Path], pool: ProcessPoolExecutor, with_parts: bool = True) -> list[Judged]:
     """The photos of datasets, and the parts of real ones."""
     jobs = [
         pool.submit(judge, folder.name, case, part)
         for folder in folders
         for case in find_dataset(folder).cases
-        for part in ([None] if case.kind == "made" else [None, *PARTS])
+        for part in ([None] if case.kind == "made" or not with_parts else [None, *PARTS])
     ]
     photos = [photo for job in jobs if (photo := job.result()) is not None]
     print(f"{len(photos)} of {len(jobs)} photos and parts", flush=True)
@@ -223,15 +225,28 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--workers", type=int, default=2, help="processes")
+    parser.add_argument("--refit", choices=KINDS, help="a kind to fit anew")
     chosen = parser.parse_args()
     with ProcessPoolExecutor(chosen.workers) as pool:
-        photos = judge_all(chosen.datasets, pool)
+        photos = judge_all(chosen.datasets, pool, with_parts=chosen.refit is None)
+        if chosen.refit is not None:
+            write_table(refitted(rows_of(photos, chosen.refit), chosen.refit))
+            return
         datasets = list(dict.fromkeys(photo.dataset for photo in photos))
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
         print_kinds(rows, datasets)
         print_ablation(photos, rows, datasets, pool)
         whole = [photo for photo in photos if not photo.is_part]
         print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
+
+
+def refitted(rows: Rows, kind: Kind) -> Table:
+    """The table of the project with one kind fitted anew, near what it is."""
+    slopes, at_once = linecad.ties.table.LOG_ODDS, linecad.ties.table.AT_ONCE
+    near = logistic.Logistic(at_once[kind], np.array([slopes[kind][name] for name in rows.names]))
+    fitted = logistic.fit(rows.features, rows.right, RIDGE_NEAR, near=near)
+    one = tables({kind: fitted}, {kind: rows})
+    return {"AT_ONCE": at_once | one["AT_ONCE"], "LOG_ODDS": slopes | one["LOG_ODDS"]}
 
 
 def write_table(table: Table) -> None:

@@ -296,7 +296,7 @@ class TestPartsOfAMap:
         assert {number: by_body(state)[number] for number in (0, 1)} == {k: by_body(before)[k] for k in (0, 1)}
         for number in {one["body"], other["body"]}:
             for line, ends in depths(state, number).items():
-                assert ends == pytest.approx(depths(before, 2)[line], rel=0.015)
+                assert ends == pytest.approx(depths(before, 2)[line], rel=0.015), "each by its own pixels of the map"
 
     def test_a_line_that_is_drawn_on_a_part_is_of_it(self, parted):
         before = parted.state()
