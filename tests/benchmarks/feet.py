@@ -50,7 +50,7 @@ def examples_in(dataset: str, case: Case, with_heads: bool) -> list[Example]:
 
 
 def collect(folders: Sequence[Path], workers: int, with_heads: bool) -> dict[str, list[Example]]:
-    """The clear examples of each dataset. Ends the program where one is not of made scenes."""
+    """The clear examples of each dataset. Ends the program where a dataset is not of made scenes."""
     if len({folder.name for folder in folders}) < len(folders):
         raise SystemExit("two datasets have one name")
     cases = {folder.name: find_dataset(folder).cases for folder in folders}

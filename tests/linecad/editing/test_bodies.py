@@ -296,7 +296,10 @@ class TestPartsOfAMap:
         assert {number: by_body(state)[number] for number in (0, 1)} == {k: by_body(before)[k] for k in (0, 1)}
         for number in {one["body"], other["body"]}:
             for line, ends in depths(state, number).items():
-                assert ends == pytest.approx(depths(before, 2)[line], rel=0.015), "each by its own pixels of the map"
+                there = depths(before, 2)[line]
+                assert ends[:, :2] == pytest.approx(there[:, :2], rel=0.001)
+                # Uprights end at a level that fewer lines of one body share.
+                assert ends[:, 2] == pytest.approx(there[:, 2], rel=0.015)
 
     def test_a_line_that_is_drawn_on_a_part_is_of_it(self, parted):
         before = parted.state()

@@ -190,7 +190,7 @@ def test_the_feet_of_two_walls_are_found_at_the_scales_of_their_bodies(house, be
 def test_walls_of_one_body_that_agree_have_one_foot(house, below):
     found = feet_of(house((0.3,), is_one=True))
     assert found[0].log_height == pytest.approx(below + 0.3, abs=FOUND)
-    assert found[0].others > 0.15, "the farther wall is less clear"
+    assert found[0].others > 0.15, "the other wall says the same, if less clearly"
     assert [foot.body for foot in found] == [0] * len(found)
     assert all(abs(foot.log_height - found[0].log_height) >= SAME for foot in found[1:])
 

@@ -5,8 +5,6 @@ import pytest
 from logistic import Logistic, fit
 from scipy.optimize import minimize
 
-RIDGE = 3.0
-
 
 @pytest.fixture(scope="module")
 def rows():
@@ -25,7 +23,7 @@ def loss(at, features, right, ridge, near):
 
 
 @pytest.mark.parametrize("near", [None, (2.0, -3.0, 0.1)])
-@pytest.mark.parametrize("ridge", [0.01, RIDGE, 100.0])
+@pytest.mark.parametrize("ridge", [0.01, 3.0, 100.0])
 def test_a_fit_is_the_least_of_its_loss(rows, ridge, near):
     found = fit(*rows, ridge, near=None if near is None else Logistic(0.7, np.array(near)))
     about = np.zeros(3) if near is None else np.array(near)
