@@ -41,9 +41,14 @@ def add_to(commands: "Commands") -> None:
         "--depth-kind", choices=("z", "affine-inverse"), metavar="KIND",
         help="of the depth maps: z (the default), or affine-inverse, disparity with a shift",
     )  # fmt: skip
-    command.add_argument(
-        "--towns", action="store_true",
+    kinds = command.add_mutually_exclusive_group()
+    kinds.add_argument(
+        "--towns", dest="kind", action="store_const", const="town",
         help="streets of several horizontal frames, with sloped roofs, instead of streets, courtyards and rooms",
+    )  # fmt: skip
+    kinds.add_argument(
+        "--gardens", dest="kind", action="store_const", const="garden",
+        help="streets of houses behind lawns, hedges, low walls and steps, instead of streets, courtyards and rooms",
     )  # fmt: skip
     command.add_argument(
         "--buildings", type=Path, metavar="FILE", help="polygons of buildings to render; see --cameras"
@@ -69,8 +74,8 @@ def run(parsed: argparse.Namespace) -> int:
     scenes = parsed.scenes if plan is None else len(plan.names)
     width, height = parsed.size or (SIZE if plan is None else SIZE_OF_VIEWS)
     options = DatasetOptions(scenes, seed, width, height, parsed.samples, share, kind)
-    if parsed.towns:
-        plan = plan_scenes(options, "town")
+    if parsed.kind is not None:
+        plan = plan_scenes(options, parsed.kind)
     with ProgressDisplay(parsed.quiet, parsed.verbose) as show:
         made = make_dataset(parsed.folder, options, show.stage, plan)
     print(f"{made.new} scenes made, {made.kept} were there already, in {parsed.folder}")
@@ -88,8 +93,8 @@ def _check_together(parsed: argparse.Namespace) -> None:
             raise LinecadError("--scenes and --seed say what to draw; give both, or --buildings and --cameras")
         if parsed.views is not None:
             raise LinecadError("--views names views of --cameras; give --buildings and --cameras too")
-    elif parsed.scenes is not None or parsed.towns:
-        raise LinecadError("--buildings renders what is given; leave --scenes and --towns out")
+    elif parsed.scenes is not None or parsed.kind is not None:
+        raise LinecadError("--buildings renders what is given; leave --scenes, --towns and --gardens out")
 
 
 def _size(text: str) -> tuple[int, int]:

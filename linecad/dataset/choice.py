@@ -15,21 +15,35 @@ from linecad.scene import Camera
 
 MOST_TRIES = 12  # drawings of one scene; the last one is taken as it is
 LONG = PhotoLength(40.0)  # shorter pieces do not count
-CROSSINGS = {"street": (3000, 6500), "courtyard": (1500, 9000), "room": (800, 6500), "town": (50, 6500)}
+CROSSINGS = {
+    "street": (3000, 6500),
+    "courtyard": (1500, 9000),
+    "room": (800, 6500),
+    "town": (50, 6500),
+    "garden": (50, 6500),
+}
 LEAST_REAL = {
     "street": 0.75,
     "courtyard": 0.75,
     "room": 0.58,
     "town": 0.5,
+    "garden": 0.5,
 }  # books and boards have more relief for their distance
 SAME_DEPTH = 0.02  # by which the depths of two lines that meet may differ: the relief of a facade
-BUILT = {"street": 0.40, "courtyard": 0.45, "room": 0.80, "town": 0.35}  # least share of the photo that buildings fill
+BUILT = {
+    "street": 0.40,
+    "courtyard": 0.45,
+    "room": 0.80,
+    "town": 0.35,
+    "garden": 0.3,
+}  # least share of the photo that buildings fill
 MOST_HIDDEN = 0.20  # of the photo, by cars, trees, lamp posts and signs
 LARGEST_WALL = {
     "street": 0.2,
     "courtyard": 0.2,
     "room": 0.36,
     "town": 0.25,
+    "garden": 0.3,
 }  # of the photo; more is a bare wall before the camera
 ALONG_AXIS = 1e-9  # m, that a Manhattan edge may leave its axis
 

@@ -65,6 +65,7 @@ class Style:
     balconies: float  # share of the windows
     blinds: float  # share of the windows
     cornice: float
+    plinth: float = 0.5  # height; 0 where there is none
 
 
 def draw_style(rng: Generator) -> Style:
@@ -138,14 +139,15 @@ def build_facade(wall: Wall, width: float, height: float, style: Style, rng: Gen
             if detailed and rng.random() < style.balconies:
                 _add_balcony(wall, (along[0] - 0.35, along[1] + 0.35), bottom - 0.3, style)
     for start, end in ((0.0, middles[door] - DOOR / 2 - POST), (middles[door] + DOOR / 2 + POST, width)):
-        wall.box((start, end), (0.0, 0.5), (0.0, 0.075), style.trim, "-c -b")
+        if style.plinth:
+            wall.box((start, end), (0.0, style.plinth), (0.0, 0.075), style.trim, "-c -b")
     _add_bands(wall, width, height, floors, style, detailed)
     if style.pilaster and detailed:
         # Posts end below the cornice and stand less far off than it.
         for index in range(bays + 1):
             middle = min(max(margin + index * style.bay, 0.2), width - 0.2)
             if not (style.quoin and index in (0, bays)):
-                up = (0.55, height - PARAPET - CORNICE - 0.25)
+                up = (style.plinth + 0.05, height - PARAPET - CORNICE - 0.25)
                 wall.box((middle - 0.17, middle + 0.17), up, (0.0, style.pilaster), style.trim, "-c -b +b")
     wall.build((0.0, width), (0.0, style.ground - 0.2), style.base)
     wall.build((0.0, width), (style.ground - 0.2, height), style.wall)
@@ -171,7 +173,13 @@ def _add_bands(wall: Wall, width: float, height: float, floors: int, style: Styl
     wall.box(along, (top - CORNICE, top), (0.0, style.cornice), style.trim)
     if style.quoin:
         for start in (0.0, width - 0.5):
-            wall.box((start, start + 0.5), (0.5, top - CORNICE - 0.25), (0.0, style.quoin - 0.005), style.trim, "-c +b")
+            wall.box(
+                (start, start + 0.5),
+                (style.plinth, top - CORNICE - 0.25),
+                (0.0, style.quoin - 0.005),
+                style.trim,
+                "-c +b",
+            )
 
 
 def _add_window(

@@ -120,3 +120,68 @@ def add_sign(model: Model, x: float, y: float, size: tuple[float, float], colour
     model.box(np.array([x - 0.03, y, 0.0]), (0.06 * x_axis, 0.06 * y_axis, 2.2 * UP), IRON, "-c")
     corner = np.array([x - size[0] / 2, y - 0.04, 2.2])
     model.box(corner, (size[0] * x_axis, 0.03 * y_axis, size[1] * UP), Material("paint", colour))
+
+
+def add_traffic(model: Model, road: float, rng: Generator) -> None:
+    """Cars along the kerbs, trees, lamp posts and signs on the pavements."""
+    for sign in (-1.0, 1.0):
+        y = float(rng.uniform(7, 14))
+        while y < 70:
+            if rng.random() < 0.4:
+                add_car(model, sign * (road - 1.15), y, float(rng.normal(0, 0.03)), rng)
+            y += float(rng.uniform(5.5, 9))
+        y = float(rng.uniform(8, 20))
+        while y < 80:
+            what = rng.random()
+            if what < 0.25:
+                x = sign * (road + rng.uniform(0.7, 1.0))
+                add_tree(model, float(x), y, float(rng.uniform(5, 8)), 900, rng)
+            elif what < 0.45:
+                add_lamp(model, sign * (road + 0.5), y, float(rng.uniform(5, 7.5)), 0.0)
+            elif what < 0.55:
+                add_sign(model, sign * (road + 0.6), y, (float(rng.uniform(0.5, 0.9)), 0.7), (0.2, 0.3, 0.6))
+            y += float(rng.uniform(7, 14))
+
+
+def add_hedge(
+    model: Model, corner: Float, sides: tuple[Float, Float, Float], colour: tuple[float, float, float], rng: Generator
+) -> None:
+    """A clipped hedge over a corner and three sides, along, up and outwards: a dark box that bristles with leaves.
+
+    As those of trees, its outlines are no edges: no line of a photo is exactly there.
+    """
+    along, up, out = sides
+    dark = Material("leaves", (0.6 * colour[0], 0.6 * colour[1], 0.6 * colour[2]))
+    for place, first, second in (
+        (corner, along, up),
+        (corner + out, along, up),
+        (corner, out, up),
+        (corner + along, out, up),
+        (corner + up, along, out),
+    ):
+        model.quad(place, first, second, dark)
+        area = float(np.linalg.norm(np.cross(first, second)))
+        for share in rng.uniform(0, 1, (min(800, int(80 * area)), 2)):
+            _add_leaf(model, place + share[0] * first + share[1] * second + rng.normal(0, 0.03, 3), colour, rng)
+
+
+def add_bush(
+    model: Model, foot: Float, half: Float, colour: tuple[float, float, float], rng: Generator, leaves: int = 200
+) -> None:
+    """A loose ball of leaves over a point, with half axes (3,) in m."""
+    for place in rng.normal(0, 0.5, (leaves, 3)):
+        _add_leaf(model, foot + half[2] * UP + place * half, colour, rng)
+
+
+def _add_leaf(model: Model, middle: Float, colour: tuple[float, float, float], rng: Generator) -> None:
+    """A small parallelogram that lies in any direction."""
+    first, across = rng.normal(0, 1, 3), rng.normal(0, 1, 3)
+    second = np.cross(first, across)
+    size = rng.uniform(0.05, 0.12)
+    shade = rng.uniform(0.7, 1.25)
+    material = Material("leaves", (_shaded(colour[0], shade), _shaded(colour[1], shade), _shaded(colour[2], shade)))
+    model.quad(middle, size * first / np.linalg.norm(first), 0.6 * size * second / np.linalg.norm(second), material)
+
+
+def _shaded(value: float, shade: float) -> float:
+    return round(value * round(shade * 4) / 4, 3)

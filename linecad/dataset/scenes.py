@@ -7,14 +7,16 @@ import numpy as np
 from numpy.random import Generator
 
 from linecad.arrays import Float
-from linecad.dataset.facades import Style, build_facade, draw_style
-from linecad.dataset.furniture import add_car, add_lamp, add_sign, add_tree
+from linecad.dataset.facades import draw_style
+from linecad.dataset.furniture import add_car, add_traffic, add_tree
+from linecad.dataset.gardens import build_gardens
+from linecad.dataset.houses import add_building
 from linecad.dataset.interior import build_room
-from linecad.dataset.modelling import UP, Interval, Material, Model, Wall
+from linecad.dataset.modelling import UP, Material, Model
 from linecad.dataset.towns import build_town
 from linecad.dataset.view import View
 
-SceneKind = Literal["street", "courtyard", "room", "town"]
+SceneKind = Literal["street", "courtyard", "room", "town", "garden"]
 SCENE_KINDS: tuple[SceneKind, ...] = get_args(SceneKind)
 OF_TEN: tuple[SceneKind, ...] = (*("street",) * 8, "courtyard", "room")  # the kinds of scenes 0 to 9, 10 to 19 ...
 
@@ -24,14 +26,12 @@ PITCH = (0.0, 0.12)  # rad, upwards
 ROLL = 0.012  # rad, one standard deviation
 FOCAL = (0.64, 0.68)  # of the photo's width
 OFF_CENTRE = 0.006  # of the width, one standard deviation of the principal point
-DETAIL_REACH = 34.0  # m; facades that begin farther away have plain windows and no courses
 KERB = 0.14  # m
 
 ASPHALT = Material("asphalt", (0.36, 0.36, 0.37))
 SLABS = Material("slabs", (0.62, 0.60, 0.57))
 STONE = Material("plain", (0.66, 0.64, 0.60))
 PAINT = Material("plain", (0.86, 0.86, 0.84))
-ROOF = Material("plain", (0.40, 0.33, 0.30))
 X, Y = np.eye(3)[0], np.eye(3)[1]
 
 
@@ -43,7 +43,9 @@ def scene_kind(index: int) -> SceneKind:
 def draw_scene(kind: SceneKind, rng: Generator) -> tuple[Model, View]:
     """A scene of a kind and the view of it; the same numbers from `rng` give the same scene."""
     build: Callable[[Generator], tuple[Model, Float, float]]
-    build = {"street": _street, "courtyard": _courtyard, "room": build_room, "town": build_town}[kind]
+    build = {
+        "street": _street, "courtyard": _courtyard, "room": build_room, "town": build_town, "garden": build_gardens,
+    }[kind]  # fmt: skip
     model, eye, side = build(rng)
     view = View(
         eye=eye,
@@ -71,7 +73,7 @@ def _street(rng: Generator) -> tuple[Model, Float, float]:
             setback = float(rng.choice([0.0, 0.0, 0.4, 0.9, 1.8, 3.5]))
             front, deep = sign * (road + walk + setback), float(rng.uniform(9, 14))
             across = (min(front, front + sign * deep), max(front, front + sign * deep))
-            _add_building(model, across, (y, y + width), height, {"+x" if sign < 0 else "-x", "-y"}, rng)
+            add_building(model, across, (y, y + width), height, {"+x" if sign < 0 else "-x", "-y"}, rng)
             y += width
             if y > crossing:
                 y += float(rng.uniform(7, 12))
@@ -81,40 +83,11 @@ def _street(rng: Generator) -> tuple[Model, Float, float]:
     start = -float(rng.uniform(25, 35))
     while start < 35:
         width = float(rng.uniform(12, 24))
-        _add_building(model, (start, start + width), (end + 12, end + 24), float(rng.uniform(10, 22)), {"-y"}, rng)
+        add_building(model, (start, start + width), (end + 12, end + 24), float(rng.uniform(10, 22)), {"-y"}, rng)
         start += width
     _add_road(model, road, end + 12)
-    _add_traffic(model, road, rng)
+    add_traffic(model, road, rng)
     return model, eye, side
-
-
-def _add_building(
-    model: Model, x: Interval, y: Interval, height: float, fronts: set[str], rng: Generator, style: Style | None = None
-) -> None:
-    """A house over a rectangle; `fronts` names the sides that have facades, the others are bare."""
-    model.start_body("building")
-    style = style or draw_style(rng)
-    walls = {
-        "+x": (x[1], y[0], Y, X, y[1] - y[0]),
-        "-x": (x[0], y[1], -Y, -X, y[1] - y[0]),
-        "+y": (x[1], y[1], -X, Y, x[1] - x[0]),
-        "-y": (x[0], y[0], X, -Y, x[1] - x[0]),
-    }
-    for name, (foot_x, foot_y, along, out, width) in walls.items():
-        foot = np.array([foot_x, foot_y, 0.0])
-        wall = Wall(model, foot, along, out)
-        if name in fronts:
-            build_facade(wall, width, height, style, rng, detailed=foot_y < DETAIL_REACH)
-        else:
-            wall.build((0.0, width), (0.0, height), style.wall)
-        model.edge(foot, foot + height * UP)
-        model.edge(foot, foot + width * along)
-        model.edge(foot + height * UP, foot + height * UP + width * along)
-    roof = np.array([x[0], y[0], height])
-    model.quad(roof, (x[1] - x[0]) * X, (y[1] - y[0]) * Y, ROOF)
-    for _ in range(int(rng.integers(0, 3))):
-        corner = roof + rng.uniform(0.1, 0.8) * (x[1] - x[0]) * X + rng.uniform(0.1, 0.8) * (y[1] - y[0]) * Y
-        model.box(corner, (0.9 * X, 0.7 * Y, rng.uniform(1.0, 2.2) * UP), style.wall, "-c")
 
 
 def _add_road(model: Model, road: float, end: float) -> None:
@@ -133,27 +106,6 @@ def _add_road(model: Model, road: float, end: float) -> None:
         model.outline((6.0 * index) * Y - 0.07 * X + 0.004 * UP, 0.14 * X, 3.0 * Y, PAINT)
 
 
-def _add_traffic(model: Model, road: float, rng: Generator) -> None:
-    """Cars along the kerbs, trees, lamp posts and signs on the pavements."""
-    for sign in (-1.0, 1.0):
-        y = float(rng.uniform(7, 14))
-        while y < 70:
-            if rng.random() < 0.4:
-                add_car(model, sign * (road - 1.15), y, float(rng.normal(0, 0.03)), rng)
-            y += float(rng.uniform(5.5, 9))
-        y = float(rng.uniform(8, 20))
-        while y < 80:
-            what = rng.random()
-            if what < 0.25:
-                x = sign * (road + rng.uniform(0.7, 1.0))
-                add_tree(model, float(x), y, float(rng.uniform(5, 8)), 900, rng)
-            elif what < 0.45:
-                add_lamp(model, sign * (road + 0.5), y, float(rng.uniform(5, 7.5)), 0.0)
-            elif what < 0.55:
-                add_sign(model, sign * (road + 0.6), y, (float(rng.uniform(0.5, 0.9)), 0.7), (0.2, 0.3, 0.6))
-            y += float(rng.uniform(7, 14))
-
-
 def _courtyard(rng: Generator) -> tuple[Model, Float, float]:
     """A paved court between four wings, with a porch before the far one, steps, a tree and perhaps a car."""
     model = Model()
@@ -165,12 +117,12 @@ def _courtyard(rng: Generator) -> tuple[Model, Float, float]:
         x = (half, half + 9) if sign > 0 else (-half - 9, -half)
         wing = main if rng.random() < 0.5 else None
         tall = height + float(rng.uniform(-2, 2))
-        _add_building(model, x, (-8.0, deep), tall, {"-x" if sign > 0 else "+x"}, rng, wing)
-    _add_building(model, (-half - 9, half + 9), (deep, deep + 10), height + 3, {"-y"}, rng, main)
-    _add_building(model, (-half - 9, half + 9), (-18, -8), height, {"+y"}, rng, main)
+        add_building(model, x, (-8.0, deep), tall, {"-x" if sign > 0 else "+x"}, rng, wing)
+    add_building(model, (-half - 9, half + 9), (deep, deep + 10), height + 3, {"-y"}, rng, main)
+    add_building(model, (-half - 9, half + 9), (-18, -8), height, {"+y"}, rng, main)
     middle = float(rng.uniform(-0.35, 0.35)) * half
     low, out = float(rng.uniform(5.5, 7.5)), float(rng.uniform(2.5, 4.0))
-    _add_building(model, (middle - 3.4, middle + 3.4), (deep - out, deep), low, {"-x", "+x", "-y"}, rng)
+    add_building(model, (middle - 3.4, middle + 3.4), (deep - out, deep), low, {"-x", "+x", "-y"}, rng)
     model.start_body("ground")
     model.quad(np.array([-half - 10, -20.0, 0.0]), (2 * half + 20) * X, (deep + 32) * Y, SLABS)
     for step in range(3):

@@ -21,3 +21,16 @@ MADE = ("dataset", "made", "--scenes", "1", "--seed", "1")
 def test_wrong_depth_maps(fails, folder, options, code, words):
     assert words in fails(*MADE, *options, code=code)
     assert list(folder.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("options", "code", "words"),
+    [
+        (["--towns", "--gardens"], 2, "not allowed with argument --towns"),
+        (["--gardens", "--buildings", "b.json", "--cameras", "c.json"], 1, "leave --scenes, --towns and --gardens out"),
+    ],
+)
+def test_one_kind_of_scenes(fails, folder, options, code, words):
+    asked = MADE if "--buildings" not in options else MADE[:2]
+    assert words in fails(*asked, *options, code=code)
+    assert list(folder.iterdir()) == []
