@@ -147,7 +147,7 @@ def build_facade(wall: Wall, width: float, height: float, style: Style, rng: Gen
         for index in range(bays + 1):
             middle = min(max(margin + index * style.bay, 0.2), width - 0.2)
             if not (style.quoin and index in (0, bays)):
-                up = (style.plinth + 0.05, height - PARAPET - CORNICE - 0.25)
+                up = (style.plinth + 0.05 if style.plinth else 0.0, height - PARAPET - CORNICE - 0.25)
                 wall.box((middle - 0.17, middle + 0.17), up, (0.0, style.pilaster), style.trim, "-c -b +b")
     wall.build((0.0, width), (0.0, style.ground - 0.2), style.base)
     wall.build((0.0, width), (style.ground - 0.2, height), style.wall)

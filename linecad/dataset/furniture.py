@@ -21,6 +21,8 @@ CAR_WIDTH = 1.76  # m
 GROUND_CLEARANCE = 0.28  # m, under a car
 WHEEL = 0.31  # m, radius
 LEAF_SIZE = (0.10, 0.24)  # m
+CLIPPED_SIZE, BUSH_LEAVES = (0.05, 0.12), 200  # m, of hedges and bushes
+SHADES = (0.75, 1.0, 1.25)  # of leaves; more would each be a material
 
 
 def add_car(model: Model, x: float, y: float, turn: float, rng: Generator) -> None:
@@ -161,27 +163,27 @@ def add_hedge(
     ):
         model.quad(place, first, second, dark)
         area = float(np.linalg.norm(np.cross(first, second)))
-        for share in rng.uniform(0, 1, (min(800, int(80 * area)), 2)):
-            _add_leaf(model, place + share[0] * first + share[1] * second + rng.normal(0, 0.03, 3), colour, rng)
+        shares = rng.uniform(0, 1, (min(800, int(80 * area)), 2))
+        middles = place + shares[:, :1] * first + shares[:, 1:] * second
+        _add_leaves(model, middles + rng.normal(0, 0.03, middles.shape), float(corner[2]), colour, rng)
 
 
-def add_bush(
-    model: Model, foot: Float, half: Float, colour: tuple[float, float, float], rng: Generator, leaves: int = 200
-) -> None:
+def add_bush(model: Model, foot: Float, half: Float, colour: tuple[float, float, float], rng: Generator) -> None:
     """A loose ball of leaves over a point, with half axes (3,) in m."""
-    for place in rng.normal(0, 0.5, (leaves, 3)):
-        _add_leaf(model, foot + half[2] * UP + place * half, colour, rng)
+    middles = foot + half[2] * UP + rng.normal(0, 0.5, (BUSH_LEAVES, 3)) * half
+    _add_leaves(model, middles, float(foot[2]), colour, rng)
 
 
-def _add_leaf(model: Model, middle: Float, colour: tuple[float, float, float], rng: Generator) -> None:
-    """A small parallelogram that lies in any direction."""
-    first, across = rng.normal(0, 1, 3), rng.normal(0, 1, 3)
-    second = np.cross(first, across)
-    size = rng.uniform(0.05, 0.12)
-    shade = rng.uniform(0.7, 1.25)
-    material = Material("leaves", (_shaded(colour[0], shade), _shaded(colour[1], shade), _shaded(colour[2], shade)))
-    model.quad(middle, size * first / np.linalg.norm(first), 0.6 * size * second / np.linalg.norm(second), material)
-
-
-def _shaded(value: float, shade: float) -> float:
-    return round(value * round(shade * 4) / 4, 3)
+def _add_leaves(
+    model: Model, middles: Float, ground: float, colour: tuple[float, float, float], rng: Generator
+) -> None:
+    """Small parallelograms about points (N, 3) that lie in any direction, above the ground: below it none is seen."""
+    for middle in middles:
+        first, across = rng.normal(0, 1, 3), rng.normal(0, 1, 3)
+        second = np.cross(first, across)
+        size = rng.uniform(*CLIPPED_SIZE)
+        first, second = size * first / np.linalg.norm(first), 0.6 * size * second / np.linalg.norm(second)
+        lowest = middle[2] + min(first[2], 0) + min(second[2], 0)
+        shade = float(rng.choice(SHADES))
+        tone = (round(shade * colour[0], 3), round(shade * colour[1], 3), round(shade * colour[2], 3))
+        model.quad(middle + max(0.0, ground - lowest) * UP, first, second, Material("leaves", tone))

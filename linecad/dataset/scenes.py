@@ -1,4 +1,4 @@
-"""Streets, courtyards and rooms, drawn at random: the houses, what stands before them, where the camera is."""
+"""Scenes of all kinds, drawn at random: streets and courtyards, and the view of each."""
 
 from collections.abc import Callable
 from typing import Literal, get_args
