@@ -2,10 +2,9 @@
 
 from dataclasses import dataclass
 
-import numpy as np
 from numpy.random import Generator
 
-from linecad.dataset.modelling import UP, Interval, Material, Pattern, Point, Wall
+from linecad.dataset.modelling import UP, Interval, Material, Pattern, Point, Wall, tinted
 
 RECESS = (0.04, 0.14)  # m, of windows behind the wall
 FRAME = 0.07  # m, width of a window's frame
@@ -78,14 +77,12 @@ def draw_style(rng: Generator) -> Style:
         value = pick(low, high)
         return value if rng.random() < chance else 0.0
 
-    def tinted(colour: Point) -> Point:
-        shade, tint = rng.normal(1.0, 0.06), rng.normal(0.0, 0.012, 3)
-        red, green, blue = np.clip(np.array(colour) * shade + tint, 0.05, 0.95).round(3)
-        return float(red), float(green), float(blue)
+    def varied(colour: Point) -> Point:
+        return tinted(colour, rng.normal(1.0, 0.06), rng.normal(0.0, 0.012, 3))
 
     pattern, colour = WALLS[rng.integers(len(WALLS))]
-    wall = Material(pattern, tinted(colour))
-    trim = Material("plain", tinted(TRIMS[rng.integers(len(TRIMS))]))
+    wall = Material(pattern, varied(colour))
+    trim = Material("plain", varied(TRIMS[rng.integers(len(TRIMS))]))
     base = (wall, Material("ashlar", trim.colour), trim)[rng.integers(3)]
     bay = pick(2.1, 3.3)
     width = min(pick(0.9, 1.7), bay - 0.8)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.random import Generator
 
 from linecad.arrays import Float
-from linecad.dataset.modelling import UP, Material, Model
+from linecad.dataset.modelling import UP, Material, Model, Point
 
 PAINTS = ((0.55, 0.12, 0.12), (0.15, 0.24, 0.42), (0.74, 0.75, 0.76), (0.14, 0.14, 0.15), (0.86, 0.86, 0.84))
 LEAVES = ((0.26, 0.36, 0.15), (0.33, 0.43, 0.19), (0.20, 0.29, 0.14))
@@ -145,9 +145,7 @@ def add_traffic(model: Model, road: float, rng: Generator) -> None:
             y += float(rng.uniform(7, 14))
 
 
-def add_hedge(
-    model: Model, corner: Float, sides: tuple[Float, Float, Float], colour: tuple[float, float, float], rng: Generator
-) -> None:
+def add_hedge(model: Model, corner: Float, sides: tuple[Float, Float, Float], colour: Point, rng: Generator) -> None:
     """A clipped hedge over a corner and three sides, along, up and outwards: a dark box that bristles with leaves.
 
     As those of trees, its outlines are no edges: no line of a photo is exactly there.
@@ -168,15 +166,13 @@ def add_hedge(
         _add_leaves(model, middles + rng.normal(0, 0.03, middles.shape), float(corner[2]), colour, rng)
 
 
-def add_bush(model: Model, foot: Float, half: Float, colour: tuple[float, float, float], rng: Generator) -> None:
+def add_bush(model: Model, foot: Float, half: Float, colour: Point, rng: Generator) -> None:
     """A loose ball of leaves over a point, with half axes (3,) in m."""
     middles = foot + half[2] * UP + rng.normal(0, 0.5, (BUSH_LEAVES, 3)) * half
     _add_leaves(model, middles, float(foot[2]), colour, rng)
 
 
-def _add_leaves(
-    model: Model, middles: Float, ground: float, colour: tuple[float, float, float], rng: Generator
-) -> None:
+def _add_leaves(model: Model, middles: Float, ground: float, colour: Point, rng: Generator) -> None:
     """Small parallelograms about points (N, 3) that lie in any direction, above the ground: below it none is seen."""
     for middle in middles:
         first, across = rng.normal(0, 1, 3), rng.normal(0, 1, 3)

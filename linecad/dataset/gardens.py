@@ -13,8 +13,8 @@ from numpy.random import Generator
 from linecad.arrays import Float
 from linecad.dataset.facades import CORNICE, IRON, PARAPET, WALLS, Style, draw_style
 from linecad.dataset.furniture import LEAVES, add_bush, add_hedge, add_traffic
-from linecad.dataset.houses import X, Y, add_building
-from linecad.dataset.modelling import SAME, UP, Interval, Material, Model, Pattern, Point, Wall
+from linecad.dataset.houses import add_building
+from linecad.dataset.modelling import SAME, UP, Interval, Material, Model, Pattern, Point, Wall, X, Y, tinted
 
 CAMERA_HEIGHT = (1.5, 2.2)  # m above the road
 BEHIND = -30.0  # m, where the ground begins behind the camera
@@ -258,16 +258,15 @@ def _add_landing(forecourt: Forecourt, rng: Generator) -> None:
 def _paving(rng: Generator, *among: tuple[Pattern, Point]) -> Material:
     among = among or PAVINGS
     pattern, colour = among[rng.integers(len(among))]
-    return Material(pattern, _tinted(colour, rng))
+    return Material(pattern, _varied(colour, rng))
 
 
 def _soil(rng: Generator) -> Material:
     """Grass, gravel or soil."""
     what = rng.random()
     kinds = LAWNS if what < 0.5 else GRAVELS if what < 0.8 else SOILS
-    return Material("asphalt", _tinted(kinds[rng.integers(len(kinds))], rng))
+    return Material("asphalt", _varied(kinds[rng.integers(len(kinds))], rng))
 
 
-def _tinted(colour: Point, rng: Generator) -> Point:
-    red, green, blue = np.clip(np.array(colour) * rng.normal(1, 0.12) + rng.normal(0, 0.008, 3), 0.05, 0.95).round(3)
-    return float(red), float(green), float(blue)
+def _varied(colour: Point, rng: Generator) -> Point:
+    return tinted(colour, rng.normal(1, 0.12), rng.normal(0, 0.008, 3))

@@ -4,11 +4,10 @@ import numpy as np
 from numpy.random import Generator
 
 from linecad.dataset.facades import Style, build_facade, draw_style
-from linecad.dataset.modelling import UP, Interval, Material, Model, Wall
+from linecad.dataset.modelling import UP, Interval, Material, Model, Wall, X, Y
 
 DETAIL_REACH = 34.0  # m; facades that begin farther away have plain windows and no courses
 ROOF = Material("plain", (0.40, 0.33, 0.30))
-X, Y = np.eye(3)[0], np.eye(3)[1]
 
 
 def add_building(

@@ -5,7 +5,7 @@ from numpy.random import Generator
 
 from linecad.arrays import Float
 from linecad.dataset.facades import DOORS
-from linecad.dataset.modelling import UP, Interval, Material, Model, Point, Wall
+from linecad.dataset.modelling import UP, Interval, Material, Model, Point, Wall, X, Y
 
 WALL_COLOURS: tuple[Point, ...] = ((0.87, 0.85, 0.80), (0.80, 0.83, 0.82), (0.86, 0.78, 0.68), (0.75, 0.80, 0.74))
 WOODS: tuple[Point, ...] = ((0.62, 0.46, 0.30), (0.44, 0.31, 0.21), (0.74, 0.62, 0.45))
@@ -15,7 +15,6 @@ BOOKS: tuple[Point, ...] = (
 )  # fmt: skip
 WHITE = Material("plain", (0.88, 0.87, 0.84))
 CEILING = Material("plain", (0.90, 0.90, 0.88))
-X, Y = np.eye(3)[0], np.eye(3)[1]
 EYE_LEVEL = (1.5, 2.0)  # m
 
 

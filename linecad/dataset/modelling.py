@@ -20,7 +20,7 @@ Pattern = Literal["plain", "brick", "panel", "ashlar", "slabs", "asphalt", "glas
 BODY_KINDS = ("ground", "building", "car", "tree", "lamp", "furniture")
 BodyKind = Literal["ground", "building", "car", "tree", "lamp", "furniture"]
 SAME = 1e-6  # m; a piece shorter than that is none
-UP = np.array([0.0, 0.0, 1.0])
+X, Y, UP = np.eye(3)
 
 
 @dataclass(frozen=True)
@@ -29,6 +29,12 @@ class Material:
 
     pattern: Pattern
     colour: Point
+
+
+def tinted(colour: Point, shade: float, tint: Float) -> Point:
+    """A colour that much lighter or darker, and with (3,) added, sRGB from 0 to 1."""
+    red, green, blue = np.clip(np.array(colour) * shade + tint, 0.05, 0.95).round(3)
+    return float(red), float(green), float(blue)
 
 
 @dataclass(eq=False)

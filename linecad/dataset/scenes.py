@@ -12,7 +12,7 @@ from linecad.dataset.furniture import add_car, add_traffic, add_tree
 from linecad.dataset.gardens import build_gardens
 from linecad.dataset.houses import add_building
 from linecad.dataset.interior import build_room
-from linecad.dataset.modelling import UP, Material, Model
+from linecad.dataset.modelling import UP, Material, Model, X, Y
 from linecad.dataset.towns import build_town
 from linecad.dataset.view import View
 
@@ -32,7 +32,6 @@ ASPHALT = Material("asphalt", (0.36, 0.36, 0.37))
 SLABS = Material("slabs", (0.62, 0.60, 0.57))
 STONE = Material("plain", (0.66, 0.64, 0.60))
 PAINT = Material("plain", (0.86, 0.86, 0.84))
-X, Y = np.eye(3)[0], np.eye(3)[1]
 
 
 def scene_kind(index: int) -> SceneKind:
