@@ -22,6 +22,8 @@ GAP = (1.5, 7.0)  # m between houses
 BELOW = 0.03  # m, by which the ground between the plots lies below the pavement, and roads without a kerb too
 EDGING = 0.08  # m, width of the stones along a strip
 ASIDE = 0.9  # m, that is free on either side of a door
+LEAST_LANDED = 1.2  # m; forecourts deeper than that have a path to the door and may have a landing
+FAR = 84.0  # m, where the houses that end a street stand at the nearest: beyond its traffic
 PAVINGS: tuple[tuple[Pattern, Point], ...] = (
     ("slabs", (0.62, 0.60, 0.57)),
     ("slabs", (0.50, 0.49, 0.47)),
@@ -45,8 +47,9 @@ class Forecourt:
     wall: Wall
     length: float  # m, along the wall
     deep: float  # m, from the wall to the street
-    level: float  # m, of its ground
+    level: float  # m above the wall's foot, of its ground
     door: Interval  # m along the wall
+    path: Interval  # m along the wall, of the path to the door
 
     def lay(self, along: Interval, out: Interval, material: Material) -> None:
         """Lay ground of one kind, without edges."""
@@ -80,18 +83,19 @@ def build_gardens(rng: Generator) -> tuple[Model, Float, float]:
     end = float(rng.uniform(30, 70))
     _add_street(model, (road, walk, kerb, end), rng)
     for sign in (-1.0, 1.0):
-        y, shared = float(rng.uniform(-18, -8)), 0.0
+        y, shared = float(rng.uniform(-18, -8)), None
         while y < end:
             width = float(rng.uniform(8, 24))
             deep = _add_plot(model, sign, (road + walk, kerb), (y, y + width), shared, rng)
             gap = float(rng.uniform(*GAP)) if rng.random() < 0.6 else 0.0
-            y, shared = y + width + gap, 0.0 if gap else deep
+            y, shared = y + width + gap, None if gap else deep
     if rng.random() < 0.6:
         start = -float(rng.uniform(20, 30))
         while start < 30:
             width, style = float(rng.uniform(10, 24)), draw_style(rng)
-            y_far = (end + 24, end + 35)  # beyond the last plot, wherever that ends
-            add_building(model, (start, start + width), y_far, _height(style, rng), {"-y"}, rng, style)
+            far = max(end + 24, FAR)  # beyond the last plot, wherever that ends
+            z = (kerb - BELOW, kerb - BELOW + _height(style, rng))
+            add_building(model, (start, start + width), (far, far + 11), z, {"-y"}, rng, style)
             start += width + (float(rng.uniform(*GAP)) if rng.random() < 0.4 else 0.0)
     add_traffic(model, road, rng)
     return model, eye, side
@@ -101,7 +105,7 @@ def _add_street(model: Model, measures: tuple[float, float, float, float], rng: 
     """The road, its kerbs and pavements, and the ground between the plots; road, pavement, kerb and end in m."""
     road, walk, kerb, end = measures
     model.start_body("ground")
-    start, length = BEHIND * Y, (end + 90) * Y
+    start, length = BEHIND * Y, (max(end + 24, FAR) + 42) * Y
     model.quad(-road * X + start, 2 * road * X, length, _paving(rng, *PAVINGS[-2:]))
     pavement, beyond = _paving(rng), _soil(rng)
     for sign in (-1.0, 1.0):
@@ -122,11 +126,12 @@ def _add_street(model: Model, measures: tuple[float, float, float, float], rng: 
 
 
 def _add_plot(
-    model: Model, sign: float, street: tuple[float, float], y: Interval, shared: float, rng: Generator
+    model: Model, sign: float, street: tuple[float, float], y: Interval, shared: float | None, rng: Generator
 ) -> float:
     """A house with what lies before it, and how deep that is, m.
 
-    `street` tells where the pavement ends and how high it lies, `shared` how deep the forecourt is that adjoins, m.
+    `street` tells where the pavement ends and how high it lies, `shared` how deep the forecourt of the house is that
+    adjoins, m, if one does.
     """
     edge, level = street
     deep = float(rng.choice([0.0, rng.uniform(0.3, 1.2), *rng.uniform(1.5, 5.0, 2), rng.uniform(3.0, 9.0)]))
@@ -134,19 +139,21 @@ def _add_plot(
     across = (min(front, front + sign * back), max(front, front + sign * back))
     style = draw_style(rng)
     style = replace(style, plinth=float(rng.choice([0.0, 0.0, 0.25, 0.5, 0.5 if style.shops else 0.9])))
-    names = {"+x" if sign < 0 else "-x"} | ({"-y"} if rng.random() < 0.6 else set())
-    facades = add_building(model, across, y, _height(style, rng), names, rng, style)
+    names = {"+x" if sign < 0 else "-x"} | ({"-y"} if shared is None and rng.random() < 0.6 else set())
+    foot = level - BELOW  # where the ground between the plots lies
+    facades = add_building(model, across, y, (foot, foot + _height(style, rng)), names, rng, style)
     facade = max(facades, key=lambda wall: abs(float(wall.out[0])))
     door = next(along for along, up in facade.openings if up[0] == 0)
     model.start_body("ground")
-    forecourt = Forecourt(facade, y[1] - y[0], deep, level, door)
+    aside = float(rng.uniform(0.3, ASIDE - 0.1))
+    forecourt = Forecourt(facade, y[1] - y[0], deep, BELOW, door, (door[0] - aside, door[1] + aside))
     if deep > 0:
-        _lay_grounds(forecourt, shared, sign < 0, rng)
+        _lay_grounds(forecourt, shared or 0.0, sign < 0, rng)
     if deep > 1.7 and rng.random() < 0.6:
         _add_boundary(forecourt, rng)
     if deep > 0.4:
         _add_before_wall(forecourt, rng)
-    if deep > 1.2 and rng.random() < 0.6:
+    if deep > LEAST_LANDED and rng.random() < 0.6:
         _add_landing(forecourt, rng)
     return deep
 
@@ -163,16 +170,17 @@ def _lay_grounds(forecourt: Forecourt, shared: float, along_street: bool, rng: G
     The pavement has the border to the street, the forecourt that adjoins, `shared` m deep, the one to it; the wall runs
     `along_street`, or against it.
     """
-    length, deep, door = forecourt.length, forecourt.deep, forecourt.door
-    main, by_wall, path = (_soil(rng) if rng.random() < 0.6 else _paving(rng) for _ in range(3))
+    length, deep, path = forecourt.length, forecourt.deep, forecourt.path
+    main, by_wall, trodden = (_soil(rng) if rng.random() < 0.6 else _paving(rng) for _ in range(3))
     strip = min(deep, float(rng.uniform(0.2, 1.2))) if rng.random() < 0.5 else 0.0
-    has_path, has_edging = deep > 1.2, rng.random() < 0.5 and 0 < strip <= deep - EDGING
+    has_path = deep > LEAST_LANDED
+    has_edging = has_path and rng.random() < 0.5 and 0 < strip <= deep - EDGING
     stone, high = _paving(rng, ("plain", (0.6, 0.58, 0.55))), float(rng.uniform(0.03, 0.12))
     parts = [(0.0, length)]
     if has_path:
-        parts = [(0.0, door[0] - 0.3), (door[1] + 0.3, length)]
-        forecourt.lay((parts[0][1], parts[1][0]), (0.0, deep), path)
-        for along in (parts[0][1], parts[1][0]):
+        parts = [(0.0, path[0]), (path[1], length)]
+        forecourt.lay(path, (0.0, deep), trodden)
+        for along in path:
             forecourt.border((along, 0.0), (along, deep))
     for part in parts:
         if strip:
@@ -239,7 +247,7 @@ def _add_before_wall(forecourt: Forecourt, rng: Generator) -> None:
             if what < 0.3:
                 _plant_hedge(forecourt, along, height, out, colour, rng)
             elif what < 0.6 and most > 0.6:
-                half = np.array([0.3, 0.3, 0.5]) * rng.uniform(0.6, 1.4)
+                half = np.array([most / 2, most / 2, 0.5]) * rng.uniform(0.6, 1.0)
                 foot = forecourt.wall.at(along[0] + 0.4, forecourt.level, near + most / 2)
                 add_bush(forecourt.wall.model, foot, half, colour, rng)
             elif 0.6 <= what < 0.8:
@@ -248,11 +256,10 @@ def _add_before_wall(forecourt: Forecourt, rng: Generator) -> None:
 
 
 def _add_landing(forecourt: Forecourt, rng: Generator) -> None:
-    """A broad step before the door, over its own."""
-    over, out = float(rng.uniform(0.3, ASIDE - 0.1)), (0.0, float(rng.uniform(0.7, 1.15)))
+    """A step as broad as the path before the door, over the door's own."""
+    out = (0.0, float(rng.uniform(0.7, LEAST_LANDED - 0.05)))
     forecourt.wall.model.start_body("furniture")
-    along = (forecourt.door[0] - over, forecourt.door[1] + over)
-    forecourt.put(along, (0.0, float(rng.uniform(0.06, 0.16))), out, _paving(rng))
+    forecourt.put(forecourt.path, (0.0, float(rng.uniform(0.06, 0.16))), out, _paving(rng))
 
 
 def _paving(rng: Generator, *among: tuple[Pattern, Point]) -> Material:

@@ -72,7 +72,7 @@ def _street(rng: Generator) -> tuple[Model, Float, float]:
             setback = float(rng.choice([0.0, 0.0, 0.4, 0.9, 1.8, 3.5]))
             front, deep = sign * (road + walk + setback), float(rng.uniform(9, 14))
             across = (min(front, front + sign * deep), max(front, front + sign * deep))
-            add_building(model, across, (y, y + width), height, {"+x" if sign < 0 else "-x", "-y"}, rng)
+            add_building(model, across, (y, y + width), (0.0, height), {"+x" if sign < 0 else "-x", "-y"}, rng)
             y += width
             if y > crossing:
                 y += float(rng.uniform(7, 12))
@@ -81,8 +81,8 @@ def _street(rng: Generator) -> tuple[Model, Float, float]:
                 y += float(rng.uniform(1.5, 5))
     start = -float(rng.uniform(25, 35))
     while start < 35:
-        width = float(rng.uniform(12, 24))
-        add_building(model, (start, start + width), (end + 12, end + 24), float(rng.uniform(10, 22)), {"-y"}, rng)
+        width, height = float(rng.uniform(12, 24)), float(rng.uniform(10, 22))
+        add_building(model, (start, start + width), (end + 12, end + 24), (0.0, height), {"-y"}, rng)
         start += width
     _add_road(model, road, end + 12)
     add_traffic(model, road, rng)
@@ -116,12 +116,12 @@ def _courtyard(rng: Generator) -> tuple[Model, Float, float]:
         x = (half, half + 9) if sign > 0 else (-half - 9, -half)
         wing = main if rng.random() < 0.5 else None
         tall = height + float(rng.uniform(-2, 2))
-        add_building(model, x, (-8.0, deep), tall, {"-x" if sign > 0 else "+x"}, rng, wing)
-    add_building(model, (-half - 9, half + 9), (deep, deep + 10), height + 3, {"-y"}, rng, main)
-    add_building(model, (-half - 9, half + 9), (-18, -8), height, {"+y"}, rng, main)
+        add_building(model, x, (-8.0, deep), (0.0, tall), {"-x" if sign > 0 else "+x"}, rng, wing)
+    add_building(model, (-half - 9, half + 9), (deep, deep + 10), (0.0, height + 3), {"-y"}, rng, main)
+    add_building(model, (-half - 9, half + 9), (-18, -8), (0.0, height), {"+y"}, rng, main)
     middle = float(rng.uniform(-0.35, 0.35)) * half
     low, out = float(rng.uniform(5.5, 7.5)), float(rng.uniform(2.5, 4.0))
-    add_building(model, (middle - 3.4, middle + 3.4), (deep - out, deep), low, {"-x", "+x", "-y"}, rng)
+    add_building(model, (middle - 3.4, middle + 3.4), (deep - out, deep), (0.0, low), {"-x", "+x", "-y"}, rng)
     model.start_body("ground")
     model.quad(np.array([-half - 10, -20.0, 0.0]), (2 * half + 20) * X, (deep + 32) * Y, SLABS)
     for step in range(3):

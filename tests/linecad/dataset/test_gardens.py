@@ -22,7 +22,7 @@ from linecad.dataset.modelling import UP, Model, Wall
 from linecad.dataset.scenes import draw_scene
 
 LENGTH, LEVEL = 14.0, 0.1  # m
-DOOR = (6.0, 7.1)
+DOOR, PATH = (6.0, 7.1), (5.5, 7.6)
 DEPTHS = (0.3, 0.9, 2.0, 5.0)
 
 
@@ -31,7 +31,7 @@ def build_forecourt(deep: float) -> Forecourt:
     model.start_body("building")
     wall = Wall(model, np.array([2.0, 3.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([1.0, 0.0, 0.0]))
     model.start_body("ground")
-    return Forecourt(wall, LENGTH, deep, LEVEL, DOOR)
+    return Forecourt(wall, LENGTH, deep, LEVEL, DOOR, PATH)
 
 
 def in_wall(forecourt: Forecourt) -> Float:
@@ -81,8 +81,8 @@ def test_grounds_cover_a_forecourt_once(deep: float, seed: int) -> None:
     low, high = ground[:, :, [0, 2]].min(axis=1), ground[:, :, [0, 2]].max(axis=1)
     assert ((place > low) & (place < high)).all(axis=2).sum(axis=1) == pytest.approx(np.ones(300))
     assert quads[:, :, 2].max() <= deep + 1e-9
-    path = (quads[:, :, 0].max(axis=1) > DOOR[0] - 0.29) & (quads[:, :, 0].min(axis=1) < DOOR[1] + 0.29)
-    assert deep <= 1.2 or quads[path][:, :, 1].max() < 1e-9, "no edging lies across the path"
+    before_door = (quads[:, :, 0].max(axis=1) > PATH[0] + 1e-9) & (quads[:, :, 0].min(axis=1) < PATH[1] - 1e-9)
+    assert quads[before_door][:, :, 1].max() < 1e-9, "no edging lies before the door"
 
 
 @pytest.mark.parametrize("shared", [0.0, 1.5, 2.0, 4.0])
@@ -108,7 +108,7 @@ def test_windows_lie_below_the_eaves() -> None:
     for _ in range(40):
         model, style = Model(), draw_style(rng)
         height = _height(style, rng)
-        add_building(model, (3.0, 12.0), (4.0, 18.0), height, {"-x", "-y"}, rng, style)
+        add_building(model, (3.0, 12.0), (4.0, 18.0), (0.0, height), {"-x", "-y"}, rng, style)
         assert np.array(model.openings)[:, :, 2].max() < height
 
 
