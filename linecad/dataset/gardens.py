@@ -94,8 +94,8 @@ def build_gardens(rng: Generator) -> tuple[Model, Float, float]:
         while start < 30:
             width, style = float(rng.uniform(10, 24)), draw_style(rng)
             far = max(end + 24, FAR)  # beyond the last plot, wherever that ends
-            z = (kerb - BELOW, kerb - BELOW + _height(style, rng))
-            add_building(model, (start, start + width), (far, far + 11), z, {"-y"}, rng, style)
+            y_far, z = (far, far + 11), (0.0, _height(style, rng))  # the road runs up to them
+            add_building(model, (start, start + width), y_far, z, {"-y"}, rng, style)
             start += width + (float(rng.uniform(*GAP)) if rng.random() < 0.4 else 0.0)
     add_traffic(model, road, rng)
     return model, eye, side

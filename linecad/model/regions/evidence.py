@@ -31,7 +31,7 @@ NARROWEST = 0.02  # of its offset, of a surface: what is less is relief
 FURTHEST, NEARLY_ALL = 1.25, 0.98  # times the depth of so many of a surface's lines; it does not go on for ever
 RARE_COST = 0.3  # of levels that are no ground: soffits and tops of walls are small
 WALLED_COST = 0.5  # of ground and ceiling behind a wall
-ROOM_COST = 3.0  # the same below a ceiling and behind all walls there: the walls of a room close it
+ROOM_COST = 3.0  # the same below a ceiling, behind all walls there or the last of a side: walls close a room
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
 MAPPED_COST = 0.8  # of a wall that only a depth map shows
@@ -82,8 +82,12 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
         is_level = surface.kind in ("ground", "ceiling")
         if is_level:
             some, every = _behind_walls(raster, lines, surfaces, depth, number)
-            in_room = every & heaven.is_ceiling & (raster.map_depth is None)
-            cost = cost + np.where(in_room, ROOM_COST, WALLED_COST) * some
+            if heaven.is_ceiling and raster.map_depth is None:
+                out = _out_of_room(raster, surfaces, depth[:, number])
+                some, every = some | out, every | out
+                cost = cost + np.where(every, ROOM_COST, WALLED_COST) * some
+            else:
+                cost = cost + WALLED_COST * some
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
@@ -183,6 +187,20 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
         some |= is_before & is_there
         every &= is_before | ~is_there
     return some, some & every
+
+
+def _out_of_room(raster: Raster, surfaces: list[Surface], depth: Float) -> Bool:
+    """Where (S,) a level at depths (S,) is farther off to a side than the last wall there, wherever that wall ends."""
+    found, reach = np.zeros(raster.size, bool), np.where(np.isfinite(depth), depth, 0.0)
+    offsets: dict[int, list[float]] = {}
+    for surface in surfaces:
+        if surface.kind == "wall":
+            offsets.setdefault(surface.axis, [0.0]).append(BEHIND * surface.offset)
+    for axis, own in offsets.items():
+        at = raster.rays[:, axis] * reach
+        found |= (min(own) < 0) & (at < min(own))
+        found |= (max(own) > 0) & (at > max(own))
+    return found
 
 
 def _beyond(raster: Raster, kind: str) -> Float:

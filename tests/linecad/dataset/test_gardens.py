@@ -8,6 +8,8 @@ from linecad.dataset.choice import manhattan
 from linecad.dataset.facades import draw_style
 from linecad.dataset.furniture import add_bush, add_hedge
 from linecad.dataset.gardens import (
+    BELOW,
+    FAR,
     Forecourt,
     _add_before_wall,
     _add_boundary,
@@ -15,6 +17,7 @@ from linecad.dataset.gardens import (
     _add_plot,
     _height,
     _lay_grounds,
+    build_gardens,
 )
 from linecad.dataset.houses import add_building
 from linecad.dataset.make import draw_draft, measure
@@ -123,6 +126,42 @@ def test_a_plot_has_its_house_behind_its_forecourt(sign: float) -> None:
         assert house.min() > 6.0 + deep - 0.9, "balconies stand off a wall"
         assert deep == 0 or ground.min() == pytest.approx(6.0)
         assert deep == 0 or ground.max() == pytest.approx(6.0 + deep)
+
+
+@pytest.mark.parametrize("level", [0.03, 0.15])
+def test_a_house_stands_on_the_ground_between_the_plots(level: float) -> None:
+    for seed in range(10):
+        model, rng = Model(), np.random.default_rng(seed)
+        _add_plot(model, 1.0, (6.0, level), (10.0, 24.0), None, rng)
+        house = model.quads(np.zeros(3))[of_kind(model, "building")]
+        assert house[:, :, 2].min() == pytest.approx(level - BELOW)
+
+
+def test_houses_that_adjoin_another_have_one_facade() -> None:
+    def facing(shared: float | None, seed: int) -> int:
+        model = Model()
+        _add_plot(model, 1.0, (6.0, 0.1), (10.0, 24.0), shared, np.random.default_rng(seed))
+        corners = np.array(model.openings)
+        return int((np.ptp(corners[:, :, 1], axis=1) < 1e-9).sum())
+
+    assert all(facing(0.0, seed) == 0 for seed in range(10))
+    assert any(facing(None, seed) > 0 for seed in range(10))
+
+
+def test_houses_that_end_a_street_stand_on_the_road_beyond_all_traffic() -> None:
+    ends = 0
+    for seed in range(12):
+        model, _, _ = build_gardens(np.random.default_rng(seed))
+        quads, body, kinds = model.quads(np.zeros(3)), np.array(model.body), np.array(model.kinds)
+        for number in np.flatnonzero(kinds == "building").tolist():
+            own = quads[body == number]
+            if own[:, :, 0].min() < 0 < own[:, :, 0].max():
+                ends += 1
+                assert own[:, :, 2].min() == pytest.approx(0.0)
+                assert own[:, :, 1].max() > FAR
+                cars = quads[np.isin(body, np.flatnonzero(kinds == "car"))]
+                assert cars[:, :, 1].max(initial=0.0) < own[:, :, 1].min()
+    assert ends > 3
 
 
 def test_hedges_and_bushes_have_no_edges_and_stand_on_the_ground() -> None:

@@ -221,3 +221,21 @@ def test_in_a_room_no_level_is_seen_through_all_of_its_walls(house, raster):
     # One that the ray never meets is not there, also where it reaches to both sides of the camera.
     behind = Surface("wall", 1, -8.0, NO_LINES, None, box=np.array([[-3.0, -8, -2], [3, -8, 2]]))
     assert cost_behind(8.0, also=behind) == pytest.approx(ROOM_COST)
+
+
+def test_a_room_ends_at_the_last_wall_of_each_side_wherever_that_ends(house, raster):
+    """Of a wall behind furniture a picture may be all that is seen; floor and ceiling once went on beside it."""
+    ground = Surface("ground", 2, -2.0, NO_LINES, None)
+    below = replace(NO_HEAVEN, is_ceiling=True)
+    depth = depths(raster, [ground])[:, 0]
+    seen = np.isfinite(depth)
+    x, y = (raster.rays[:, axis] * np.where(seen, depth, 0.0) for axis in range(2))
+    box = np.array([[-3.0, 8, 0], [-2.9, 8, 0.1]])  # it ends where no ray in the middle of the photo meets it
+    for axis, offset, outside in ((1, 8.0, y > 8.0), (0, -2.0, x < -2.0), (0, 2.0, x > 2.0), (1, -8.0, y < -8.0)):
+        short = Surface("wall", axis, offset, NO_LINES, None, box=box)
+        alone, more = (sample_costs(raster, house.lines, [ground, *s], below, np.inf)[:, 0] for s in ([], [short]))
+        at = x if axis == 0 else y
+        clear = seen & (np.abs(at / offset - 1) > 0.05)
+        assert (more - alone)[clear & outside] == pytest.approx(ROOM_COST)
+        assert ((more - alone)[clear & ~outside] < ROOM_COST).all()
+        assert (clear & outside).any() == (offset != -8.0)
