@@ -81,7 +81,8 @@ def build_gardens(rng: Generator) -> tuple[Model, Float, float]:
     kerb = float(rng.choice([BELOW, 0.06, 0.1, 0.15]))
     eye = np.array([rng.uniform(-0.6, 0.6) * road, 0.0, rng.uniform(*CAMERA_HEIGHT)])
     end = float(rng.uniform(30, 70))
-    _add_street(model, (road, walk, kerb, end), rng)
+    far = max(end + 24, FAR)  # beyond the last plots, wherever these end
+    _add_street(model, (road, walk, kerb, far), rng)
     for sign in (-1.0, 1.0):
         y, shared = float(rng.uniform(-18, -8)), None
         while y < end:
@@ -93,19 +94,18 @@ def build_gardens(rng: Generator) -> tuple[Model, Float, float]:
         start = -float(rng.uniform(20, 30))
         while start < 30:
             width, style = float(rng.uniform(10, 24)), draw_style(rng)
-            far = max(end + 24, FAR)  # beyond the last plot, wherever that ends
-            y_far, z = (far, far + 11), (0.0, _height(style, rng))  # the road runs up to them
-            add_building(model, (start, start + width), y_far, z, {"-y"}, rng, style)
+            z = (0.0, _height(style, rng))  # the road runs up to them
+            add_building(model, (start, start + width), (far, far + 11), z, {"-y"}, rng, style)
             start += width + (float(rng.uniform(*GAP)) if rng.random() < 0.4 else 0.0)
     add_traffic(model, road, rng)
     return model, eye, side
 
 
 def _add_street(model: Model, measures: tuple[float, float, float, float], rng: Generator) -> None:
-    """The road, its kerbs and pavements, and the ground between the plots; road, pavement, kerb and end in m."""
-    road, walk, kerb, end = measures
+    """The road, its kerbs and pavements, and the ground between the plots; road, pavement, kerb and far end in m."""
+    road, walk, kerb, far = measures
     model.start_body("ground")
-    start, length = BEHIND * Y, (max(end + 24, FAR) + 42) * Y
+    start, length = BEHIND * Y, (far + 12 - BEHIND) * Y
     model.quad(-road * X + start, 2 * road * X, length, _paving(rng, *PAVINGS[-2:]))
     pavement, beyond = _paving(rng), _soil(rng)
     for sign in (-1.0, 1.0):

@@ -74,6 +74,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     depth = depths(raster, surfaces)
     green = GREEN_COST * is_green(raster)
     ground = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
+    is_room = heaven.is_ceiling and raster.map_depth is None
     for number, surface in enumerate(surfaces):
         cost = _surface_cost(raster, lines, surface, depth[:, number])
         if ground is not None and surface.kind != "ground":
@@ -82,12 +83,10 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
         is_level = surface.kind in ("ground", "ceiling")
         if is_level:
             some, every = _behind_walls(raster, lines, surfaces, depth, number)
-            if heaven.is_ceiling and raster.map_depth is None:
+            if is_room:
                 out = _out_of_room(raster, surfaces, depth[:, number])
                 some, every = some | out, every | out
-                cost = cost + np.where(every, ROOM_COST, WALLED_COST) * some
-            else:
-                cost = cost + WALLED_COST * some
+            cost = cost + np.where(every & is_room, ROOM_COST, WALLED_COST) * some
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
         costs[:, number] = np.where(np.isfinite(depth[:, number]), cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
