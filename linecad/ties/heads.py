@@ -14,6 +14,8 @@ from linecad.ties.walls import find_walls
 # Of the log of a ceiling's height above the camera over the camera's above the ground: 1.6 m above it, 2.4 to 3.1 m.
 USUAL, SPREAD = -0.4, 0.35
 LEAST_USUAL = 0.1  # what an unusual height counts, halls being higher
+BEFORE = 0.05  # log height by which what stands before its wall, as a shelf does, may show a head too low
+UPPER = 0.75  # of the heads that agree, by their probabilities, the quantile that is the ceiling
 LEAST = 0.25  # sum of the probabilities of walls, from which a ceiling is told by them
 
 
@@ -32,11 +34,19 @@ def log_height_of_ceiling(setting: Setting, log_scale: Float, log_ground: float 
     if not found:
         return None
     height, share = np.array(found).T
-    near = np.abs(height[:, None] - height) < SAME
+    above = height - height[:, None]
+    near = (above > -BEFORE) & (above < SAME)
     agreeing = near @ share
     usual = np.ones(len(height))
     if log_ground is not None:
         usual = np.maximum(np.exp(-(((height - log_ground - USUAL) / SPREAD) ** 2) / 2), LEAST_USUAL)
     worth = np.where(agreeing >= LEAST, agreeing * usual, 0.0)
     best = int(worth.argmax())
-    return float(np.average(height[near[best]], weights=share[near[best]])) if worth[best] > 0 else None
+    return _upper(height[near[best]], share[near[best]]) if worth[best] > 0 else None
+
+
+def _upper(height: Float, share: Float) -> float:
+    """The quantile UPPER of log heights (N,) with shares (N,)."""
+    order = np.argsort(height, kind="stable")
+    reached = np.cumsum(share[order]) / share.sum()
+    return float(height[order[min(int(np.searchsorted(reached, UPPER)), len(order) - 1)]])

@@ -86,6 +86,18 @@ def test_a_faint_head_of_a_usual_room_is_no_reason_against_a_clear_one(lane, abo
     assert found == pytest.approx(above)
 
 
+@pytest.mark.parametrize(("share", "of_higher", "expected"), [(0.5, 0.5, 0.04), (0.6, 0.1, 0.0)])
+def test_what_stands_before_its_wall_shows_its_head_too_low(lane, above, monkeypatch, share, of_higher, expected):
+    """Of two heads that nearly agree the higher one is the wall's, unless it is faint."""
+    readings = {0: (above, share), 1: (above + 0.04, of_higher)}
+
+    def read(_, walls):
+        return [Reading((tuple(map(float, readings[wall.body])),), 0.0) for wall in walls]
+
+    monkeypatch.setattr(FootReader, "read", read)
+    assert log_height_of_ceiling(lane(), np.zeros(2), None) == pytest.approx(above + expected)
+
+
 def test_few_walls_tell_no_ceiling(lane, monkeypatch):
     setting = lane()
     monkeypatch.setattr(heads, "LEAST", 2.1)
