@@ -19,7 +19,7 @@ from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
 from linecad.model.coplanar import join_planes
 from linecad.model.depth_evidence import depths_of, normals_of
-from linecad.model.face_lines import add_lines, lines_told, without_repeats
+from linecad.model.face_lines import add_lines, follow_map, lines_told, without_repeats
 from linecad.model.faces import find_faces, with_roofs
 from linecad.model.finishing import finished
 from linecad.model.frame_crossings import clean_and_cross, inexact_crossings
@@ -138,19 +138,19 @@ def build_scene(
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_and_cross(framed, _intersections(graph, decision, found, new_id), sight, view.camera.width)
     planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
-    regions = find_regions(planes, lines, view.camera, view.frame.rotation, _look(view, placed, scales), graph.turns)
-    planes = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
-    holes = find_openings(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
-    whole = planes
-    drawn = ToldOpenings(view.faces, planes, lines, view.camera, view.frame.rotation, graph.turns)
-    planes, openings, told = _opened(planes, holes.openings, drawn)
+    look = _look(view, placed, scales)
+    regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
+    whole = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
+    holes = find_openings(frame_views(framed, whole, view.frame.rotation), view.camera, view.pixels)
+    drawn = ToldOpenings(view.faces, whole, lines, view.camera, view.frame.rotation, graph.turns)
+    planes, openings, told = _opened(whole, holes.openings, drawn)
     of_bodies = None if placed is None else cleaned.row[new_id[found.kept & placed.told]]
     said = lines_told(cleaned.intersections, of_bodies)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)
+    on_faces = follow_map(on_faces, look.mapped, view.camera, sight, said)
     ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight), sight)
     framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
-    roofed = with_roofs(planes, regions.roofs, view.camera, view.frame.rotation, graph.turns)
     lines = framed.in_world()
     ends = cleaned.note(on_faces.kept, on_faces.lines.lines, ended.lines)
     notes = [*_notes(view, graph, solution, found, depth_map), ends, *regions.notes, *holes.notes, *told]
@@ -160,7 +160,7 @@ def build_scene(
         rotation=view.frame.rotation,
         lines=lines,
         intersections=on_faces.crossings(cleaned.intersections),
-        planes=roofed,
+        planes=with_roofs(planes, regions.roofs, view.camera, view.frame.rotation, graph.turns),
         solve=SolveReport.of(solution),
         notes=(*filter(None, notes), *disagreements(planes, lines, pairs, graph.turns)),
         certainty=view.certainty,
@@ -296,8 +296,7 @@ def _component_scales(graph: LineGraph, lifted: Lifted, parts: list[Int], are_pl
     """
     middle = graph.segments.ends.mean(axis=1)
     # Camera depth of a line at its segment's middle, from its exact coordinates.
-    rays = np.where(np.isnan(lifted.offset), 0, graph.components)
-    offset = np.nan_to_num(lifted.offset)
+    rays, offset = np.where(np.isnan(lifted.offset), 0, graph.components), np.nan_to_num(lifted.offset)
     depth = (rays * offset).sum(axis=1) / (rays**2).sum(axis=1)
     main = parts[0]
     scales = [TYPICAL_DEPTH / float(np.median(depth[main]))]

@@ -1,8 +1,11 @@
 """What the depth map that was given with a photo says of its faces, once the bodies are placed."""
 
+import numpy as np
+
 from linecad.arrays import Float
 from linecad.depth.normals import Normals
 from linecad.model.regions.mapped import MappedDepths
+from linecad.ties.depth_ties import DepthWitness
 from linecad.ties.placing import Placed
 
 
@@ -26,4 +29,6 @@ def depths_of(placed: Placed | None, scale: float, matrix: Float) -> MappedDepth
     assert told.kind is not None
     assert told.scale is not None
     assert told.width is not None
-    return MappedDepths(depth, told.kind, told.shift or 0.0, scale / told.scale, matrix, told.width)
+    heard = placed.places.evidence.heard
+    exact = heard.width_of_parts if isinstance(heard, DepthWitness) else np.inf
+    return MappedDepths(depth, told.kind, told.shift or 0.0, scale / told.scale, matrix, told.width, exact)

@@ -4,7 +4,7 @@ What crossings placed comes first: a stretch of the photo along which such a lin
 come the edges of faces, then what the photo shows on them.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from linecad.model.clean.absorbing import absorbed
 from linecad.model.clean.sight import Sight
 from linecad.model.frames import FramedLines, sight_in, together
 from linecad.model.on_faces.better import better_places
+from linecad.model.on_faces.by_map import WIDEST, factors_by_map
 from linecad.model.on_faces.edges import edges_of
 from linecad.model.on_faces.in_sky import in_the_sky
 from linecad.model.on_faces.places import Samples, can_lie, in_space, stretches
@@ -25,7 +26,9 @@ from linecad.model.on_faces.posts import standing
 from linecad.model.on_faces.roofed import on_roofs
 from linecad.model.on_faces.seen import NO_FACE, SeenFaces
 from linecad.model.regions.filling import Filled
+from linecad.model.regions.mapped import MappedDepths
 from linecad.scene import Camera, Intersections, Lines, Plane
+from linecad.ties.depth_parts import is_map_likelier, right_by_map
 
 NO_ROWS = np.zeros(0, np.int64)
 UNKNOWN = 0.5  # the probability of a plane that no line shows
@@ -42,6 +45,8 @@ class LinesOnFaces:
     put: Int  # ids that those have now which faces and the ground placed better
     nowhere: int = 0  # lines that were left out, as no face places them,
     in_sky: int = 0  # and as they are in the sky
+    edges: Int = field(default_factory=lambda: NO_ROWS)  # ids of edges of faces
+    by_map: Int = field(default_factory=lambda: NO_ROWS)  # ids of those that a depth map placed better
 
     def crossings(self, crossings: Intersections) -> Intersections:
         """The crossings of lines that stayed; the tree is one again."""
@@ -72,6 +77,10 @@ class LinesOnFaces:
         if put:
             where = "lie on a face in the photo or stand on its ground or roofs"
             notes.append(f"{put} lines in doubtful places {where}, and were put there")
+        if by_map := int(np.isin(lines.id, self.by_map).sum()):
+            notes.append(
+                f"{by_map} lines that the depth map has elsewhere on both of their sides were put where it has them"
+            )
         if self.nowhere:
             notes.append(
                 f"{self.nowhere} doubtful lines are left out: they would lie behind the wall, floor or ceiling that "
@@ -143,7 +152,51 @@ def add_lines(
         members[seen.plane[each].id].append(number)
     full = tuple(replace(plane, lines=tuple(members[plane.id])) for plane in planes)
     put = np.r_[lines.id[: len(moved.lines)], lines.id[count:]]
-    return LinesOnFaces(*without_repeats(every, full, sight), kept, put, int(nowhere.sum()), int(wires.sum()))
+    of_edges = lines.id[len(moved.lines) :][: len(edges)]
+    left = without_repeats(every, full, sight)
+    return LinesOnFaces(*left, kept, put, int(nowhere.sum()), int(wires.sum()), of_edges)
+
+
+def follow_map(
+    found: LinesOnFaces, mapped: MappedDepths | None, camera: Camera, sight: Sight, said: Int
+) -> LinesOnFaces:
+    """The lines with those at the depth that a map has beside them where it is likelier right, in no plane or crossing.
+
+    Edges of faces stay on these, and lines of which a person `said` something (ids) where they are.
+    """
+    if mapped is None or mapped.width_of_parts >= WIDEST:
+        return found
+    ids = np.asarray(found.lines.lines.id)
+    factor = factors_by_map(found.lines.in_world(), mapped, camera, sight.rotation, found.lines.turns)
+    asked = (factor != 1.0) & ~np.isin(ids, np.append(found.edges, said))
+    known, move = np.asarray(found.lines.lines.probability), np.log(np.where(asked, factor, np.e))
+    moved = asked & is_map_likelier(known, mapped.width_of_parts, move)
+    kept = found.kept.copy()
+    kept[np.flatnonzero(kept)[moved[: int(kept.sum())]]] = False
+    rows = np.flatnonzero(moved)
+    numbers = int(ids.max(initial=-1)) + 1 + np.arange(len(rows))  # ids ascend
+    there = _at_map(_nearer(found.lines.of_rows(rows), factor[rows]), numbers, right_by_map(mapped.width_of_parts))
+    rest = found.lines.of_rows(np.flatnonzero(~moved))
+    lines = FramedLines(together([rest.lines, there.lines]), np.append(rest.frame, there.frame), rest.turns)
+    gone = set(ids[moved].tolist())
+    planes = tuple(
+        replace(plane, lines=tuple(line for line in plane.lines if line not in gone)) for plane in found.planes
+    )
+    return replace(found, lines=lines, planes=planes, kept=kept, by_map=numbers)
+
+
+def _at_map(framed: FramedLines, numbers: Int, probability: float) -> FramedLines:
+    """The lines with ids (N,), as a depth map placed them."""
+    lines = framed.lines
+    lines = replace(
+        lines,
+        id=numbers,
+        confidence=np.where(np.asarray(lines.confidence) == "proven", "supported", lines.confidence),
+        probability=np.full(len(numbers), probability) if len(lines.probability) else (),
+        by_face=np.zeros(len(numbers), bool),
+        by_depth_map=np.ones(len(numbers), bool),
+    )
+    return replace(framed, lines=lines)
 
 
 def without_repeats(

@@ -23,7 +23,7 @@ class Lines:
     confidence: Text  # (N,) proven, supported, weak
     # (N,) 0 to 1, that the depth relative to component 0 is right within 5 %; (0,) in scenes that do not tell
     probability: Float | tuple[()] = ()
-    by_depth_map: Bool | tuple[()] = ()  # (N,) a depth map alone says where the line's body stands; left out: of none
+    by_depth_map: Bool | tuple[()] = ()  # (N,) a depth map alone says where it stands, or its body; left out: of none
     role: Text | tuple[()] = ()  # (N,) one of ROLES; left out: all are outlines
     by_face: Bool | tuple[()] = ()  # (N,) no crossing placed it: it lies on a face; left out: crossings placed all
     # N: the segments (K, 2, 2) px that a line was joined from, (0, 2, 2) where it has one; left out: all have one

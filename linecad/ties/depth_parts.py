@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import expit, logit
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.depth.depth_map import DepthMap, camera_depths
 from linecad.directions import MAIN, across
 from linecad.geometry import lengths, unit_normals, world_rays
@@ -56,16 +56,11 @@ class Part:
 
     def features(self, width: float) -> dict[str, float]:
         """What tells who is right, them or a map of that width."""
-        return {
-            "known": float(logit(np.clip(self.known, 1 - SUREST, SUREST))),
-            "width": float(np.log(width / USUAL_WIDTH)),
-            "off": float(np.log(abs(self.move) / USUAL_OFF)),
-        }
+        return {name: float(value) for name, value in _features(self.known, width, self.move).items()}
 
     def is_moved(self, width: float) -> bool:
         """Whether a map of that width is likelier right."""
-        log_odds = AT_ONCE + sum(LOG_ODDS[name] * value for name, value in self.features(width).items())
-        return width < WIDEST and self.known < MOST_KNOWN and log_odds > 0
+        return width < WIDEST and self.known < MOST_KNOWN and bool(is_map_likelier(self.known, width, self.move))
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,6 +161,23 @@ def heard_again(part: MapPart, lines: Int, asked: Float) -> MapPart:
     own = told & np.isin(part.lines, lines)
     by = by[own if own.any() else told]
     return MapPart(lines, asked[lines], part.asked + (float(np.median(by)) if len(by) else 0.0))
+
+
+def is_map_likelier(known: Float | float, width: float, move: Float | float) -> Bool:
+    """Whether a map of that width is likelier right than lines that it moves by a log scale (N,).
+
+    `known` (N,) is how likely they are right as they stand.
+    """
+    told = _features(known, width, move)
+    return np.asarray(AT_ONCE + sum(LOG_ODDS[name] * value for name, value in told.items()) > 0)
+
+
+def _features(known: Float | float, width: float, move: Float | float) -> dict[str, Float]:
+    return {
+        "known": np.asarray(logit(np.clip(known, 1 - SUREST, SUREST))),
+        "width": np.asarray(np.log(width / USUAL_WIDTH)),
+        "off": np.asarray(np.log(np.abs(move) / USUAL_OFF)),
+    }
 
 
 def right_by_map(width: float) -> float:

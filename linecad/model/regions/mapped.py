@@ -42,17 +42,28 @@ class MappedDepths:
     factor: float  # depth in the scene over depth in units of the map
     matrix: Float  # (3, 3) K of the photo, px
     width: float  # of the Cauchy error of its walls, log depth
+    width_of_parts: float = np.inf  # of parts of bodies and of lines, which alone tells whether the map is exact
 
     def at(self, rows: Int, columns: Int) -> Float:
         """(R, C) camera depth in the pixels of those rows (R,) and columns (C,); NaN where the map has none.
 
         Of a map of 6 megapixels the faces ask for one pixel in some hundred.
         """
-        place = np.ix_(rows, columns)
         v, u = np.meshgrid(rows, columns, indexing="ij")
-        rays = homogeneous(np.stack([u, v], axis=2).astype(np.float64)) @ np.linalg.inv(self.matrix).T
+        return self._in(np.ix_(rows, columns), np.stack([u, v], axis=2))
+
+    def near(self, pixels: Float) -> Float:
+        """(M,) camera depth in the pixels nearest to places (M, 2); NaN where the map has none, or outside of it."""
+        column, row = np.rint(pixels).astype(np.int64).T
+        inside = (column >= 0) & (column < self.depth.width) & (row >= 0) & (row < self.depth.height)
+        place = np.where(inside, row, 0), np.where(inside, column, 0)
+        return np.where(inside, self._in(place, np.rint(pixels)), np.nan)
+
+    def _in(self, place: tuple[Int, ...], pixels: Float) -> Float:
+        """Camera depth in places of the map's arrays that are at such pixels (..., 2)."""
+        rays = homogeneous(pixels.astype(np.float64)) @ np.linalg.inv(self.matrix).T
         values = np.where(self.depth.valid[place], self.depth.values[place], np.nan).astype(np.float64)
-        found = camera_depths(values, np.linalg.norm(rays, axis=2), self.kind, self.shift)
+        found = camera_depths(values, np.linalg.norm(rays, axis=-1), self.kind, self.shift)
         return np.asarray(found * self.factor, np.float64)
 
 

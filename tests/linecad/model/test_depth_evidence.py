@@ -9,15 +9,17 @@ from linecad.depth.depth_map import DepthMap
 from linecad.geometry import central_camera
 from linecad.model.depth_evidence import depths_of, normals_of
 from linecad.scene import DepthMapReport
+from linecad.ties.depth_ties import DepthWitness
 
 MATRIX = central_camera(100.0, 64, 48)
 SHIFT, SCALE, FACTOR = 0.02, 2.5, 1.6  # of the map's numbers, of the map over the bodies, of the scene over the bodies
 
 
-def placed(values, kind, shift=None, left_out=""):
+def placed(values, kind, shift=None, left_out="", heard=None):
     told = DepthMapReport("map.npz", left_out, *((None,) * 4 if left_out else (kind, shift, SCALE, 0.02)))
     depth = DepthMap("map.npz", values.astype(np.float32), values > 0, kind)
-    return SimpleNamespace(depth_map=told, setting=SimpleNamespace(sight=SimpleNamespace(depth=depth)))
+    places = SimpleNamespace(evidence=SimpleNamespace(heard=heard))
+    return SimpleNamespace(depth_map=told, places=places, setting=SimpleNamespace(sight=SimpleNamespace(depth=depth)))
 
 
 @pytest.mark.parametrize("kind", ["z", "distance", "inverse", "affine-inverse"])
@@ -39,6 +41,15 @@ def test_the_depths_are_those_of_the_scene(kind):
     assert known.sum() == known.size - 1
     np.testing.assert_allclose(depth[known], (true * FACTOR)[known], rtol=1e-4)
     np.testing.assert_array_equal(found.at(np.array([3, 7]), np.array([4, 9, 2])), depth[[3, 7]][:, [4, 9, 2]])
+    places = np.array([[4.0, 3.0], [9.4, 6.6], [2.0, 7.0], [-1.0, 7.0], [64.0, 7.0], [9.0, 48.0]])
+    np.testing.assert_array_equal(found.near(places), [np.nan, depth[7, 9], depth[7, 2], *[np.nan] * 3])
+
+
+def test_how_exact_a_map_is_for_lines_is_known_where_it_was_heard():
+    values = np.ones((48, 64))
+    heard = DepthWitness(reading=None, width=0.02, worth=1.0, weight=1.0, words=None, width_of_parts=0.013, ground=None)
+    assert depths_of(placed(values, "z", 0.0, heard=heard), FACTOR, MATRIX).width_of_parts == 0.013
+    assert depths_of(placed(values, "z", 0.0), FACTOR, MATRIX).width_of_parts == np.inf
 
 
 def test_a_map_that_was_left_out_and_none_at_all_say_nothing():

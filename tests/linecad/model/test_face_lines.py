@@ -7,14 +7,26 @@ import numpy as np
 import pytest
 
 from linecad.arrays import rows_of
+from linecad.depth.depth_map import DepthMap
 from linecad.geometry import project
 from linecad.line_graph import Segments
+from linecad.model import face_lines
 from linecad.model.clean.sight import Sight
-from linecad.model.face_lines import LEAST_ON_GROUND, NO_ROWS, UNKNOWN, add_lines, lines_told, without_repeats
+from linecad.model.face_lines import (
+    LEAST_ON_GROUND,
+    NO_ROWS,
+    UNKNOWN,
+    add_lines,
+    follow_map,
+    lines_told,
+    without_repeats,
+)
 from linecad.model.faces import find_faces
 from linecad.model.frames import FramedLines, together
 from linecad.model.on_faces.better import LEAST_LIKELY
+from linecad.model.regions.mapped import MappedDepths
 from linecad.scene import Face, Intersections, Lines, Plane
+from linecad.ties.depth_parts import right_by_map
 
 X, Y, Z = range(3)
 SIDE, FRONT, GROUND = 2.0, 8.0, -2.0
@@ -416,3 +428,74 @@ def test_no_line_at_all_repeats_another(house, planes, sight):
     found, bare = without_repeats(framed, planes, sight)
     assert len(found.lines) == 0
     assert [plane.lines for plane in bare] == [()] * len(planes)
+
+
+MAP = MappedDepths(
+    DepthMap("map.npz", np.ones((4, 4)), np.ones((4, 4), bool), "z"), "z", 0.0, 1.0, np.eye(3), 0.02, 0.012
+)
+
+
+@pytest.fixture
+def follow(house, sight, monkeypatch):
+    """What becomes of lines that a map has at so many times their distance, by their ids."""
+
+    def followed(found, factors, said=NO_ROWS, width=0.012):
+        def asked(lines, *_):
+            return np.array([factors.get(number, 1.0) for number in lines.id.tolist()])
+
+        monkeypatch.setattr(face_lines, "factors_by_map", asked)
+        return follow_map(found, replace(MAP, width_of_parts=width), house.camera, sight, said)
+
+    return followed
+
+
+def test_without_a_map_nothing_moves(add, house, sight):
+    found = add([SILL])
+    assert follow_map(found, None, house.camera, sight, NO_ROWS) is found
+
+
+def test_a_line_goes_where_the_map_has_it_with_its_crossings_and_planes_left(add, house, follow):
+    lines = replace(house.lines, probability=np.full(len(house.lines), 0.6))
+    found = add([SILL], lines)
+    row = inner_row(house)
+    of_face = next(each for each in found.lines.lines.id[found.lines.lines.by_face].tolist() if each not in found.edges)
+    after = follow(found, {row: 0.5, of_face: 1.5})
+    there = after.lines.lines
+    assert len(there) == len(found.lines.lines)
+    assert (np.diff(there.id) > 0).all()
+    assert np.flatnonzero(~after.kept).tolist() == [row]
+    before = dict(zip(found.lines.lines.id.tolist(), found.lines.lines.ends, strict=True))
+    assert there.ends[-2:].tolist() == [(0.5 * before[row]).tolist(), (1.5 * before[of_face]).tolist()]
+    assert there.by_depth_map.tolist() == [False] * (len(there) - 2) + [True, True]
+    assert not there.by_face[-2:].any()
+    assert there.probability[-2:] == pytest.approx(right_by_map(0.012))
+    assert not {row, of_face, *there.id[-2:].tolist()} & {line for plane in after.planes for line in plane.lines}
+    crossings = Intersections(
+        lines=[[0, row], [0, 1]], kind=["X"] * 2, pixel=[[0, 0]] * 2, real=[True] * 2, in_tree=[True] * 2,
+        weight=[1] * 2, reason=[""] * 2,
+    )  # fmt: skip
+    assert after.crossings(crossings).lines.tolist() == [[0, 1]]
+    assert [note.split()[0] for note in after.notes(there) if "depth map" in note] == ["2"]
+
+
+def test_edges_of_faces_and_what_a_person_said_stay_whatever_a_map_has(house, planes, sight, follow):
+    rows = np.flatnonzero(~(house.lines.ends[:, :, Z] == GROUND).all(axis=1))  # without the feet of walls
+    lines = replace(rows_of(house.lines, rows), id=np.arange(len(rows)), probability=np.full(len(rows), 0.5))
+    bare = tuple(replace(plane, lines=()) for plane in planes)
+    framed = FramedLines(lines, np.zeros(len(lines), np.int64), ())
+    found = add_lines(framed, bare, Segments.none(), house.camera, sight)
+    assert len(found.edges) > 1
+    after = follow(found, dict.fromkeys([0, *found.edges.tolist()], 0.5), np.array([0]))
+    assert after.lines.lines.ends.tolist() == found.lines.lines.ends.tolist()
+    assert after.kept.all()
+
+
+@pytest.mark.parametrize(
+    ("known", "width", "moves"), [(0.6, 0.012, True), (0.97, 0.02, False), (0.6, 0.036, False), (0.2, 0.034, True)]
+)
+def test_who_is_right_is_told_by_how_sure_the_line_is_and_by_the_errors_of_the_map(
+    add, house, follow, known, width, moves
+):
+    row = inner_row(house)
+    found = add([], replace(house.lines, probability=np.full(len(house.lines), known)))
+    assert follow(found, {row: 0.8}, width=width).kept[row] != moves

@@ -15,6 +15,7 @@ from linecad.ties.depth_parts import (
     Part,
     find_parts,
     hear_lines,
+    is_map_likelier,
     right_by_map,
 )
 from linecad.ties.depth_samples import WallVotes
@@ -113,6 +114,17 @@ def test_the_map_is_believed_where_little_is_known_and_it_is_far_off():
     assert moved(known=0.05, move=-0.6, width=0.012)
     assert not moved(known=MOST_KNOWN, move=0.6, width=0.012)
     assert not moved(known=0.05, move=0.6, width=WIDEST)
+
+
+def test_single_lines_are_judged_as_parts_are_but_for_their_limits():
+    known, move = np.array([0.05, 0.45, 0.45, 0.99]), np.array([-0.6, 0.06, 0.6, 0.15])
+    for width in (0.012, 0.019, 0.03):
+        told = is_map_likelier(known, width, move).tolist()
+        assert told == [bool(is_map_likelier(one, width, other)) for one, other in zip(known, move, strict=True)]
+        parts = [Part(np.arange(LEAST_LINES), 0.0, by, p, np.zeros(0, int)) for p, by in zip(known, move, strict=True)]
+        limited = [part.is_moved(width) for part in parts]
+        assert limited == [likely and width < WIDEST and p < MOST_KNOWN for likely, p in zip(told, known, strict=True)]
+    assert is_map_likelier(known, 0.012, move).tolist() == [True, True, True, False]
 
 
 def test_a_wider_map_is_less_often_right():
