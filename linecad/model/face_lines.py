@@ -192,7 +192,8 @@ def _at_map(framed: FramedLines, numbers: Int, probability: float) -> FramedLine
         lines,
         id=numbers,
         confidence=np.where(np.asarray(lines.confidence) == "proven", "supported", lines.confidence),
-        probability=np.full(len(numbers), probability) if len(lines.probability) else (),
+        is_boundary=np.zeros(len(numbers), bool),
+        probability=np.full(len(numbers), probability),
         by_face=np.zeros(len(numbers), bool),
         by_depth_map=np.ones(len(numbers), bool),
     )

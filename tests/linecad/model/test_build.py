@@ -99,3 +99,21 @@ def test_the_facade_that_the_photo_shows_has_a_face_up_to_its_top(found):
     (left,) = [plane for plane in scene.planes if plane.axis == 0 and plane.offset < 0]
     tops = [face.outline[:, 2].max() for face in left.faces]
     assert max(tops) == scene.lines.ends[scene.lines.ends[:, 0, 0] < 0][..., 2].max()
+
+
+def test_a_line_that_the_map_has_elsewhere_is_there(found, depth):
+    """A jamb of the right facade that the map has before it, with what is beside it."""
+    at = project(np.array([RIGHT, 20.1, 0.0]), CAMERA.matrix, AHEAD)[0]
+    before = np.where(np.abs(np.arange(CAMERA.width) - at) < 14, 0.6 * depth, depth)
+    scenes = [scene_of(found, DepthMap("map.npz", values, values > 0, "z")) for values in (depth, before)]
+    jambs = []
+    for scene in scenes:
+        lines = scene.lines
+        row = int(np.flatnonzero((lines.axis == Z) & (np.abs(lines.segment[..., 0] - at) < 1).all(axis=1)).item())
+        others = np.delete(np.arange(len(lines)), row)
+        jambs.append((lines.ends[row, 0, 1] / np.median(lines.ends[others, 0, 1]), bool(lines.by_depth_map[row])))
+    (there, _), (nearer, is_by_map) = jambs
+    assert is_by_map
+    assert nearer == pytest.approx(0.6 * there, rel=0.02)
+    assert any("depth map has elsewhere" in note for note in scenes[1].notes)
+    assert not any("depth map has elsewhere" in note for note in scenes[0].notes)

@@ -468,6 +468,7 @@ def test_a_line_goes_where_the_map_has_it_with_its_crossings_and_planes_left(add
     assert there.ends[-2:].tolist() == [(0.5 * before[row]).tolist(), (1.5 * before[of_face]).tolist()]
     assert there.by_depth_map.tolist() == [False] * (len(there) - 2) + [True, True]
     assert not there.by_face[-2:].any()
+    assert not there.is_boundary[-2:].any()
     assert there.probability[-2:] == pytest.approx(right_by_map(0.012))
     assert not {row, of_face, *there.id[-2:].tolist()} & {line for plane in after.planes for line in plane.lines}
     crossings = Intersections(
@@ -498,4 +499,5 @@ def test_who_is_right_is_told_by_how_sure_the_line_is_and_by_the_errors_of_the_m
 ):
     row = inner_row(house)
     found = add([], replace(house.lines, probability=np.full(len(house.lines), known)))
+    assert found.kept[row]
     assert follow(found, {row: 0.8}, width=width).kept[row] != moves

@@ -1,10 +1,14 @@
 """Lines before walls of known places, and the depth map of what is seen there."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from linecad.arrays import rows_of
 from linecad.depth.depth_map import DepthMap
-from linecad.geometry import central_camera, project
+from linecad.directions import MAIN, directions_of
+from linecad.geometry import central_camera, project, world_rays
 from linecad.model.on_faces import by_map
 from linecad.model.on_faces.by_map import LEAST_OFF, ONE_SURFACE, factors_by_map
 from linecad.model.regions.mapped import MappedDepths
@@ -14,7 +18,7 @@ WIDTH, HEIGHT, FOCAL = 640, 480, 500.0
 CAMERA = Camera(WIDTH, HEIGHT, central_camera(FOCAL, WIDTH, HEIGHT), "file")
 AHEAD = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])  # x right, y away, z up
 FAR = 8.0
-UPRIGHT = [[0.4, FAR, -1.0], [0.4, FAR, 1.0]]
+UPRIGHT = [[1.2, FAR, -1.0], [1.2, FAR, 1.0]]
 LEVEL = [[-1.2, FAR, 0.6], [1.5, FAR, 0.6]]
 
 
@@ -33,8 +37,8 @@ def mapped(values, factor=1.0):
     return MappedDepths(DepthMap("map.npz", values, values > 0, "z"), "z", 0.0, factor, CAMERA.matrix, 0.012)
 
 
-def factors(lines, found):
-    return factors_by_map(lines, found, CAMERA, AHEAD, ())
+def factors(lines, found, turns=()):
+    return factors_by_map(lines, found, CAMERA, AHEAD, turns)
 
 
 def beside(left, right):
@@ -94,3 +98,51 @@ def test_a_line_along_the_view_is_moved_as_a_whole(monkeypatch):
     pixel = np.arange(WIDTH) - (WIDTH - 1) / 2
     wall = np.where(pixel > 0, 1.2 * FOCAL / np.maximum(pixel, 1e-3), 0)  # x = 1.2 m
     assert factors(lines_at(along), mapped(wall)) == pytest.approx([0.6], rel=0.02)
+
+
+def test_a_bar_before_a_wall_stays_where_the_map_has_it():
+    """Beside it the map shows the wall on both sides."""
+    column = project(np.array(UPRIGHT[0]), CAMERA.matrix, AHEAD)[0]
+    bar = np.where(np.abs(np.arange(WIDTH) - column) < 2, FAR, 2 * FAR)
+    assert factors(lines_at(UPRIGHT), mapped(bar)).tolist() == [1.0]
+    assert factors(lines_at(UPRIGHT), mapped(np.full(WIDTH, 2 * FAR))) == pytest.approx([2.0], rel=1e-5)
+
+
+@pytest.mark.parametrize("times", [1.0, 0.7, 1.4])
+def test_what_is_seen_on_a_slanted_surface_is_on_it(times):
+    """A level line on the ground far away: a few px below the map is much nearer, above much farther."""
+    below = 1.5
+    far = [[-3.0, 40.0, -below], [3.0, 40.0, -below]]
+    under = np.arange(HEIGHT) - (HEIGHT - 1) / 2
+    ground = np.where(under > 0.5, FOCAL * below / np.maximum(under, 0.5), 0.0)
+    sides = [ground[round((HEIGHT - 1) / 2 + FOCAL * below / 40.0 + by)] for by in (-3, 3)]
+    assert sides[0] > 40 * np.exp(LEAST_OFF)
+    assert sides[1] < 40 * np.exp(-LEAST_OFF)
+    found = factors(lines_at(far), mapped(times * ground[:, None]))
+    assert found == pytest.approx([times], rel=0.02)
+
+
+def test_what_is_many_times_as_far_is_something_else():
+    assert factors(lines_at(UPRIGHT), mapped(FAR * 5)).tolist() == [1.0]
+
+
+def test_of_two_sides_leaves_tell_no_depth():
+    leaves = 0.4 * FAR * np.exp(np.random.default_rng(0).uniform(-0.3, 0.3, (HEIGHT, WIDTH)))
+    assert factors(lines_at(UPRIGHT), mapped(beside(leaves, FAR * 0.7))).tolist() == [1.0]
+
+
+def test_of_no_lines_nothing_is_asked():
+    none = lines_at(UPRIGHT)
+    assert len(factors(rows_of(none, np.zeros(0, np.int64)), mapped(FAR))) == 0
+
+
+@pytest.mark.parametrize("times", [0.7, 1.0])
+def test_a_line_of_a_turned_wall_goes_along_its_rays(times):
+    turns = (0.4,)
+    along, normal = directions_of(turns)[MAIN:]
+    foot = 6 * normal + np.array([0, 0, 0.9])
+    ends = np.array([foot - along, foot + 1.5 * along])
+    line = replace(lines_at(ends), axis=np.array([MAIN]))
+    rays = world_rays(np.stack(np.meshgrid(np.arange(WIDTH), np.arange(HEIGHT)), axis=2), CAMERA.matrix, AHEAD)
+    wall = 6 * times / np.maximum(rays @ normal, 1e-3)
+    assert factors(line, mapped(wall), turns) == pytest.approx([times], rel=0.01)
