@@ -169,7 +169,7 @@ def follow_map(
     ids = np.asarray(found.lines.lines.id)
     factor = factors_by_map(found.lines.in_world(), mapped, camera, sight.rotation, found.lines.turns)
     asked = (factor != 1.0) & ~np.isin(ids, np.append(found.edges, said))
-    known, move = np.asarray(found.lines.lines.probability), np.log(np.where(asked, factor, np.e))
+    known, move = np.asarray(found.lines.lines.probability), np.log(np.where(asked, factor, 2.0))
     moved = asked & is_map_likelier(known, mapped.width_of_parts, move)
     kept = found.kept.copy()
     kept[np.flatnonzero(kept)[moved[: int(kept.sum())]]] = False
