@@ -178,11 +178,7 @@ def follow_map(
     there = _at_map(_nearer(found.lines.of_rows(rows), factor[rows]), numbers, right_by_map(mapped.width_of_parts))
     rest = found.lines.of_rows(np.flatnonzero(~moved))
     lines = FramedLines(together([rest.lines, there.lines]), np.append(rest.frame, there.frame), rest.turns)
-    gone = set(ids[moved].tolist())
-    planes = tuple(
-        replace(plane, lines=tuple(line for line in plane.lines if line not in gone)) for plane in found.planes
-    )
-    return replace(found, lines=lines, planes=planes, kept=kept, by_map=numbers)
+    return replace(found, lines=lines, planes=_with_lines(found.planes, ids[~moved]), kept=kept, by_map=numbers)
 
 
 def _at_map(framed: FramedLines, numbers: Int, probability: float) -> FramedLines:
@@ -205,8 +201,13 @@ def without_repeats(
 ) -> tuple[FramedLines, tuple[Plane, ...]]:
     """The lines without those by faces that go on from others or repeat them in space, and planes without theirs."""
     framed = _without_repeats(framed, sight)
-    left = set(framed.lines.id.tolist())
-    return framed, tuple(replace(plane, lines=tuple(line for line in plane.lines if line in left)) for plane in planes)
+    return framed, _with_lines(planes, framed.lines.id)
+
+
+def _with_lines(planes: tuple[Plane, ...], ids: Int) -> tuple[Plane, ...]:
+    """The planes with those of their lines that have one of the ids."""
+    left = set(ids.tolist())
+    return tuple(replace(plane, lines=tuple(line for line in plane.lines if line in left)) for plane in planes)
 
 
 def _without_repeats(framed: FramedLines, sight: Sight) -> FramedLines:

@@ -42,11 +42,7 @@ def log_height_of_ceiling(setting: Setting, log_scale: Float, log_ground: float 
         usual = np.maximum(np.exp(-(((height - log_ground - USUAL) / SPREAD) ** 2) / 2), LEAST_USUAL)
     worth = np.where(agreeing >= LEAST, agreeing * usual, 0.0)
     best = int(worth.argmax())
-    return _upper(height[near[best]], share[near[best]]) if worth[best] > 0 else None
-
-
-def _upper(height: Float, share: Float) -> float:
-    """The quantile UPPER of log heights (N,) with shares (N,)."""
-    order = np.argsort(height, kind="stable")
-    reached = np.cumsum(share[order]) / share.sum()
-    return float(height[order[min(int(np.searchsorted(reached, UPPER)), len(order) - 1)]])
+    if worth[best] == 0:
+        return None
+    own = near[best]
+    return float(np.quantile(height[own], UPPER, weights=share[own], method="inverted_cdf"))

@@ -21,9 +21,7 @@ LEAST_OFF = 0.12  # log depth of both sides from the line; what is nearer may be
 MOST_OFF = 1.4  # the same, from which on something else is seen there, such as the far end of a street
 LEAST_EVEN = 0.06  # median of how far the places of a side are off their middle, log depth
 ONE_SURFACE = 0.1  # log depth, within which both sides are one; else the line is the edge of the nearer one
-WIDEST = (
-    0.035  # of a map's errors, log depth, from which on it moves no line: its walls are off by as much as lines are
-)
+WIDEST = 0.035  # of a map's errors, log depth, from which on it moves no line: its walls are off as lines are
 LEAST_HEARD = 0.5  # share of the places of each side where the map has a depth
 
 
