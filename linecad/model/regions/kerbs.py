@@ -86,7 +86,7 @@ class _Places:
 class _Edge:
     """A row of a lane at which the colour changes."""
 
-    row: int
+    row: int  # the first behind it
     columns: Bool  # (C,) where it does
 
 
@@ -232,7 +232,9 @@ def _kerbs(lane: _Lane, along: int, side: float, least: float) -> list[Kerb]:
             if STEPS[0] <= drop <= STEPS[1]:
                 length = _length_of_kerb(lane, lower, upper)
                 if length >= least:
-                    found.append(Kerb(along, side, float(np.log(NEAREST) + upper.row * ROW), drop, length))
+                    # An edge lies between its row and the one before.
+                    at = float(np.log(NEAREST) + (upper.row - 0.5) * ROW)
+                    found.append(Kerb(along, side, at, drop, length))
     return found
 
 
@@ -243,10 +245,13 @@ def _edges(lane: _Lane, least: float) -> list[_Edge]:
     peak = (contrast > EDGE) & (contrast >= cv2.dilate(contrast, np.ones((2 * SIDE - 1, 1))))
     near = (cv2.dilate(peak.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0) & seen
     length = (near * lane.length).sum(axis=1)
+    exact = ((peak & seen) * lane.length).sum(axis=1)
     found: list[_Edge] = []
     for row in np.argsort(-length, kind="stable").tolist():
         if length[row] < least:
             break
+        # The rows beside an edge are near it as much as its own.
+        row = row - 1 + int(exact[row - 1 : row + 2].argmax())
         if any(abs(row - edge.row) < SIDE for edge in found):
             continue
         usual = _median(across[row][near[row]], lane.length[row][near[row]])

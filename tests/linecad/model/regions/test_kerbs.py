@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from linecad.directions import directions_of, partner
@@ -25,7 +25,7 @@ NONE = Lines(
     NO_LINES, NO_LINES, np.zeros((0, 2, 2)), np.zeros((0, 2, 3)), np.zeros(0, bool), NO_LINES, np.zeros(0, "U9")
 )
 ASPHALT, STONE, SLABS, LAWN, SKY = (90, 90, 95), (130, 128, 125), (180, 178, 172), (60, 120, 40), (200, 215, 240)
-STEP = 2.5 * ROW  # log height by which a kerb may be off in such a photo
+STEP = 1.5 * ROW  # log height by which a kerb may be off in such a photo
 
 
 def view_of(photo, pitch=0.1, yaw=0.0, turns=()):
@@ -80,6 +80,7 @@ def labelled(view, raster, kinds=("ground",)):
 
 
 @settings(max_examples=12, deadline=None)
+@example(distance=2.5, side=-1, drop=0.06, pitch=0.0, yaw=-0.01171875)  # its edges are nearest the least step
 @given(st.floats(1.2, 3.5), st.sampled_from([-1, 1]), st.floats(0.06, 0.13), st.floats(0.0, 0.2), st.floats(-0.2, 0.2))
 def test_a_kerb_is_where_it_is(distance, side, drop, pitch, yaw):
     (found,) = find_kerbs(*street([side * distance], drop, pitch=pitch, yaw=yaw - 0.3 * side))
