@@ -23,7 +23,6 @@ from linecad.lines.segments import (
     find_faint_segments,
     find_segments,
     group_segments,
-    label_segments,
 )
 from linecad.lines.vanishing_point_lines import find_vanishing_point_lines
 from linecad.options import LONG_REACH, MIN_COMPONENT, Options, Reach, Weights
@@ -152,10 +151,8 @@ def name_lines(
 def _labelled(raw: Segments, through_points: Segments, camera: Camera, frames: HorizontalFrames) -> Segments:
     """The segments along the directions of the frames, and the lines that were followed through vanishing points.
 
-    Of several frames, a line that was found through the vanishing points of two is one.
+    A line that was found through the vanishing points of two is one.
     """
-    if not frames.further:
-        return label_segments(raw, camera, frames.main).joined(through_points)
     every = raw.joined(through_points)
     axis = label_by_frames(every, camera, frames)
     kept = (axis >= 0) & ((every.axis < 0) | (every.axis == axis))

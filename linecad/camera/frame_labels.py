@@ -1,7 +1,8 @@
-"""Which direction of several frames each segment runs along, where the segments beside it have a say.
+"""Which direction each segment runs along, where the segments beside it have a say.
 
-Directions of neighbouring houses are so near to each other in much of a photo that a short segment fits two of them.
-But a facade has one frame: how usual each direction is differs from place to place, and is that of the neighbours.
+Near the horizon all that is level looks alike: a short segment there fits x as well as y. And directions of
+neighbouring houses are near to each other in much of a photo. But a facade runs along one of them: how usual each
+direction is differs from place to place, and is that of the neighbours.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Segments of two frames: those of a facade are of one, whatever a short one by itself looks like."""
+"""Segments of a facade are along one direction, whatever a short one by itself looks like."""
 
 import numpy as np
 from numpy.testing import assert_array_equal
@@ -21,12 +21,21 @@ FRAMES = HorizontalFrames(
 )
 
 
-def facades(noise):
-    """Segments along x in the left half of the photo, along x of the second frame in the right half, and their axis."""
+SINGLE = HorizontalFrames(
+    ManhattanFrame(ROTATION, 0.001, 0.8), (HorizontalFrame(0.0, 0.005, 0.6, 90.0),), np.array([0.3, 0.3, 0.2, 0.2])
+)
+
+
+_POINT = vanishing_points(CAMERA.matrix, ROTATION)[0]
+HORIZON = float(_POINT[1] / _POINT[2])  # px, of a camera that is not rolled
+
+
+def facades(noise, frames=FRAMES, other=3, rows=(0.0, HEIGHT)):
+    """Segments along x in the left half of the photo, along the `other` axis in the right half, and their axis."""
     rng = np.random.default_rng(2)
-    axis = np.repeat([0, 3], 60)
-    middle = rng.uniform([0, 0], [WIDTH / 2 - 40, HEIGHT], (120, 2)) + np.outer(axis == 3, [WIDTH / 2 + 40, 0])
-    points = vanishing_points(CAMERA.matrix, FRAMES.sound.frame.axes)[axis]
+    axis = np.repeat([0, other], 60)
+    middle = rng.uniform([0, rows[0]], [WIDTH / 2 - 40, rows[1]], (120, 2)) + np.outer(axis == other, [WIDTH / 2 + 40, 0])
+    points = vanishing_points(CAMERA.matrix, frames.sound.frame.axes)[axis]
     reach = 15 * directions_to(middle, points)
     across = reach[:, ::-1] * [1, -1] / 15
     off = rng.normal(0, noise, (2, 120, 1)) * across
@@ -38,6 +47,14 @@ def test_neighbours_tell_which_of_two_frames_a_segment_is_of():
     alone = FRAMES.labelled(segments, CAMERA)
     assert (alone != axis).sum() > 10
     assert (label_by_frames(segments, CAMERA, FRAMES) != axis).sum() < 3
+
+
+def test_neighbours_tell_level_directions_apart_near_the_horizon():
+    segments, axis = facades(0.6, SINGLE, 1, (HORIZON - 100, HORIZON + 100))
+    alone = SINGLE.labelled(segments, CAMERA)
+    by_neighbours = label_by_frames(segments, CAMERA, SINGLE)
+    assert ((alone != axis) & (alone >= 0)).sum() > 5
+    assert ((by_neighbours != axis) & (by_neighbours >= 0)).sum() < 3
 
 
 def test_labels_of_segments_without_noise_are_right_without_neighbours_too():
