@@ -34,7 +34,8 @@ def facades(noise, frames=FRAMES, other=3, rows=(0.0, HEIGHT)):
     """Segments along x in the left half of the photo, along the `other` axis in the right half, and their axis."""
     rng = np.random.default_rng(2)
     axis = np.repeat([0, other], 60)
-    middle = rng.uniform([0, rows[0]], [WIDTH / 2 - 40, rows[1]], (120, 2)) + np.outer(axis == other, [WIDTH / 2 + 40, 0])
+    middle = rng.uniform([0, rows[0]], [WIDTH / 2 - 40, rows[1]], (120, 2))
+    middle[axis == other, 0] += WIDTH / 2 + 40
     points = vanishing_points(CAMERA.matrix, frames.sound.frame.axes)[axis]
     reach = 15 * directions_to(middle, points)
     across = reach[:, ::-1] * [1, -1] / 15

@@ -10,6 +10,7 @@ from linecad.model.regions.evidence import (
     BESIDE_COST,
     CLUTTER,
     CLUTTER_COST,
+    GRAZING,
     GREEN_COST,
     NEAR_COST,
     NEVER,
@@ -87,6 +88,18 @@ def test_a_wall_costs_more_away_from_its_lines(house, raster):
     assert costs[on_line].max() < 0.5 * NEAR_COST
     # Beside and above its lines; far from all of them.
     assert costs[sample(700, 120)] > costs[sample(700, 190)] > costs[on_line].max()
+
+
+def test_a_wall_is_not_where_it_is_seen_too_flatly(house, raster):
+    beside = Surface("wall", 0, 0.1, np.arange(3), None)  # the camera looks along it
+    costs = sample_costs(raster, house.lines, [beside], NO_HEAVEN, np.inf)[:, 0]
+    flat = np.abs(raster.rays[:, 0]) <= GRAZING
+    assert flat.any()
+    assert (costs[flat] == NEVER).all()
+    assert (costs[raster.rays[:, 0] > GRAZING] < NEVER).any()
+    level = Surface("other", 2, -0.1, np.arange(3), None)
+    costs = sample_costs(raster, house.lines, [level], NO_HEAVEN, np.inf)[:, 0]
+    assert (costs[(raster.rays[:, 2] < 0) & (raster.rays[:, 2] > -GRAZING)] < NEVER).any()
 
 
 def test_a_line_behind_a_wall_shows_that_it_is_not_there(house, to_lines):
