@@ -168,6 +168,7 @@ def _of_foot(setting: Setting, foot: Foot) -> Candidate:
         "others": min(foot.others, 1.0),
         "against": foot.against,
         "unseen": foot.unseen,
+        "likelier unseen": float(foot.probability < foot.unseen),
         "share": plane.share,
         "lines of the wall": float(np.log(len(plane.lines))),
         "lines of the body": float(np.log(setting.bodies.size[foot.body])),

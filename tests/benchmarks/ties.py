@@ -6,7 +6,8 @@ tells right from wrong and what each is worth to the placement. All of it is cro
 others; the photos of one real dataset are one scene, and so are their parts (parts.py). One table tells little:
 ties_tables.py judges by many, and writes the mean of them; probability.py fits how sure the places are.
 
-`--refit KIND` instead fits one kind to whole photos, near what it is in the table of the project, and writes it there.
+`--refit KIND` instead fits one kind to whole photos, near what it is in the table of the project, and writes it there;
+with `--only FEATURE` that feature alone.
 """
 
 import argparse
@@ -226,11 +227,12 @@ def main() -> None:
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--workers", type=int, default=2, help="processes")
     parser.add_argument("--refit", choices=KINDS, help="a kind to fit anew")
+    parser.add_argument("--only", metavar="FEATURE", help="of that kind, and leave the others as they are")
     chosen = parser.parse_args()
     with ProcessPoolExecutor(chosen.workers) as pool:
         photos = judge_all(chosen.datasets, pool, with_parts=chosen.refit is None)
         if chosen.refit is not None:
-            write_table(refitted(rows_of(photos, chosen.refit), chosen.refit))
+            write_table(refitted(rows_of(photos, chosen.refit), chosen.refit, chosen.only))
             return
         datasets = list(dict.fromkeys(photo.dataset for photo in photos))
         rows = {kind: rows_of(photos, kind) for kind in KINDS}
@@ -240,13 +242,27 @@ def main() -> None:
         print_maps(whole, rows, [name for name in datasets if PARTED not in name], pool)
 
 
-def refitted(rows: Rows, kind: Kind) -> Table:
-    """The table of the project with one kind fitted anew, near what it is."""
+def refitted(rows: Rows, kind: Kind, only: str | None) -> Table:
+    """The table of the project with one kind fitted anew, near what it is, or with one feature of it."""
     slopes, at_once = linecad.ties.table.LOG_ODDS, linecad.ties.table.AT_ONCE
     near = logistic.Logistic(at_once[kind], np.array([slopes[kind][name] for name in rows.names]))
-    fitted = logistic.fit(rows.features, rows.right, RIDGE_NEAR, near=near)
+    if only is None:
+        fitted = logistic.fit(rows.features, rows.right, RIDGE_NEAR, near=near)
+    else:
+        fitted = with_one_anew(near, rows, list(rows.names).index(only))
     one = tables({kind: fitted}, {kind: rows})
     return {"AT_ONCE": at_once | one["AT_ONCE"], "LOG_ODDS": slopes | one["LOG_ODDS"]}
+
+
+def with_one_anew(known: logistic.Logistic, rows: Rows, column: int) -> logistic.Logistic:
+    """The same with the likeliest slope of one feature, by Newton's method."""
+    found, own = known, rows.features[:, column]
+    for _ in range(logistic.STEPS):
+        p = found.probability(rows.features)
+        slope = found.slope.copy()
+        slope[column] += (own * (rows.right - p)).sum() / (own**2 * p * (1 - p)).sum()
+        found = logistic.Logistic(known.at_once, slope)
+    return found
 
 
 def write_table(table: Table) -> None:

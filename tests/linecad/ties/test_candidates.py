@@ -284,9 +284,16 @@ def test_features_of_a_foot(features_of_foot):
         "lines of the body": np.log(14),
         "rank": 1.0,
         "other foot": 0.0,
+        "likelier unseen": 0.0,
     }
     assert {name: known[name] for name in expected} == pytest.approx(expected)
     assert known["wide"] == pytest.approx(np.log(3.2 * 3000 / 9.0 / GAP_UNIT + 1), abs=0.05), "the camera is turned"
+
+
+def test_a_foot_that_is_likelier_hidden_is_worth_less(features_of_foot):
+    seen, hidden = features_of_foot(probability=0.4, unseen=0.39), features_of_foot(probability=0.4, unseen=0.41)
+    assert (seen["likelier unseen"], hidden["likelier unseen"]) == (0.0, 1.0)
+    assert LOG_ODDS["ground"]["likelier unseen"] < 0
 
 
 @pytest.mark.parametrize(("times", "below"), [(1.01, 0.0), (0.99, 0.0), (0.9, 1.0)])
