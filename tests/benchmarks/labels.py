@@ -1,8 +1,9 @@
 """How many segments run along another axis than their label says: python tests/benchmarks/labels.py DATASET ...
 
 DATASET is York Urban, whose photos have lines marked with their axes, or a folder of made scenes. A segment counts
-where it lies on one of these lines. For each dataset prints the share that is labelled wrongly, of all and by the slope
-of the ray through the line's middle: near the horizon, slope 0, all level lines look alike.
+where it lies on one of these lines and has a label along the first frame. For each dataset prints the share that is
+labelled wrongly, of all and by the slope of the ray through the line's middle: near the horizon, slope 0, all level
+lines look alike.
 """
 
 import argparse

@@ -229,6 +229,8 @@ def main() -> None:
     parser.add_argument("--refit", choices=KINDS, help="a kind to fit anew")
     parser.add_argument("--only", metavar="FEATURE", help="of that kind, and leave the others as they are")
     chosen = parser.parse_args()
+    if chosen.only is not None and chosen.only not in linecad.ties.table.LOG_ODDS.get(chosen.refit, {}):
+        parser.error("--only names a feature of the kind of --refit, as linecad/ties/table.py has it")
     with ProcessPoolExecutor(chosen.workers) as pool:
         photos = judge_all(chosen.datasets, pool, with_parts=chosen.refit is None)
         if chosen.refit is not None:

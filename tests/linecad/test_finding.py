@@ -8,10 +8,11 @@ import pytest
 from linecad.camera.photo import Photo
 from linecad.corrections.apply import correct
 from linecad.corrections.edits import Anchor, Corrections, Delete
-from linecad.finding import FoundLines, find_lines
+from linecad.finding import FoundLines, _labelled, find_lines
 from linecad.geometry import segment_coordinates
 from linecad.line_graph import Segments
 from linecad.pipeline import taken_away
+from tests.linecad.camera.test_frame_labels import CAMERA, HORIZON, SINGLE, facades
 
 
 @pytest.fixture
@@ -57,6 +58,14 @@ def test_without_corrections_nothing_was_taken_away(found):
 
 def test_where_nobody_looked_for_details_faces_get_none(found):
     assert replace(found, details=None).details_for_faces(Segments.none()) is None
+
+
+def test_in_photos_of_one_frame_too_neighbours_tell_level_lines_apart():
+    segments, axis = facades(0.6, SINGLE, 1, (HORIZON - 100, HORIZON + 100))
+    labels = dict(zip(segments.ends[:, 0, 0].tolist(), axis.tolist(), strict=True))
+    found = _labelled(segments, segments.subset(np.zeros(len(segments), bool)), CAMERA, SINGLE)
+    assert len(found) > 100
+    assert sum(labels[start] != own for start, own in zip(found.ends[:, 0, 0], found.axis, strict=True)) < 3
 
 
 def test_a_photo_is_looked_at_for_details(made):

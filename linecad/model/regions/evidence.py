@@ -19,7 +19,7 @@ from linecad.scene import Lines
 SKY, CLUTTER = -2, -1  # columns of costs
 
 NEVER = 50.0
-GRAZING = 0.03  # of a ray at camera depth 1, along a wall's normal: seen so flatly, a pixel more is metres further
+GRAZING = 0.03  # of a ray at camera depth 1, along a wall's normal: seen so flatly, its place is chance
 NEAR, FAR = 18.0, 70.0  # samples from a surface's lines, in which its cost rises
 NEAR_COST, FAR_COST = 1.0, 0.6
 BEHIND = 1.03  # times a surface's depth; a line further away is behind it
@@ -89,9 +89,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
                 some, every = some | out, every | out
             cost = cost + np.where(every & is_room, ROOM_COST, WALLED_COST) * some
         cost = cost + (NEVER * (depth[:, number] > limit) if is_level else green)
-        is_met = np.isfinite(depth[:, number])
-        if surface.axis != UP:
-            is_met &= np.abs(raster.rays[:, surface.axis]) > GRAZING
+        is_met = np.isfinite(depth[:, number]) & ~_is_grazing(raster, surface)
         costs[:, number] = np.where(is_met, cost + TURNED_COST * turned, NEVER)
     edges = (raster.gradient > SMOOTH).reshape(raster.shape).astype(np.float32)
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
@@ -133,6 +131,12 @@ def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) 
     if surface.kind not in ("ground", "ceiling"):
         cost += _outside(raster, lines, surface, depth)
     return cost
+
+
+def _is_grazing(raster: Raster, surface: Surface) -> bool:
+    """Whether a wall is seen so flatly that its place is chance, by half of its lines."""
+    across = np.abs(raster.line_rays[np.isin(raster.line, surface.lines), surface.axis])
+    return surface.axis != UP and len(across) > 0 and bool(np.median(across) < GRAZING)
 
 
 def _rising(off: Float, reach: float, most: float) -> Float:

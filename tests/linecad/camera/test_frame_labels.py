@@ -56,6 +56,7 @@ def test_neighbours_tell_level_directions_apart_near_the_horizon():
     by_neighbours = label_by_frames(segments, CAMERA, SINGLE)
     assert ((alone != axis) & (alone >= 0)).sum() > 5
     assert ((by_neighbours != axis) & (by_neighbours >= 0)).sum() < 3
+    assert (by_neighbours == axis).sum() > 100
 
 
 def test_labels_of_segments_without_noise_are_right_without_neighbours_too():

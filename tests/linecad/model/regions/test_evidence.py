@@ -10,7 +10,6 @@ from linecad.model.regions.evidence import (
     BESIDE_COST,
     CLUTTER,
     CLUTTER_COST,
-    GRAZING,
     GREEN_COST,
     NEAR_COST,
     NEVER,
@@ -90,16 +89,21 @@ def test_a_wall_costs_more_away_from_its_lines(house, raster):
     assert costs[sample(700, 120)] > costs[sample(700, 190)] > costs[on_line].max()
 
 
-def test_a_wall_is_not_where_it_is_seen_too_flatly(house, raster):
-    beside = Surface("wall", 0, 0.1, np.arange(3), None)  # the camera looks along it
-    costs = sample_costs(raster, house.lines, [beside], NO_HEAVEN, np.inf)[:, 0]
-    flat = np.abs(raster.rays[:, 0]) <= GRAZING
-    assert flat.any()
-    assert (costs[flat] == NEVER).all()
-    assert (costs[raster.rays[:, 0] > GRAZING] < NEVER).any()
-    level = Surface("other", 2, -0.1, np.arange(3), None)
-    costs = sample_costs(raster, house.lines, [level], NO_HEAVEN, np.inf)[:, 0]
-    assert (costs[(raster.rays[:, 2] < 0) & (raster.rays[:, 2] > -GRAZING)] < NEVER).any()
+@pytest.mark.parametrize(("beside", "grazes"), [(0.02, True), (0.6, False)])
+def test_a_wall_that_the_camera_looks_along_is_none(house, to_lines, beside, grazes):
+    edges = [(1, np.array([[beside, 3.0, height], [beside, 9.0, height]])) for height in (-0.5, 0.3, 0.9)]
+    lines, _ = to_lines(edges, house.camera, house.rotation)
+    raster = take_raster(lines, house.camera, house.rotation, house.photo)
+    costs = sample_costs(raster, lines, [Surface("wall", 0, beside, np.arange(3), 0)], NO_HEAVEN, np.inf)[:, 0]
+    assert (costs[raster.rays[:, 0] > 0].min() >= NEVER) == grazes
+
+
+def test_a_level_surface_may_be_seen_flatly(house, to_lines):
+    edges = [(1, np.array([[along, 3.0, 0.05], [along, 9.0, 0.05]])) for along in (-1.0, 0.5, 1.0)]
+    lines, _ = to_lines(edges, house.camera, house.rotation)
+    raster = take_raster(lines, house.camera, house.rotation, house.photo)
+    costs = sample_costs(raster, lines, [Surface("other", 2, 0.05, np.arange(3), 0)], NO_HEAVEN, np.inf)[:, 0]
+    assert costs[raster.rays[:, 2] > 0].min() < NEVER
 
 
 def test_a_line_behind_a_wall_shows_that_it_is_not_there(house, to_lines):
