@@ -1,9 +1,9 @@
 """How many segments run along another axis than their label says: python tests/benchmarks/labels.py DATASET ...
 
 DATASET is York Urban, whose photos have lines marked with their axes, or a folder of made scenes. A segment counts
-where it lies on one of these lines and has a label along the first frame. For each dataset prints the share that is
-labelled wrongly, of all and by the slope of the ray through the line's middle: near the horizon, slope 0, all level
-lines look alike.
+where half of it or more lies on one of these lines, the one along which it is longest, and it has a label along the
+first frame. For each dataset prints the share that is labelled wrongly, of all and by the slope of the ray through the
+line's middle: near the horizon, slope 0, all level lines look alike.
 """
 
 import argparse
@@ -17,14 +17,13 @@ from linecad.dataset.truth import Truth
 from linecad.directions import MAIN
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.frames import true_axes
-from linecad.evaluation.references import MarkedLines, Reference, open_case
+from linecad.evaluation.measure import MARKED_ANGLE, MARKED_REACH
+from linecad.evaluation.overlap import find_overlaps
+from linecad.evaluation.references import MANHATTAN, MarkedLines, Reference, open_case
 from linecad.finding import find_lines
-from linecad.geometry import lengths, unit_normals, world_rays
+from linecad.geometry import lengths, world_rays
 
-ACROSS = 3.0  # px from a line to both ends of a segment on it
-TURNED = np.sin(np.radians(3.0))  # of a segment on it
 COVERED = 0.5  # of a segment, by the line it lies on
-ALONG_AXIS = 0.999  # cosine, of the edges of made scenes that count
 SLOPES = (-np.inf, -0.2, -0.1, -0.05, 0.05, 0.1, 0.2, np.inf)
 
 
@@ -39,7 +38,7 @@ def lines_of(reference: Reference) -> MarkedLines:
 def edges_of(truth: Truth) -> MarkedLines:
     along = truth.edges[:, 1] - truth.edges[:, 0]
     along = np.abs(along / np.linalg.norm(along, axis=1, keepdims=True))[truth.piece_edge]
-    kept = along.max(axis=1) > ALONG_AXIS
+    kept = along.max(axis=1) >= MANHATTAN
     return MarkedLines(truth.pieces[kept], along[kept].argmax(axis=1))
 
 
@@ -52,23 +51,17 @@ def measure(case: Case) -> np.ndarray:
         return np.zeros((0, 2))
     # A made scene's rotation is that of its world, in which the axes are the columns too.
     names = true_axes(found.frame.rotation, reference.rotation)
-    ends, axis = found.segments.ends, found.segments.axis
-    length = lengths(ends[:, 1] - ends[:, 0])
-    along = lines.ends[:, 1] - lines.ends[:, 0]
-    normals, of_line = unit_normals(along), lengths(along)
+    main = found.segments.subset(found.segments.axis < MAIN)
     rays = world_rays(lines.ends.mean(axis=1), found.camera.matrix, found.frame.rotation)
     slope = rays[:, 2] / lengths(rays[:, :2])
     rows = []
-    for number in np.flatnonzero(of_line > 0).tolist():
-        from_start = ends - lines.ends[number, 0]
-        across = from_start @ normals[number]
-        at = from_start @ along[number] / of_line[number]
-        overlap = np.minimum(at.max(axis=1), of_line[number]) - np.maximum(at.min(axis=1), 0.0)
-        on = (np.abs(across).max(axis=1) < ACROSS) & (np.abs(across[:, 1] - across[:, 0]) < TURNED * length)
-        on &= (overlap > COVERED * length) & (axis < MAIN)
-        wrong = names[axis[on]] != lines.axis[number]
-        rows.append(np.column_stack([np.full(len(wrong), slope[number]), wrong]))
-    return np.concatenate([np.zeros((0, 2)), *rows])
+    for ends, axis, length in zip(main.ends, names[main.axis].tolist(), main.length.tolist(), strict=True):
+        along = find_overlaps(ends, lines.ends, MARKED_REACH, MARKED_ANGLE)
+        overlap = along.end - along.start
+        if overlap.max(initial=0.0) > COVERED * length:
+            line = along.piece[overlap.argmax()]
+            rows.append((slope[line], axis != lines.axis[line]))
+    return np.array(rows, np.float64).reshape(-1, 2)
 
 
 def main() -> None:
