@@ -29,6 +29,8 @@ EVEN = 0.7  # widths, by which it may be uneven there
 LEAST_WALL = 0.01  # of the photo's samples, of a wall that only the map shows
 LEAST_LEVEL = 0.04  # the same of a ground or ceiling that neither feet nor lines show
 MOST_WALLS = 8
+BESIDE_LINES, LEAST_BESIDE = 3.0, 40  # samples from lines, and so many, that tell by how much the map is off a surface
+AGREEING, MOST_RIGHT = 0.5, 0.2  # least share of them that says the same, and most that has the surface where it is
 SAME_LEVEL = 0.12  # log height within which feet or lines know the ground better than the map
 
 
@@ -88,7 +90,8 @@ def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float, limit: f
     levels = np.array([surface.kind in ("ground", "ceiling") for surface in surfaces], bool)
     width = np.where(levels, np.maximum(raster.map_width, LEVEL_WIDTH), raster.map_width)
     with np.errstate(divide="ignore", invalid="ignore"):
-        off = np.log(raster.map_depth[:, None] / depth) / width
+        off = np.log(raster.map_depth[:, None] / depth)
+        off = np.minimum(np.abs(off), np.abs(off - _factors(raster, surfaces))) / width
         costs = np.minimum(MAP_COST * np.log1p(off**2), MOST_BY_MAP)
     costs = np.where(np.isfinite(depth), costs, MOST_BY_MAP)
     least = costs.min(axis=1, initial=MOST_BY_MAP)
@@ -153,6 +156,34 @@ def _facing(raster: Raster) -> Int:
         better = known & (share.ravel() > 0.5) & (spread < least)
         facing[better], least[better] = axis, spread[better]
     return facing
+
+
+def _factors(raster: Raster, surfaces: list[Surface]) -> Float:
+    """Logs (K,) of the depths that the map gives surfaces over theirs: beside their lines, a level's by the map's level.
+
+    0 where it says nothing, or not one thing.
+    """
+    assert raster.map_depth is not None
+    facing = _facing(raster)
+    found = np.zeros(len(surfaces))
+    for number, surface in enumerate(surfaces):
+        seen = facing == surface.axis
+        if len(surface.lines):
+            seen &= raster.distance(raster.marked(np.isin(raster.line, surface.lines))) < BESIDE_LINES
+            with np.errstate(divide="ignore", invalid="ignore"):
+                off = np.log(raster.map_depth[seen] * raster.rays[seen, surface.axis] / surface.offset)
+            off = off[np.isfinite(off)]
+            if len(off) < LEAST_BESIDE:
+                continue
+            middle = float(np.median(off))
+            as_told = np.abs(off - middle)
+            if (as_told < WITHIN * raster.map_width).mean() >= AGREEING and (np.abs(off) < as_told).mean() <= MOST_RIGHT:
+                found[number] = middle
+        elif surface.kind in ("ground", "ceiling"):
+            count, level = _wall(UP, float(np.sign(surface.offset)), seen, raster)
+            if level is not None and count >= LEAST_LEVEL * raster.size:
+                found[number] = np.log(level.offset / surface.offset)
+    return found
 
 
 def _wall(axis: int, side: float, free: Bool, raster: Raster) -> tuple[int, Surface | None]:
