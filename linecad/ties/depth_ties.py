@@ -150,6 +150,7 @@ class MapPlaces:
     """Where bodies stand once the map has placed those that nothing else ties."""
 
     log_scale: Float  # (B,)
+    ground: float  # log scale of the ground, which goes with the bodies that stand on it
     of_map: float  # log of the map's depth over that of the bodies
     by_map: Bool  # (B,) bodies that the map alone ties to the reference
     misfit: Float  # (B,) log scale by which bodies are off the map; NaN where it does not tell
@@ -165,7 +166,9 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
     """
     asked, count = witness.words.log_scale, len(placement.log_scale)
     log_scale = placement.log_scale[: len(size)].copy()
-    part = ties.parts(placement.counted, count)[: len(size)]
+    ground = float(placement.log_scale[len(size)])
+    parts = ties.parts(placement.counted, count)
+    part = parts[: len(size)]
     firm = ties.parts(placement.counted & ~np.asarray(ties.yields), count)
     told = np.isfinite(asked)
     # A part that a person ties to something goes with that.
@@ -178,6 +181,7 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
             own_told = own & told & ~alone
             off = weighted_median((asked - log_scale)[own_told], size[own_told].astype(np.float64))
             log_scale[own] += off - of_map
+            ground += (off - of_map) * (parts[len(size)] == number)
     # The program ties these to the map where most ties have it, which need not be where most lines do.
     log_scale[alone] = asked[alone] - of_map
     of_told = firm[: len(size)][told]
@@ -185,7 +189,7 @@ def follow_map(witness: DepthWitness, ties: Ties, placement: Placement, referenc
         of_told = np.append(of_told, firm[len(size)])  # what stands on a ground that the map ties
     firm = firm[: len(size)]
     by_map = (firm != firm[reference]) & np.isin(firm, of_told)
-    return MapPlaces(log_scale, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth, alone)
+    return MapPlaces(log_scale, ground, of_map, by_map, asked - log_scale - of_map, witness.width, witness.worth, alone)
 
 
 def report_of(depth: DepthMap, heard: DepthWitness | str, mapped: MapPlaces | None) -> DepthMapReport:

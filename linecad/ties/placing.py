@@ -59,7 +59,8 @@ class BodyPlaces:
     def scale_with_ground(self) -> Float:
         """(B + 1,) log scale of each body and, last, of the ground, also where a map was heard."""
         count = self.evidence.setting.bodies.count
-        return np.append(self.log_scale[:count], self.placement.log_scale[count])
+        ground = self.placement.log_scale[count] if self.mapped is None else self.mapped.ground
+        return np.append(self.log_scale[:count], ground)
 
     @cached_property
     def log_depth(self) -> Float:
@@ -162,7 +163,7 @@ class Placed:
         says_so = self.placement.counted & of_feet
         if not says_so.any():
             return None
-        return float(self.placement.log_scale[number]), float(self.ties.weight[says_so].sum())
+        return float(self.places.scale_with_ground[number]), float(self.ties.weight[says_so].sum())
 
     def height_of_ceiling(self, scale: float) -> float | None:
         """Height of a ceiling above the camera, `scale` times that of the solution's depths; None if no wall tells."""

@@ -80,7 +80,7 @@ def test_two_feet_on_one_ground_tie_their_bodies():
 
 
 def test_a_map_tells_of_the_bodies_that_it_shows():
-    mapped = MapPlaces(np.zeros(3), 0.0, np.zeros(3, bool), np.array([0.0, -0.03, np.nan]), 0.02, 3.0)
+    mapped = MapPlaces(np.zeros(3), 0.0, 0.0, np.zeros(3, bool), np.array([0.0, -0.03, np.nan]), 0.02, 3.0)
     found = links(tie(1, 2, 5.0), mapped=mapped)
     assert all(list(link.features) == list(WITH_MAP_LOG_ODDS) for link in found)
     assert (found[0].features["map's word"], found[0].features["off the map"]) == pytest.approx((3.0, 1.5))
