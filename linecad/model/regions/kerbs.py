@@ -30,15 +30,17 @@ NEAREST, FURTHEST = 0.5, 12.0  # of what is looked at beside the camera, in heig
 ROW = 0.005  # log of the distance beside the camera
 ALONG, COLUMNS = (0.5, 40.0), 320  # along the street, in heights of the camera, evenly in the log
 FINEST = 0.5 / 1920  # of the photo's width; a row that is narrower there is not told from the next
+FACE = 15  # samples of what is no ground between ground; by a depth map a kerb's face may be a wall
 SIDE = 4  # rows on each side of an edge, whose mean colours are compared
-BESIDE = 21  # columns over which a difference of colours is averaged: grain and wheels of cars are shorter
+BESIDE = 31  # columns over which a difference of colours is averaged: grain and wheels of cars are shorter
 EDGE = 3.0  # CIE L*a*b*, least difference across an edge
 SAME_WAY = 0.4  # share of the usual difference that a column has at least, along it
 STEPS = (0.048, 0.14)  # log height of a kerb's face
 USUAL, VARYING = 0.075, 0.35  # usual log height, 12 cm at 1.6 m, and by how much its log varies
 LONG, SHORT = 0.08, 0.04  # of the photo's width, that both edges show at least; opposite one of the same height
 SAME_STEP = 0.01  # log height within which both sides of a street have one kerb
-OPEN = 0.15  # share of the view of it that both edges must have
+OPEN = 0.45  # share of the view of it in which what lies behind is as unlike the road as elsewhere
+ALIKE = (0.6, 1.6)  # of the usual difference of road and pavement, what is as unlike
 UNLIKE = 6.0  # CIE L*a*b*, least difference between road and pavement
 PLAIN = 0.6  # share of the contrast at its edges that road or face may have in itself at most
 GREY = 12.0  # CIE a* and b*, most of a road's colour; lawns, floors of wood and tables are no roads. Shadows are blue
@@ -152,7 +154,9 @@ def find_kerbs(labels: Labels, raster: Raster, view: View) -> list[Kerb]:
     kinds = {surface.kind for surface in labels.surfaces}
     if view.photo is None or "ground" not in kinds or "ceiling" in kinds:
         return []
-    is_ground = (labels.label[labels.cell] == _ground(labels)) & ~raster.plants
+    on_ground = (labels.label[labels.cell] == _ground(labels)).astype(np.uint8).reshape(raster.shape)
+    closed = cv2.morphologyEx(on_ground, cv2.MORPH_CLOSE, np.ones((FACE, 1), np.uint8))
+    is_ground = (closed.ravel() > 0) & ~raster.plants
     places = {
         (along, side): [
             seen for way in (1.0, -1.0) if (seen := _places((along, way, side), is_ground, raster, view)) is not None
@@ -284,8 +288,7 @@ def _length_of_kerb(lane: _Lane, lower: _Edge, upper: _Edge) -> float:
         return 0.0
     both = lower.columns & upper.columns & lane.shown[upper.row : last].all(axis=0)
     length = float(lane.length[lower.row][both].sum())
-    in_view = float(lane.length[lower.row][lane.shown[lower.row] & lane.shown[upper.row]].sum())
-    if not both.any() or length < OPEN * in_view:
+    if not both.any() or _share_alike(lane, lower, upper, both) < OPEN:
         return 0.0
     road = np.median(lane.colour[first : lower.row - 1, both], axis=1)
     face = np.median(lane.colour[lower.row + 3 : upper.row - 2, both], axis=1)
@@ -296,6 +299,25 @@ def _length_of_kerb(lane: _Lane, lower: _Edge, upper: _Edge) -> float:
     is_told = min(at_lower, at_upper) >= EDGE and np.linalg.norm(middle[2] - middle[0]) >= UNLIKE
     is_grey = abs(middle[0][1]) < GREY and middle[0][2] < GREY
     return length if is_plain and is_told and is_grey else 0.0
+
+
+def _share_alike(lane: _Lane, lower: _Edge, upper: _Edge, usual: Bool) -> float:
+    """Share of the view of both edges, by length, in which road and pavement differ as in `usual` columns (C,)."""
+    near, far = slice(max(0, lower.row - 2 * SIDE), lower.row - 1), slice(upper.row + 2, upper.row + 2 * SIDE + 1)
+    across = _mean(lane, far) - _mean(lane, near)
+    middle = np.median(across[usual], axis=0)
+    size = float(middle @ middle)
+    if size < EDGE**2:
+        return 0.0
+    share = across @ middle / size
+    length = np.where(lane.shown[lower.row] & lane.shown[upper.row], lane.length[lower.row], 0.0)
+    return float(length[(share > ALIKE[0]) & (share < ALIKE[1])].sum() / length.sum())
+
+
+def _mean(lane: _Lane, rows: slice) -> NDArray[Any]:
+    """Mean colour (C, 3) of some rows of a lane where they are shown."""
+    shown = lane.shown[rows][..., None]
+    return np.asarray((lane.colour[rows] * shown).sum(axis=0) / np.maximum(shown.sum(axis=0), 1))
 
 
 def _spread(rows: NDArray[Any]) -> float:

@@ -177,7 +177,9 @@ def _factors(raster: Raster, surfaces: list[Surface]) -> Float:
                 continue
             middle = float(np.median(off))
             as_told = np.abs(off - middle)
-            if (as_told < WITHIN * raster.map_width).mean() >= AGREEING and (np.abs(off) < as_told).mean() <= MOST_RIGHT:
+            if (as_told < WITHIN * raster.map_width).mean() >= AGREEING and (
+                np.abs(off) < as_told
+            ).mean() <= MOST_RIGHT:
                 found[number] = middle
         elif surface.kind in ("ground", "ceiling"):
             count, level = _wall(UP, float(np.sign(surface.offset)), seen, raster)

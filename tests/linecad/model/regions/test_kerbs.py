@@ -1,5 +1,7 @@
 """Streets painted onto a photo by rays: a road, the face of a kerb, a pavement, whose true heights are known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -113,6 +115,46 @@ def test_a_street_of_a_turned_frame_has_one():
 )
 def test_what_is_no_kerb_is_none(drop, colours):
     assert find_kerbs(*street([-2.0], drop, colours)) == []
+
+
+def covered(scene, first, last, colour):
+    """The scene with another colour in some columns of its photo, below the horizon."""
+    labels, raster, view = scene
+    photo = view.photo.copy()
+    below = np.flatnonzero((np.abs(photo[:, 0].astype(int) - SKY).max(axis=1) > 30))
+    photo[below[0] :, first:last] = colour
+    return labels, raster, replace(view, photo=photo)
+
+
+def test_a_faint_kerb_in_a_grainy_photo_is_found():
+    labels, raster, view = street([-2.0], colours=(ASPHALT, STONE, (145, 143, 140)))
+    grain = np.random.default_rng(5).normal(0, 16, view.photo.shape)
+    noisy = replace(view, photo=np.clip(view.photo + grain, 0, 255).astype(np.uint8))
+    (found,) = find_kerbs(labels, raster, noisy)
+    assert found.drop == pytest.approx(np.log1p(0.08), abs=STEP)
+    assert found.upper == pytest.approx(np.log(2.0), abs=STEP)
+
+
+def test_what_parts_one_road_for_a_while_is_no_kerb():
+    """Three colours, one behind the other, in less than half of the view: elsewhere the road goes on behind them."""
+    scene = street([-2.0])
+    assert find_kerbs(*covered(scene, 0, 240, ASPHALT)) == []
+    assert len(find_kerbs(*covered(scene, 0, 60, ASPHALT))) == 1
+
+
+def test_a_face_that_is_no_ground_is_one_of_a_kerb_all_the_same():
+    labels, raster, view = street([-2.0])
+    rays = raster.rays
+    away = -rays[:, 0] / np.maximum(-rays[:, 2], 1e-9)
+    face = (away > 2.0 / 1.08) & (away < 2.0)
+    assert face.sum() > 200
+    walled = replace(
+        labels,
+        label=np.append(labels.label, len(labels.surfaces) + 1),
+        cell=np.where(face, len(labels.label), labels.cell.ravel()).reshape(labels.cell.shape),
+    )
+    (found,) = find_kerbs(walled, raster, view)
+    assert found.upper == pytest.approx(np.log(2.0), abs=STEP)
 
 
 def test_neither_a_room_nor_a_scene_without_photo_or_ground_has_one():
