@@ -159,7 +159,7 @@ def _facing(raster: Raster) -> Int:
 
 
 def _factors(raster: Raster, surfaces: list[Surface]) -> Float:
-    """Logs (K,) of the depths that the map gives surfaces over theirs: beside their lines, a level's by the map's level.
+    """Logs (K,) of the depths that the map gives surfaces over theirs: beside their lines, levels by its own level.
 
     0 where it says nothing, or not one thing.
     """

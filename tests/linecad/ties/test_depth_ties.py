@@ -295,3 +295,11 @@ def test_the_map_is_a_body_beyond_the_ground(monkeypatch):
     found = followed([0.0, 0.3], tie(0, 2, 0.7), weight=0.1)
     assert found.log_scale.tolist() == pytest.approx([0.0, 0.3], abs=1e-9)
     assert found.by_map.tolist() == [False, True]
+    assert found.ground == pytest.approx(-0.7)
+
+
+def test_the_ground_goes_with_the_bodies_on_it():
+    """Nothing but the map ties the house on the ground to the reference: the ground moves as the house does."""
+    found = followed([0.0, 0.3], tie(1, 2, 0.7), weight=0.1)
+    assert found.log_scale.tolist() == pytest.approx([0.0, 0.3], abs=1e-9)
+    assert found.log_scale[1] - found.ground == pytest.approx(0.7)

@@ -121,7 +121,7 @@ def covered(scene, first, last, colour):
     """The scene with another colour in some columns of its photo, below the horizon."""
     labels, raster, view = scene
     photo = view.photo.copy()
-    below = np.flatnonzero((np.abs(photo[:, 0].astype(int) - SKY).max(axis=1) > 30))
+    below = np.flatnonzero(np.abs(photo[:, 0].astype(int) - SKY).max(axis=1) > 30)
     photo[below[0] :, first:last] = colour
     return labels, raster, replace(view, photo=photo)
 

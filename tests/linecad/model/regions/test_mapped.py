@@ -127,6 +127,39 @@ def test_costs_are_those_of_a_cauchy_error_above_the_nearest():
     np.testing.assert_allclose(off[:, 4], 0.0)  # nothing explains it
 
 
+def with_lines(raster):
+    """The raster with a point of line 0 in every sample."""
+    return replace(raster, line=np.zeros(raster.size, np.int64), at=np.arange(raster.size))
+
+
+def cost_of(surface, raster):
+    """The mean cost by the map of a surface beside a wall that the map has 15 % too near."""
+    other = Surface("wall", 1, 6.9, NO_LINES, None)
+    with np.errstate(divide="ignore"):
+        depth = np.column_stack([each.offset / raster.rays[:, each.axis] for each in (surface, other)])
+    met = np.isfinite(raster.map_depth) & (depth > 0).all(axis=1)
+    return costs_by_map(raster, [surface, other], np.where(depth > 0, depth, np.inf), 20.0)[met, 0].mean()
+
+
+def test_a_map_that_is_off_a_wall_by_one_factor_shows_that_wall():
+    raster = with_lines(mapped([(1, 6.0)], width=0.02))
+    wall = Surface("wall", 1, 5.0, np.array([0]), 0)
+    assert cost_of(wall, raster) == 0.0
+    assert cost_of(replace(wall, lines=np.array([1])), raster) > 0.3, "other lines show it"
+    # Where a third of the wall is as deep as the map has it, the rest is something else.
+    third = np.arange(raster.size) % raster.shape[1] < raster.shape[1] // 3
+    parted = replace(raster, map_depth=np.where(third, seen([(1, 5.0)]), raster.map_depth))
+    assert cost_of(wall, replace(parted, map_depth=np.where(third, np.nan, raster.map_depth))) == 0.0
+    assert cost_of(wall, parted) > 0.1
+
+
+def test_a_ground_without_lines_is_the_level_that_the_map_has_elsewhere():
+    raster = mapped([(2, -1.9)], width=0.02)
+    ground = Surface("ground", 2, -1.4, NO_LINES, None)
+    assert cost_of(ground, raster) == 0.0
+    assert cost_of(replace(ground, kind="wall"), raster) > 0.2
+
+
 def test_where_the_map_has_nothing_it_says_nothing():
     surfaces = [Surface("wall", 1, 5.0, NO_LINES, None)]
     raster = replace(RASTER, map_depth=np.full(RASTER.size, np.nan), map_width=0.02)
