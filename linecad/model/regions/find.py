@@ -13,19 +13,28 @@ from linecad.model.regions.as_told import uncovered, with_told
 from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
-from linecad.model.regions.heaven import look_up
-from linecad.model.regions.kerbs import on_kerbs
+from linecad.model.regions.heaven import Heaven, look_up
+from linecad.model.regions.kerbs import STEPS, on_kerbs
 from linecad.model.regions.labelling import find_labels
-from linecad.model.regions.mapped import MappedDepths, laid_on, with_mapped
+from linecad.model.regions.mapped import MappedDepths, laid_on, level_of_map, with_mapped
 from linecad.model.regions.overgrown import is_in_the_open
-from linecad.model.regions.raster import Picture, take_raster
+from linecad.model.regions.raster import Picture, Raster, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets
 from linecad.model.regions.skyline import sure_sky
-from linecad.model.regions.surfaces import FIRM_FEET, GroundOfFeet, find_surfaces, ground_of_feet, level_of_ends
+from linecad.model.regions.surfaces import (
+    FIRM_FEET,
+    GroundOfFeet,
+    Surface,
+    find_surfaces,
+    ground_of_feet,
+    level_of_ends,
+)
 from linecad.model.regions.telling import tell
-from linecad.model.regions.told import Before
+from linecad.model.regions.told import Before, Told
 from linecad.scene import Camera, Lines, Plane
+
+EXACT = 0.03  # log depth, widest errors of parts of bodies by a map that tells a road from a pavement
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +50,42 @@ class Look:
     height_of_ceiling: Callable[[], float | None] | None = None  # above the camera, by the heads of walls
 
 
+@dataclass(frozen=True, eq=False)
+class _Sight:
+    """What is looked at, and what is known of it before anything is labelled."""
+
+    planes: tuple[Plane, ...]
+    lines: Lines
+    look: Look
+    raster: Raster
+    view: View
+    feet: GroundOfFeet | None
+
+    def show(self, surfaces: list[Surface], heaven: Heaven, firm: Surface | None) -> "_Shown":
+        """What every part of the photo shows of some surfaces."""
+        lines, raster, view = self.lines, self.raster, self.view
+        found = find_labels(lines, surfaces, raster, heaven, view, firm)
+        told, surfaces = tell(self.look.faces, self.planes, lines, surfaces, view, self.feet)
+        if told.areas:
+            told = replace(told, before=Before(found.surfaces, found.label[found.cell]))
+            heaven = told.sky(heaven, raster)
+            found = find_labels(lines, surfaces, raster, heaven, view, firm, told)
+        meets = find_meets(lines, found.surfaces, view).ends
+        length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
+        filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view, told.shapes("clutter"))
+        return _Shown(with_told(on_ground(filled, raster, view), told), surfaces, told, heaven)
+
+
+@dataclass(frozen=True, eq=False)
+class _Shown:
+    """What every part of a photo shows, before kerbs and roofs."""
+
+    filled: Filled
+    surfaces: list[Surface]  # with those that a person told of
+    told: Told
+    heaven: Heaven  # as a person has it
+
+
 def find_regions(
     planes: tuple[Plane, ...], lines: Lines, camera: Camera, rotation: Float, look: Look, turns: Turns = ()
 ) -> Filled:
@@ -53,22 +98,34 @@ def find_regions(
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)
-    found = find_labels(lines, surfaces, raster, heaven, view, firm)
-    told, surfaces = tell(look.faces, planes, lines, surfaces, view, feet)
-    if told.areas:
-        told = replace(told, before=Before(found.surfaces, found.label[found.cell]))
-        heaven = told.sky(heaven, raster)
-        found = find_labels(lines, surfaces, raster, heaven, view, firm, told)
-    meets = find_meets(lines, found.surfaces, view).ends
-    length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
-    filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view, told.shapes("clutter"))
-    filled = with_told(on_ground(filled, raster, view), told)
-    if any(surface is trodden for surface in surfaces):
+    sight = _Sight(planes, lines, look, raster, view, feet)
+    shown = sight.show(surfaces, heaven, firm)
+    filled = shown.filled
+    if trodden is not None and any(surface is trodden for surface in shown.surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
-    filled = replace(with_hidden(filled, raster), sky=sure_sky(heaven, raster))
+        road = None if filled.drop is not None else _road_of_map(trodden, raster, look.mapped)
+        if road is not None and not any(surface.kind == "ceiling" for surface in surfaces):
+            surfaces = [road if surface is trodden else surface for surface in surfaces]
+            shown = sight.show(surfaces, heaven, road if firm is trodden else firm)
+            filled = shown.filled
+    filled = replace(with_hidden(filled, raster), sky=sure_sky(shown.heaven, raster))
     if look.sketch is not None:
-        filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, heaven, raster, view))
-    return uncovered(filled, told)
+        filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, shown.heaven, raster, view))
+    return uncovered(filled, shown.told)
+
+
+def _road_of_map(ground: Surface, raster: Raster, mapped: MappedDepths | None) -> Surface | None:
+    """The ground as low as a depth map has it, where that is lower than where walls stand as a road is than a pavement.
+
+    None where the map does not say so, or is not exact enough to, and where lines show the ground. A kerb that the
+    photo shows tells both heights; this is for one that is hidden.
+    """
+    if mapped is None or mapped.width_of_parts > EXACT or ground.plane is not None:
+        return None
+    height = level_of_map(raster)
+    if height is None or not STEPS[0] <= np.log(height / ground.offset) <= STEPS[1]:
+        return None
+    return replace(ground, offset=height)
 
 
 def _ceiling(look: Look, lines: Lines) -> float | None:

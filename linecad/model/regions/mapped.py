@@ -216,6 +216,12 @@ def _levelled(surface: Surface, raster: Raster, facing: Int) -> Surface:
     return replace(surface, offset=level.offset) if off > SAME_LEVEL else surface
 
 
+def level_of_map(raster: Raster) -> float | None:
+    """The offset of the ground that most of a map shows; None where it shows too little of one."""
+    count, level = _wall(UP, -1.0, _facing(raster) == UP, raster)
+    return None if level is None or count < LEAST_LEVEL * raster.size else level.offset
+
+
 def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:
     """Cost (S,) of a wall of the map, of such depths (S,), beyond its box."""
     assert surface.box is not None

@@ -7,7 +7,7 @@ import shapely
 
 from linecad.depth.depth_map import DepthMap
 from linecad.depth.normals import Normals
-from linecad.geometry import project
+from linecad.geometry import project, world_rays
 from linecad.model.faces import find_faces
 from linecad.model.regions import find
 from linecad.model.regions.evidence import NEVER, TURNED_COST
@@ -53,6 +53,24 @@ def test_a_tree_before_the_house_takes_no_part_of_its_walls(house, house_regions
 def test_the_feet_of_walls_put_the_ground(house):
     look = Look(house.photo, GroundOfFeet(2.3, 5.0), None)
     assert ("ground", 2, -2.3) in surfaces(find_regions(house.planes, house.lines, house.camera, house.rotation, look))
+
+
+@pytest.mark.parametrize(
+    ("feet", "width", "height"),
+    [(1.86, 0.02, 2.0), (1.86, 0.05, 1.86), (1.95, 0.02, 1.95), (2.1, 0.02, 2.1)],
+    ids=["a kerb higher", "by a coarse map", "hardly higher", "lower"],
+)
+def test_an_exact_map_shows_the_road_below_a_kerb_that_is_hidden(house, feet, width, height):
+    v, u = np.mgrid[:720, :960].astype(float)
+    rays = world_rays(np.stack([u, v], axis=2), house.camera.matrix, house.rotation)
+    depth = np.zeros((720, 960), np.float32)
+    for axis, offset in ((0, 2.0), (1, 8.0), (2, -2.0)):
+        own = house.truth == axis
+        depth[own] = offset / rays[own][:, axis]
+    seen = MappedDepths(DepthMap("map.npz", depth, depth > 0, "z"), "z", 0.0, 1.0, house.camera.matrix, 0.02, width)
+    look = Look(house.photo, GroundOfFeet(feet, 12.0), None, mapped=seen)
+    found = surfaces(find_regions(house.planes, house.lines, house.camera, house.rotation, look))
+    assert [-offset for kind, _, offset in found if kind == "ground"] == pytest.approx([height], rel=0.01)
 
 
 def test_normals_of_a_depth_map_are_looked_at(house, house_regions):
