@@ -73,7 +73,7 @@ class ShownBodies:
         """(B + 1,) the same from where they were at other places, at which some of them were one body."""
         before, own = other.evidence.setting.bodies, self.count
         moved = self.now.log_scale[:own] - extended(other.log_scale[: before.count], before, self.now.evidence)
-        ground = self.now.placement.log_scale[own] - other.placement.log_scale[before.count]
+        ground = self.now.scale_with_ground[own] - other.scale_with_ground[before.count]
         return np.append(moved, ground)
 
     @cached_property

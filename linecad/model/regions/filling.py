@@ -44,6 +44,7 @@ class Filled:
     clutter: shapely.Geometry  # px, the union of all clutter that was seen
     roofs: tuple[Roof, ...] = ()  # before whatever the labels say
     drop: float | None = None  # of the road below the pavement, in heights of the camera above this; None: no kerb
+    lowered: float | None = None  # by which a depth map has the ground lower than where walls stand, in the same unit
     sky: shapely.Geometry = NOWHERE  # px, what is sky for sure, whatever the labels say
     told: tuple[str, ...] = ()  # what a person said and could not be taken, for people
 
@@ -54,10 +55,14 @@ class Filled:
         proof = f"{cells} may cost up to {self.labels.gap:.1%} more than the best; not proven"
         if self.labels.gap == 0:
             proof = f"{cells} is proven best for its costs"
-        if self.drop is None:
-            return (*self.told, proof, *notes_on(self.roofs))
-        step = f"a kerb puts the road {self.drop:.1%} of the camera's height below the ground that walls stand on"
-        return *self.told, proof, f"faces: {step}", *notes_on(self.roofs)
+        steps: tuple[str, ...] = ()
+        if self.drop is not None:
+            step = f"a kerb puts the road {self.drop:.1%} of the camera's height below the ground that walls stand on"
+            steps = (f"faces: {step}",)
+        elif self.lowered is not None:
+            step = f"the ground is as low as the depth map has it, {self.lowered:.1%} of the camera's height below"
+            steps = (f"faces: {step} where walls seem to stand; no kerb is seen",)
+        return *self.told, proof, *steps, *notes_on(self.roofs)
 
 
 def fill(found: Labels, meets: Float, raster: Raster, view: View, named: shapely.Geometry = NOWHERE) -> Filled:

@@ -103,11 +103,11 @@ def find_regions(
     filled = shown.filled
     if trodden is not None and any(surface is trodden for surface in shown.surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
-        road = None if filled.drop is not None else _road_of_map(trodden, raster, look.mapped)
-        if road is not None and not any(surface.kind == "ceiling" for surface in surfaces):
+        road = None if filled.drop is not None or shown.told.areas else _road_of_map(trodden, raster, look.mapped)
+        if road is not None and not any(surface.kind == "ceiling" for surface in filled.labels.surfaces):
             surfaces = [road if surface is trodden else surface for surface in surfaces]
-            shown = sight.show(surfaces, heaven, road if firm is trodden else firm)
-            filled = shown.filled
+            shown = sight.show(surfaces, heaven, firm and road)
+            filled = replace(shown.filled, lowered=float(road.offset / trodden.offset) - 1)
     filled = replace(with_hidden(filled, raster), sky=sure_sky(shown.heaven, raster))
     if look.sketch is not None:
         filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, shown.heaven, raster, view))
@@ -117,15 +117,15 @@ def find_regions(
 def _road_of_map(ground: Surface, raster: Raster, mapped: MappedDepths | None) -> Surface | None:
     """The ground as low as a depth map has it, where that is lower than where walls stand as a road is than a pavement.
 
-    None where the map does not say so, or is not exact enough to, and where lines show the ground. A kerb that the
-    photo shows tells both heights; this is for one that is hidden.
+    None where the map does not say so, or is not exact enough to, and where the ground is a plane of lines. A kerb that
+    the photo shows tells both heights; this is for one that is hidden.
     """
     if mapped is None or mapped.width_of_parts > EXACT or ground.plane is not None:
         return None
-    height = level_of_map(raster)
-    if height is None or not STEPS[0] <= np.log(height / ground.offset) <= STEPS[1]:
+    offset = level_of_map(raster)
+    if offset is None or not STEPS[0] <= np.log(offset / ground.offset) <= STEPS[1]:
         return None
-    return replace(ground, offset=height)
+    return replace(ground, offset=offset)
 
 
 def _ceiling(look: Look, lines: Lines) -> float | None:

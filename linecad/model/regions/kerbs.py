@@ -30,7 +30,7 @@ NEAREST, FURTHEST = 0.5, 12.0  # of what is looked at beside the camera, in heig
 ROW = 0.005  # log of the distance beside the camera
 ALONG, COLUMNS = (0.5, 40.0), 320  # along the street, in heights of the camera, evenly in the log
 FINEST = 0.5 / 1920  # of the photo's width; a row that is narrower there is not told from the next
-FACE = 15  # samples of what is no ground between ground; by a depth map a kerb's face may be a wall
+FACE = 15  # samples; what is no ground and narrower, between ground, may be a kerb's face
 SIDE = 4  # rows on each side of an edge, whose mean colours are compared
 BESIDE = 31  # columns over which a difference of colours is averaged: grain and wheels of cars are shorter
 EDGE = 3.0  # CIE L*a*b*, least difference across an edge
@@ -40,7 +40,7 @@ USUAL, VARYING = 0.075, 0.35  # usual log height, 12 cm at 1.6 m, and by how muc
 LONG, SHORT = 0.08, 0.04  # of the photo's width, that both edges show at least; opposite one of the same height
 SAME_STEP = 0.01  # log height within which both sides of a street have one kerb
 OPEN = 0.45  # share of the view of it in which what lies behind is as unlike the road as elsewhere
-ALIKE = (0.6, 1.6)  # of the usual difference of road and pavement, what is as unlike
+AS_UNLIKE = (0.6, 1.6)  # of the usual difference of road and pavement, what is as unlike
 UNLIKE = 6.0  # CIE L*a*b*, least difference between road and pavement
 PLAIN = 0.6  # share of the contrast at its edges that road or face may have in itself at most
 GREY = 12.0  # CIE a* and b*, most of a road's colour; lawns, floors of wood and tables are no roads. Shadows are blue
@@ -114,20 +114,23 @@ def on_kerbs(filled: Filled, planes: tuple[Plane, ...], raster: Raster, view: Vi
     lower = [_beyond(kerb, kerb.upper - drop, view) for kerb in kerbs]
     upper = [_beyond(kerb, kerb.upper, view) for kerb in kerbs]
     cells = [*labels.cells]
-    on_ground = shapely.union_all([cell for cell, own in zip(cells, labels.label, strict=True) if own == ground])
+    # A wall that a depth map alone shows may be the kerb's face.
+    walls = [number for number, surface in enumerate(labels.surfaces) if surface.box is not None]
+    on_ground = shapely.union_all(np.array(cells, object)[np.isin(labels.label, [ground, *walls])])
     edges = [shapely.intersection(shapely.boundary(part), on_ground) for part in (*lower, *upper)]
     cells = partition.cells_between([*shapely.boundary(np.array(labels.cells, object)), *edges])
     middle = shapely.point_on_surface(np.array(cells, object))
     label = np.full(len(cells), labels.clutter)
     point, old = shapely.STRtree(labels.cells).query(middle, predicate="within")
     label[point] = labels.label[old]
-    was_ground = label == ground
+    was_ground, was_wall = label == ground, np.isin(label, walls)
     added = 1 + len(faces)
     label[label >= labels.sky] += added
     label[was_ground] = len(labels.surfaces)
     for number, (before, behind) in enumerate(zip(lower, upper, strict=True)):
-        label[was_ground & shapely.contains(before, middle)] = len(labels.surfaces) + 1 + number
-        label[was_ground & shapely.contains(behind, middle)] = ground
+        past = shapely.contains(behind, middle)
+        label[(was_ground | was_wall) & shapely.contains(before, middle) & ~past] = len(labels.surfaces) + 1 + number
+        label[was_ground & past] = ground
     surfaces = [*labels.surfaces, road, *faces]
     cell = partition.draw(cells, raster.shape, raster.step)
     labels = replace(labels, surfaces=surfaces, cells=cells, cell=cell, label=label)
@@ -288,7 +291,7 @@ def _length_of_kerb(lane: _Lane, lower: _Edge, upper: _Edge) -> float:
         return 0.0
     both = lower.columns & upper.columns & lane.shown[upper.row : last].all(axis=0)
     length = float(lane.length[lower.row][both].sum())
-    if not both.any() or _share_alike(lane, lower, upper, both) < OPEN:
+    if length == 0 or _share_as_unlike(lane, lower, upper, both) < OPEN:
         return 0.0
     road = np.median(lane.colour[first : lower.row - 1, both], axis=1)
     face = np.median(lane.colour[lower.row + 3 : upper.row - 2, both], axis=1)
@@ -301,23 +304,22 @@ def _length_of_kerb(lane: _Lane, lower: _Edge, upper: _Edge) -> float:
     return length if is_plain and is_told and is_grey else 0.0
 
 
-def _share_alike(lane: _Lane, lower: _Edge, upper: _Edge, usual: Bool) -> float:
+def _share_as_unlike(lane: _Lane, lower: _Edge, upper: _Edge, usual: Bool) -> float:
     """Share of the view of both edges, by length, in which road and pavement differ as in `usual` columns (C,)."""
     near, far = slice(max(0, lower.row - 2 * SIDE), lower.row - 1), slice(upper.row + 2, upper.row + 2 * SIDE + 1)
-    across = _mean(lane, far) - _mean(lane, near)
+    (before, road), (behind, pavement) = _mean(lane, near), _mean(lane, far)
+    across = pavement - road
     middle = np.median(across[usual], axis=0)
-    size = float(middle @ middle)
-    if size < EDGE**2:
-        return 0.0
-    share = across @ middle / size
+    share = across @ middle / max(float(middle @ middle), EDGE**2)
     length = np.where(lane.shown[lower.row] & lane.shown[upper.row], lane.length[lower.row], 0.0)
-    return float(length[(share > ALIKE[0]) & (share < ALIKE[1])].sum() / length.sum())
+    return float(length[before & behind & (share > AS_UNLIKE[0]) & (share < AS_UNLIKE[1])].sum() / length.sum())
 
 
-def _mean(lane: _Lane, rows: slice) -> NDArray[Any]:
-    """Mean colour (C, 3) of some rows of a lane where they are shown."""
-    shown = lane.shown[rows][..., None]
-    return np.asarray((lane.colour[rows] * shown).sum(axis=0) / np.maximum(shown.sum(axis=0), 1))
+def _mean(lane: _Lane, rows: slice) -> tuple[Bool, NDArray[Any]]:
+    """Which columns (C,) of a lane are shown in some rows, and their mean colour (C, 3) there."""
+    shown = lane.shown[rows]
+    count = shown.sum(axis=0)
+    return count > 0, (lane.colour[rows] * shown[..., None]).sum(axis=0) / np.maximum(count, 1)[:, None]
 
 
 def _spread(rows: NDArray[Any]) -> float:

@@ -1,8 +1,8 @@
 """What a depth map says of the parts of a photo: how deep they are, and walls that no line shows.
 
 The map has been laid onto the bodies, so that its depths are those of the scene but for the errors of its walls. A
-surface that is off the map's depth by several widths of these errors is not what is seen there. Where none is near it
-and the map is flat along an axis, the map has a wall that lines do not.
+surface that is off the map's depth by several widths of these errors is not what is seen there, unless the map has it
+elsewhere as a whole. Where none is near it and the map is flat along an axis, the map has a wall that lines do not.
 """
 
 from dataclasses import dataclass, replace
@@ -30,6 +30,7 @@ LEAST_WALL = 0.01  # of the photo's samples, of a wall that only the map shows
 LEAST_LEVEL = 0.04  # the same of a ground or ceiling that neither feet nor lines show
 MOST_WALLS = 8
 BESIDE_LINES, LEAST_BESIDE = 3.0, 40  # samples from lines, and so many, that tell by how much the map is off a surface
+MOST_OFF = 1.0  # log depth, by which the map may have a surface elsewhere
 AGREEING, MOST_RIGHT = 0.5, 0.2  # least share of them that says the same, and most that has the surface where it is
 SAME_LEVEL = 0.12  # log height within which feet or lines know the ground better than the map
 
@@ -83,8 +84,9 @@ def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float, limit: f
     """Costs (S, K + 2) of surfaces of such camera depths (S, K), of the sky and of clutter beside what a map says.
 
     0 where the map says nothing. Errors of walls are Cauchy's, and a whole wall of the map may be off by several
-    widths: it tells which surface is seen, not that none is. So the nearest costs nothing. What has a depth within the
-    `limit` is no sky, and what a surface explains no clutter.
+    widths: it tells which surface is seen, not that none is. So the nearest costs nothing, and a surface may be as
+    deep as it stands or as the map has it as a whole. What has a depth within the `limit` is no sky, and what a surface
+    explains no clutter.
     """
     assert raster.map_depth is not None
     levels = np.array([surface.kind in ("ground", "ceiling") for surface in surfaces], bool)
@@ -159,9 +161,9 @@ def _facing(raster: Raster) -> Int:
 
 
 def _factors(raster: Raster, surfaces: list[Surface]) -> Float:
-    """Logs (K,) of the depths that the map gives surfaces over theirs: beside their lines, levels by its own level.
+    """Logs (K,) of the depths that the map gives surfaces over theirs: beside their lines, a level without by its own.
 
-    0 where it says nothing, or not one thing.
+    0 where it says nothing, or not one thing, or something that can hardly be the same surface.
     """
     assert raster.map_depth is not None
     facing = _facing(raster)
@@ -176,16 +178,16 @@ def _factors(raster: Raster, surfaces: list[Surface]) -> Float:
             if len(off) < LEAST_BESIDE:
                 continue
             middle = float(np.median(off))
-            as_told = np.abs(off - middle)
-            if (as_told < WITHIN * raster.map_width).mean() >= AGREEING and (
-                np.abs(off) < as_told
+            from_middle = np.abs(off - middle)
+            if (from_middle < WITHIN * raster.map_width).mean() >= AGREEING and (
+                np.abs(off) < from_middle
             ).mean() <= MOST_RIGHT:
                 found[number] = middle
         elif surface.kind in ("ground", "ceiling"):
             count, level = _wall(UP, float(np.sign(surface.offset)), seen, raster)
             if level is not None and count >= LEAST_LEVEL * raster.size:
                 found[number] = np.log(level.offset / surface.offset)
-    return found
+    return np.where(np.abs(found) < MOST_OFF, found, 0.0)
 
 
 def _wall(axis: int, side: float, free: Bool, raster: Raster) -> tuple[int, Surface | None]:
@@ -217,7 +219,7 @@ def _levelled(surface: Surface, raster: Raster, facing: Int) -> Surface:
 
 
 def level_of_map(raster: Raster) -> float | None:
-    """The offset of the ground that most of a map shows; None where it shows too little of one."""
+    """The offset, below 0, of the level below the camera that most of a map shows; None where none is large enough."""
     count, level = _wall(UP, -1.0, _facing(raster) == UP, raster)
     return None if level is None or count < LEAST_LEVEL * raster.size else level.offset
 

@@ -1,5 +1,7 @@
 """Bodies as the page is told of them: facts move them at once, and the scene that is built behind agrees."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,7 @@ import linecad.editing.bodies
 from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.bodies import NODES, at_once
 from linecad.options import Options
+from linecad.ties.depth_ties import MapPlaces
 from linecad.ties.placing import place_bodies
 from linecad.ties.sides import Part
 from solver.options import SolveOptions
@@ -62,6 +65,17 @@ class TestDocument:
         assert body["guess"] == (body["probability"] < 0.5)
         assert [tie["words"] for tie in body["ties"] if tie["counted"]] == ["a foot on the ground"]
         assert [tie["other"] for tie in body["ties"]] == [None]
+
+    def test_where_a_map_moved_the_ground_it_moves_with_its_bodies(self, solved):
+        bodies = solved.session.now().model.bodies
+        now, count = bodies.now, bodies.count
+        assert now.mapped is None
+        silent = np.full(count, np.nan)
+        mapped = MapPlaces(
+            now.log_scale[:count] + 0.2, now.placement.log_scale[count] + 0.2, 0.0, silent > 0, silent, 0.02, 3.0
+        )
+        moved = replace(bodies, now=replace(now, mapped=mapped)).moved_from(bodies.solved)
+        assert moved == pytest.approx(np.full(count + 1, 0.2))
 
     def test_before_the_first_solve_there_are_none(self, page):
         state = page.state()

@@ -322,6 +322,8 @@ def test_the_ground_stands_behind_the_bodies_also_where_a_map_is_heard(avenue_wa
     bodies = found.setting.bodies.count
     assert found.places.scale_with_ground[:bodies].tolist() == found.places.log_scale[:bodies].tolist()
     assert found.places.scale_with_ground[bodies:].tolist() == [found.placement.log_scale[bodies]]
+    moved = replace(found.places, mapped=replace(found.places.mapped, ground=0.7))
+    assert moved.scale_with_ground[bodies:].tolist() == [0.7]
 
 
 @pytest.mark.usefixtures("heard_by_the_program")

@@ -142,19 +142,36 @@ def test_what_parts_one_road_for_a_while_is_no_kerb():
     assert len(find_kerbs(*covered(scene, 0, 60, ASPHALT))) == 1
 
 
-def test_a_face_that_is_no_ground_is_one_of_a_kerb_all_the_same():
+def beyond(view, distance):
+    """What of the photo shows the ground to the left of the camera, further than a distance."""
+    corners = np.array(PHOTO.exterior.coords[:-1])
+    rays = world_rays(corners, CAMERA.matrix, view.rotation)
+    below = partition.positive_part(corners, -rays[:, 2])
+    return below.intersection(partition.positive_part(corners, -rays[:, 0] + distance * rays[:, 2]))
+
+
+@pytest.mark.parametrize("by_map", [True, False], ids=["a wall of a map", "a wall of lines"])
+def test_a_wall_as_narrow_as_a_face_is_the_face_where_a_map_alone_shows_it(by_map):
     labels, raster, view = street([-2.0])
-    rays = raster.rays
-    away = -rays[:, 0] / np.maximum(-rays[:, 2], 1e-9)
-    face = (away > 2.0 / 1.08) & (away < 2.0)
-    assert face.sum() > 200
-    walled = replace(
-        labels,
-        label=np.append(labels.label, len(labels.surfaces) + 1),
-        cell=np.where(face, len(labels.label), labels.cell.ravel()).reshape(labels.cell.shape),
-    )
-    (found,) = find_kerbs(walled, raster, view)
-    assert found.upper == pytest.approx(np.log(2.0), abs=STEP)
+    strip = beyond(view, 2.0 / 1.08).difference(beyond(view, 2.0))
+    box = np.array([[-2.0, -40.0, -1.08], [-2.0, 40.0, -1.0]]) if by_map else None
+    wall = Surface("wall", 0, -2.0, NO_LINES, None, box)
+    cells = partition.cells_between([*shapely.boundary(np.array(labels.cells, object)), shapely.boundary(strip)])
+    middle = [cell.point_on_surface() for cell in cells]
+    is_sky = [any(labels.cells[own].contains(each) for own in np.flatnonzero(labels.label)) for each in middle]
+    label = np.where(is_sky, 2, [int(strip.contains(each)) for each in middle])
+    cell = partition.draw(cells, raster.shape, raster.step)
+    walled = replace(labels, surfaces=[*labels.surfaces, wall], cells=cells, cell=cell, label=label)
+    assert sum(cell.area for cell, own in zip(cells, label, strict=True) if own == 1) == pytest.approx(strip.area)
+
+    (kerb,) = find_kerbs(walled, raster, view)
+    assert kerb.upper == pytest.approx(np.log(2.0), abs=STEP)
+    found = on_kerbs(Filled(walled, shapely.Polygon()), (), raster, view).labels
+    area = dict.fromkeys(("ground", "wall", "kerb"), 0.0)
+    for cell, own in zip(found.cells, found.label, strict=True):
+        if own < found.sky:
+            area[found.surfaces[own].kind] += cell.area
+    assert area["kerb" if by_map else "wall"] == pytest.approx(strip.area, rel=0.15)
 
 
 def test_neither_a_room_nor_a_scene_without_photo_or_ground_has_one():

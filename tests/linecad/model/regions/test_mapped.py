@@ -158,6 +158,7 @@ def test_a_ground_without_lines_is_the_level_that_the_map_has_elsewhere():
     ground = Surface("ground", 2, -1.4, NO_LINES, None)
     assert cost_of(ground, raster) == 0.0
     assert cost_of(replace(ground, kind="wall"), raster) > 0.2
+    assert cost_of(replace(ground, offset=-0.6), raster) > 0.2, "three times as low is another level"
 
 
 def test_where_the_map_has_nothing_it_says_nothing():
