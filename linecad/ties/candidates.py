@@ -25,6 +25,7 @@ from linecad.ties.walls import reach_below
 
 Kind = Literal["bundle", "plane", "level", "ground"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
+CONNECTING: tuple[Kind, ...] = ("bundle", "plane")  # kinds of ties that say that two bodies are one thing
 
 SAME_RATIO = 0.015  # log ratio within which two pieces of evidence ask for the same
 NEAR, FAR = 100.0, 800.0  # px at the reference width, over which nearness of bodies fades
@@ -134,7 +135,7 @@ def find_candidates(setting: Setting, looks: Looks) -> list[Candidate]:
     for plane in find_shared_planes(setting):
         planes.setdefault(plane.bodies, []).append(plane)
     levels, sizes, colours = find_levels(setting), find_sizes(setting), find_colours(setting, looks.beside)
-    found = [_of_foot(setting, foot) for foot in find_feet(setting, looks.feet)]
+    found = find_ground(setting, looks)
     for first in range(setting.bodies.count):
         for second in range(first + 1, setting.bodies.count):
             bodies = (first, second)
@@ -144,6 +145,11 @@ def find_candidates(setting: Setting, looks: Looks) -> list[Candidate]:
                 known = Pair(setting, bodies, pair, of_sizes, likeness(colours, first, second))
                 found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []))
     return found
+
+
+def find_ground(setting: Setting, looks: Looks) -> list[Candidate]:
+    """The candidates between bodies and the ground alone."""
+    return [_of_foot(setting, foot) for foot in find_feet(setting, looks.feet)]
 
 
 def _of_pair(pair: Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> list[Candidate]:

@@ -8,7 +8,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.corrections.corrected import ToldFact
 from linecad.corrections.edits import Cut
-from linecad.decide.stability import LEAST_TOLERANCE, resample
+from linecad.decide.stability import LEAST_TOLERANCE, Fits, resample
 from linecad.line_graph import LineGraph
 from linecad.progress import StageReport, silent
 from linecad.ties.bodies import RigidBodies, agreeing, find_rigid_bodies, with_hanging
@@ -20,6 +20,7 @@ from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces, find_pieces
 from linecad.ties.seams import Seam, find_seams
 from linecad.ties.setting import Setting, Sight
+from linecad.ties.two_grounds import Parted, part_by_feet
 from solver.annotations import check_annotations, read_annotations
 from solver.depths import end_ratios
 from solver.families import find_families
@@ -70,12 +71,11 @@ def find_evidence(
         ratios = end_ratios(graph)
         check_annotations(graph, find_families(graph, frozenset(FAMILIES)), options, real, ratios)
     on_stage("fitting depths, with and without some of the lines")
-    setting, reference, of_parts = _setting(graph, sight, options, (real, fake), facts, parts, new)
+    looks, parted, setting, reference, of_parts = _setting(graph, sight, options, (real, fake), facts, parts, new)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
-    looks = Looks(setting)
-    candidates = find_candidates(setting, looks)
+    candidates = parted.keep_apart(find_candidates(setting, looks), setting.bodies.body)
     seams = find_seams(setting, looks)
-    pieces = find_pieces(setting, seams, looks)
+    pieces = parted.keep_pieces_apart(find_pieces(setting, seams, looks))
     heard = hear(setting, candidates, sight.depth)
     found = Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake, reference)
     if not parts or sight.depth is None:
@@ -94,28 +94,38 @@ def _setting(
     facts: Sequence[ToldFact],
     parts: Sequence[MapPart],
     new: Sequence[int],
-) -> tuple[Setting, int, list[tuple[MapPart, Int]]]:
+) -> tuple[Looks, Parted, Setting, int, list[tuple[MapPart, Int]]]:
     """Bodies of the lines as they were found; fitted again only where what a person said contradicts them inside.
 
-    The one that others are placed relative to, and the lines that each part has in one of the bodies, or in one of
-    those that a person made of it. `called` are the crossings (E,) that are called real, and fake.
+    Looks at the photo; where feet part bodies; the setting with the bodies as they are; the one that others are placed
+    relative to; and the lines that each part has in one of the bodies, or in one of those that a person made of it.
+    `called` are the crossings (E,) that are called real, and fake.
 
     So a word about two bodies moves these, and what is far from them keeps its place.
     """
     real, fake = called
     log_depth = RobustFit(graph).depths()
-    bodies = find_rigid_bodies(graph, log_depth, fits := resample(graph, options.seed, FITS))
+    looks, parted = _look(graph, log_depth, fits := resample(graph, options.seed, FITS), sight)
+    bodies = parted.bodies
     believed = replace(graph, informative=graph.informative & ~fake)
     known = _with_new(parts, new, bodies, believed, log_depth)
     if _contradicts(graph, log_depth, _parted(bodies, known), real, fake):
         believed = replace(believed, weight=np.where(real, CERTAIN, graph.weight))
         log_depth = RobustFit(believed).depths()
-        bodies = find_rigid_bodies(believed, log_depth, fits := resample(believed, options.seed, FITS))
+        looks, parted = _look(believed, log_depth, fits := resample(believed, options.seed, FITS), sight)
+        bodies = parted.bodies
         known = _with_new(parts, new, bodies, believed, log_depth)
     told = cut_bodies(_parted(bodies, known), believed, log_depth, facts)
     of_parts = [(part, lines) for part in known for lines in _by_body(part, told.body)]
     cut = _together(told, bodies, known)
-    return Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut), of_parts
+    return looks, parted, Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut), of_parts
+
+
+def _look(graph: LineGraph, log_depth: Float, fits: Fits, sight: Sight) -> tuple[Looks, Parted]:
+    """Looks at the photo, and the bodies of the lines where no feet stand on two grounds."""
+    rigid = Setting(graph, log_depth, find_rigid_bodies(graph, log_depth, fits), fits, sight)
+    looks = Looks(rigid)
+    return looks, part_by_feet(rigid, looks)
 
 
 def _parted(bodies: RigidBodies, parts: Sequence[MapPart]) -> RigidBodies:

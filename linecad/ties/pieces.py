@@ -122,7 +122,7 @@ def with_pieces_heard(seams: list[Seam], pieces: Pieces, log_scale: Float) -> li
     "stays" is the share of pairs of lines across a seam that the local search leaves as is; `log_scale` (B + 1,) are
     the places of the bodies and, last, of the ground, from which the search of pieces begins.
     """
-    ties, feet = weigh_candidates(pieces.candidates, pieces.size), _feet(pieces)
+    ties, feet = weigh_candidates(pieces.candidates, pieces.size), chances_of_feet(pieces)
     start = np.append(log_scale[pieces.body], log_scale[-1])
     moved = climb(ties, start)[0] - start if len(ties) else np.zeros(len(start))
     return [replace(seam, features=seam.features | _by_pieces(seam, pieces, moved, feet)) for seam in seams]
@@ -139,7 +139,7 @@ def _share_that_stays(seam: Seam, pieces: Pieces, moved: Float) -> float:
     return float(same.mean())
 
 
-def _feet(pieces: Pieces) -> Float:
+def chances_of_feet(pieces: Pieces) -> Float:
     """(M, 3) of the feet of pieces: the piece, the log ratio to the ground, and how likely that is right."""
     feet = [each for each in pieces.candidates if each.kind == "ground"]
     return np.array([(foot.bodies[0], foot.log_ratio, expit(log_odds_of(foot))) for foot in feet]).reshape(-1, 3)

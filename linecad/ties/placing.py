@@ -13,7 +13,7 @@ from linecad.geometry import lengths
 from linecad.line_graph import LineGraph, Solution
 from linecad.progress import StageReport, silent
 from linecad.scene import DepthMapReport
-from linecad.ties.candidates import Candidate
+from linecad.ties.candidates import CONNECTING, Candidate
 from linecad.ties.depth_parts import right_by_map
 from linecad.ties.depth_ties import DepthWitness, MapPlaces, follow_map, report_of, ties_to_map
 from linecad.ties.evidence import Evidence, find_evidence
@@ -32,8 +32,6 @@ from solver.depths import end_ratios, near_log_ratio
 from solver.options import OnProgress, SolveOptions
 from solver.potentials import fit_near_depths
 from solver.robust import agreeing_with
-
-CONNECTING = ("bundle", "plane")  # kinds of ties that say that two bodies are one thing
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,72 @@
+"""Bodies that stand on two grounds: two houses of a row, one set back, whose lines meet at the corner between them.
+
+The courses of the farther house end at a corner of the nearer in a dozen crossings, all of which ask for one plane, and
+no other crossing speaks against them. But where the feet of both are seen, that of the farther one stands higher in
+the photo. So a body is parted at a seam where feet of its two sides are clearly apart, and what seems to join both
+sides there, a bundle of crossings or a plane, ties them no more.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from linecad.arrays import Float, Int
+from linecad.ties.bodies import RigidBodies
+from linecad.ties.candidates import CONNECTING, Candidate, find_ground
+from linecad.ties.looks import Looks
+from linecad.ties.pieces import SAME_GROUND, Pieces, chances_of_feet, part_bodies
+from linecad.ties.seams import Seam, find_seams
+from linecad.ties.setting import Setting
+
+APART = 0.12  # log ratio between feet: a kerb or a plinth is lower
+CLEAR = 0.08  # square of the chance that both of two feet are right, less that of two which agree
+
+
+@dataclass(frozen=True, eq=False)
+class Parted:
+    """Bodies parted where they stand on two grounds."""
+
+    bodies: RigidBodies
+    at: tuple[Seam, ...]  # the seams that were parted
+
+    def keep_apart(self, candidates: Sequence[Candidate], body: Int) -> list[Candidate]:
+        """The candidates between nodes with lines by `body` (N,), but for what joins the sides of a parted seam."""
+        pairs = {
+            (min(one, other), max(one, other))
+            for seam in self.at
+            for one in np.unique(body[seam.larger]).tolist()
+            for other in np.unique(body[seam.smaller]).tolist()
+        }
+        return [each for each in candidates if each.kind not in CONNECTING or each.bodies not in pairs]
+
+    def keep_pieces_apart(self, pieces: Pieces) -> Pieces:
+        """The same of pieces."""
+        return replace(pieces, candidates=self.keep_apart(pieces.candidates, pieces.piece))
+
+
+def part_by_feet(setting: Setting, looks: Looks) -> Parted:
+    """The bodies of a setting, parted at seams whose sides clearly stand on two grounds, the largest sides first.
+
+    `looks` are those at the photo.
+    """
+    seams = find_seams(setting, looks)
+    piece, of_piece = part_bodies(setting.bodies, seams)
+    pieces = Pieces(piece, of_piece, find_ground(replace(setting, bodies=RigidBodies(piece, len(of_piece))), looks))
+    feet = chances_of_feet(pieces)
+    body, count, at = setting.bodies.body.copy(), setting.bodies.count, []
+    for seam in sorted(seams, key=lambda seam: -len(seam.smaller)):
+        whole = np.unique(body[np.concatenate([seam.larger, seam.smaller])])
+        larger, smaller = (feet[np.isin(feet[:, 0], pieces.of(side))] for side in (seam.larger, seam.smaller))
+        if len(whole) == 1 and clearly_apart(larger, smaller) > CLEAR:
+            body[seam.smaller] = count
+            count += 1
+            at.append(seam)
+    return Parted(RigidBodies(body, count), tuple(at))
+
+
+def clearly_apart(one: Float, other: Float) -> float:
+    """How clearly feet (M, 3) of two sides, as `chances_of_feet` gives them, stand on two grounds, from -1 to 1."""
+    apart = np.abs(one[:, None, 1] - other[None, :, 1])
+    both = (one[:, None, 2] * other[None, :, 2]) ** 2
+    return float(both[apart >= APART].max(initial=0.0) - both[apart < SAME_GROUND].max(initial=0.0))
