@@ -105,14 +105,14 @@ def _setting(
     """
     real, fake = called
     log_depth = RobustFit(graph).depths()
-    looks, parted = _look(graph, log_depth, fits := resample(graph, options.seed, FITS), sight)
+    looks, parted = _look(graph, log_depth, fits := resample(graph, options.seed, FITS), sight, real)
     bodies = parted.bodies
     believed = replace(graph, informative=graph.informative & ~fake)
     known = _with_new(parts, new, bodies, believed, log_depth)
     if _contradicts(graph, log_depth, _parted(bodies, known), real, fake):
         believed = replace(believed, weight=np.where(real, CERTAIN, graph.weight))
         log_depth = RobustFit(believed).depths()
-        looks, parted = _look(believed, log_depth, fits := resample(believed, options.seed, FITS), sight)
+        looks, parted = _look(believed, log_depth, fits := resample(believed, options.seed, FITS), sight, real)
         bodies = parted.bodies
         known = _with_new(parts, new, bodies, believed, log_depth)
     told = cut_bodies(_parted(bodies, known), believed, log_depth, facts)
@@ -121,11 +121,11 @@ def _setting(
     return looks, parted, Setting(believed, log_depth, cut, fits, sight), _reference(bodies, cut), of_parts
 
 
-def _look(graph: LineGraph, log_depth: Float, fits: Fits, sight: Sight) -> tuple[Looks, Parted]:
-    """Looks at the photo, and the bodies of the lines where no feet stand on two grounds."""
+def _look(graph: LineGraph, log_depth: Float, fits: Fits, sight: Sight, real: Bool) -> tuple[Looks, Parted]:
+    """Looks at the photo, and bodies of the lines that stand on one ground each, or are held by `real` crossings."""
     rigid = Setting(graph, log_depth, find_rigid_bodies(graph, log_depth, fits), fits, sight)
     looks = Looks(rigid)
-    return looks, part_by_feet(rigid, looks)
+    return looks, part_by_feet(rigid, looks, graph.edges[real])
 
 
 def _parted(bodies: RigidBodies, parts: Sequence[MapPart]) -> RigidBodies:

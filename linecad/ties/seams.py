@@ -84,6 +84,12 @@ class Seam:
         return float(1 / (1 + np.exp(-log_odds)))
 
 
+def without_feet(seam: Seam) -> float:
+    """The probability that both sides stand as they do in the body, where neither feet nor pieces were heard."""
+    told = seam.features | {"stays": 1.0, "one ground": 0.0}
+    return replace(seam, features=told).probability
+
+
 def find_seams(setting: Setting, looks: Looks) -> list[Seam]:
     """The seams of all bodies: of each the weakest cut, and of either side the weakest again, while they are weak.
 

@@ -12,14 +12,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.arrays import Float, Int
-from linecad.ties.bodies import RigidBodies
+from linecad.ties.bodies import RigidBodies, agreeing, with_hanging
 from linecad.ties.candidates import CONNECTING, Candidate, find_ground
 from linecad.ties.looks import Looks
 from linecad.ties.pieces import SAME_GROUND, Pieces, chances_of_feet, part_bodies
-from linecad.ties.seams import Seam, find_seams
+from linecad.ties.seams import Seam, find_seams, without_feet
 from linecad.ties.setting import Setting
 
 APART = 0.12  # log ratio between feet: a kerb or a plinth is lower
+JOINT = APART / 2  # log ratio of what seems to join both sides where they were one body
+MOST_SURE = 0.98  # probability of a seam without what feet say, from which on these do not part it
 CLEAR = 0.08  # square of the chance that both of two feet are right, less that of two which agree
 
 
@@ -38,31 +40,58 @@ class Parted:
             for one in np.unique(body[seam.larger]).tolist()
             for other in np.unique(body[seam.smaller]).tolist()
         }
-        return [each for each in candidates if each.kind not in CONNECTING or each.bodies not in pairs]
+        return [
+            each
+            for each in candidates
+            if each.kind not in CONNECTING or abs(each.log_ratio) >= JOINT or each.bodies not in pairs
+        ]
 
     def keep_pieces_apart(self, pieces: Pieces) -> Pieces:
         """The same of pieces."""
         return replace(pieces, candidates=self.keep_apart(pieces.candidates, pieces.piece))
 
 
-def part_by_feet(setting: Setting, looks: Looks) -> Parted:
-    """The bodies of a setting, parted at seams whose sides clearly stand on two grounds, the largest sides first.
+def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
+    """The bodies of a setting, parted at seams whose sides clearly stand on two grounds.
 
-    `looks` are those at the photo.
+    `looks` are those at the photo; `real` (K, 2) are the lines of crossings that a person calls real, which hold both
+    sides together. Other lines of a body go with the side that crossings tie them to.
     """
     seams = find_seams(setting, looks)
     piece, of_piece = part_bodies(setting.bodies, seams)
     pieces = Pieces(piece, of_piece, find_ground(replace(setting, bodies=RigidBodies(piece, len(of_piece))), looks))
     feet = chances_of_feet(pieces)
     body, count, at = setting.bodies.body.copy(), setting.bodies.count, []
-    for seam in sorted(seams, key=lambda seam: -len(seam.smaller)):
+    for seam in seams:  # of a body and its parts that of the body comes first
         whole = np.unique(body[np.concatenate([seam.larger, seam.smaller])])
         larger, smaller = (feet[np.isin(feet[:, 0], pieces.of(side))] for side in (seam.larger, seam.smaller))
-        if len(whole) == 1 and clearly_apart(larger, smaller) > CLEAR:
-            body[seam.smaller] = count
-            count += 1
-            at.append(seam)
+        if len(whole) > 1 or clearly_apart(larger, smaller) <= CLEAR:
+            continue
+        if without_feet(seam) > MOST_SURE or _joined(seam, real):
+            continue
+        others = np.setdiff1d(np.flatnonzero(body == whole[0]), np.concatenate([seam.larger, seam.smaller]))
+        body[seam.smaller] = count
+        body[others] = _sides_of(others, body, setting)
+        count += 1
+        at.append(seam)
     return Parted(RigidBodies(body, count), tuple(at))
+
+
+def _joined(seam: Seam, real: Int) -> bool:
+    """Whether a crossing (K, 2) joins both sides."""
+    one, other = (np.isin(real, side) for side in (seam.larger, seam.smaller))
+    return bool((one.any(axis=1) & other.any(axis=1)).any())
+
+
+def _sides_of(others: Int, body: Int, setting: Setting) -> Int:
+    """Which of the bodies (N,) that parts of one are in each of some other lines of it hangs on, or its own."""
+    graph, loose = setting.graph, np.full(len(body), -1)
+    whole = setting.bodies.body
+    inside = agreeing(graph, setting.log_depth) & (whole[graph.edges[:, 0]] == whole[graph.edges[:, 1]])
+    known = np.setdiff1d(np.flatnonzero(body >= 0), others)
+    loose[known] = body[known]
+    hung = with_hanging(loose, graph.edges[inside], graph.weight[inside])[others]
+    return np.where(hung >= 0, hung, body[others])
 
 
 def clearly_apart(one: Float, other: Float) -> float:

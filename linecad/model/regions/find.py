@@ -103,7 +103,7 @@ def find_regions(
     filled = shown.filled
     if trodden is not None and any(surface is trodden for surface in shown.surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
-        road = None if filled.drop is not None or shown.told.areas else _road_of_map(trodden, raster, look.mapped)
+        road = None if filled.drop is not None else _road_of_map(trodden, raster, look.mapped)
         if road is not None and not any(surface.kind == "ceiling" for surface in filled.labels.surfaces):
             surfaces = [road if surface is trodden else surface for surface in surfaces]
             shown = sight.show(surfaces, heaven, firm and road)

@@ -21,6 +21,7 @@ from linecad.geometry import lengths, world_rays
 from linecad.model.regions import partition
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.labelling import Labels
+from linecad.model.regions.mapped import is_of_map_at
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
@@ -114,8 +115,7 @@ def on_kerbs(filled: Filled, planes: tuple[Plane, ...], raster: Raster, view: Vi
     lower = [_beyond(kerb, kerb.upper - drop, view) for kerb in kerbs]
     upper = [_beyond(kerb, kerb.upper, view) for kerb in kerbs]
     cells = [*labels.cells]
-    # A wall that a depth map alone shows may be the kerb's face.
-    walls = [number for number, surface in enumerate(labels.surfaces) if surface.box is not None]
+    walls = [number for number, each in enumerate(labels.surfaces) if any(is_of_map_at(each, one) for one in faces)]
     on_ground = shapely.union_all(np.array(cells, object)[np.isin(labels.label, [ground, *walls])])
     edges = [shapely.intersection(shapely.boundary(part), on_ground) for part in (*lower, *upper)]
     cells = partition.cells_between([*shapely.boundary(np.array(labels.cells, object)), *edges])

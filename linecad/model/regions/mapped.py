@@ -224,6 +224,13 @@ def level_of_map(raster: Raster) -> float | None:
     return None if level is None or count < LEAST_LEVEL * raster.size else level.offset
 
 
+def is_of_map_at(surface: Surface, place: Surface) -> bool:
+    """Whether a surface is a wall that a map alone shows, and is where another one is, within SAME_LEVEL."""
+    if surface.box is None or surface.axis != place.axis or surface.offset * place.offset <= 0:
+        return False
+    return bool(abs(np.log(surface.offset / place.offset)) < SAME_LEVEL)
+
+
 def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:
     """Cost (S,) of a wall of the map, of such depths (S,), beyond its box."""
     assert surface.box is not None

@@ -1,6 +1,7 @@
 """Bodies whose sides stand on two grounds by their feet: where they are parted, and what ties them no more."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,11 +11,13 @@ from linecad.ties.bodies import RigidBodies
 from linecad.ties.candidates import Candidate
 from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces
+from linecad.ties.seams import LOG_ODDS as SEAM
 from linecad.ties.seams import Seam
 from linecad.ties.table import AT_ONCE, LOG_ODDS
-from linecad.ties.two_grounds import APART, CLEAR, Parted, clearly_apart, part_by_feet
+from linecad.ties.two_grounds import APART, CLEAR, MOST_SURE, Parted, clearly_apart, part_by_feet, without_feet
 
-OUTER, INNER = Seam(np.arange(5), np.arange(5, 8), {}), Seam(np.arange(5, 7), np.array([7]), {})
+DOUBTFUL = dict.fromkeys(SEAM, 0.0)
+OUTER, INNER = Seam(np.arange(5), np.arange(5, 8), DOUBTFUL), Seam(np.arange(5, 7), np.array([7]), DOUBTFUL)
 SURE, LIKELY, UNLIKELY = 3.0, 1.0, -1.0  # log-odds of feet
 
 
@@ -29,11 +32,13 @@ def parted(build_town, build_row, build_setting, monkeypatch):
     row = build_town(*build_row(3))
     setting = build_setting(row, body=np.zeros(len(row.part), int))
 
-    def part(*feet, body=(0,) * 8):
-        monkeypatch.setattr(module, "find_seams", lambda *_: [INNER, OUTER])
+    def part(*feet, seams=(OUTER, INNER), real=(), edges=()):
+        monkeypatch.setattr(module, "find_seams", lambda *_: list(seams))
         monkeypatch.setattr(module, "find_ground", lambda *_: list(feet))
-        bodies = RigidBodies(np.array(body), max(body) + 1)
-        return part_by_feet(replace(setting, bodies=bodies), Looks(setting))
+        joined = SimpleNamespace(edges=np.array(edges, int).reshape(-1, 2), weight=np.ones(len(edges)))
+        monkeypatch.setattr(module, "agreeing", lambda *_: np.ones(len(edges), bool))
+        whole = replace(setting, graph=joined, log_depth=np.zeros(8), bodies=RigidBodies(np.zeros(8, int), 1))
+        return part_by_feet(whole, Looks(setting), np.array(real, int).reshape(-1, 2))
 
     return part
 
@@ -68,6 +73,27 @@ def test_a_body_stays_one_where_feet_are_not_clearly_apart(parted, feet):
     assert found.at == ()
 
 
+def test_other_lines_go_with_the_side_that_crossings_tie_them_to(parted):
+    """The larger side of the outer seam is parted; its smaller side hangs on the part that got another number."""
+    outer, inner = Seam(np.arange(6), np.array([6, 7]), DOUBTFUL), Seam(np.arange(3), np.arange(3, 6), DOUBTFUL)
+    feet = (foot(0, 2.5, SURE), foot(1, 2.8, SURE))
+    found = parted(*feet, seams=(outer, inner), edges=[(5, 6), (6, 7)])
+    assert found.bodies.body.tolist() == [0, 0, 0, 1, 1, 1, 1, 1]
+    assert parted(*feet, seams=(outer, inner), edges=[(2, 6), (6, 7)]).bodies.body.tolist() == [0, 0, 0, 1, 1, 1, 0, 0]
+
+
+def test_a_crossing_called_real_holds_both_sides(parted):
+    feet = (foot(0, 2.5, SURE), foot(1, 2.8, SURE))
+    assert parted(*feet, real=[(2, 6)]).bodies.count == 1
+    assert parted(*feet, real=[(2, 4), (6, 7)]).bodies.count == 2
+
+
+def test_feet_part_no_seam_that_all_else_holds(parted):
+    sound = Seam(np.arange(5), np.arange(5, 8), DOUBTFUL | {"supported": 1.0, "plane beside": 1.0, "shade": 2.0})
+    assert without_feet(sound) > MOST_SURE
+    assert parted(foot(0, 2.5, SURE), foot(1, 2.8, SURE), seams=[sound]).bodies.count == 1
+
+
 def test_what_is_clear_is_the_square_of_both_chances():
     chance = np.sqrt(0.5)
     one, apart = np.array([[0.0, 2.5, chance]]), np.array([[1.0, 2.8, chance]])
@@ -78,14 +104,15 @@ def test_what_is_clear_is_the_square_of_both_chances():
     assert CLEAR < 0.25
 
 
-def joint(kind, bodies):
-    return Candidate(kind, bodies, 0.0, -1, {})
+def joint(kind, bodies, log_ratio=0.0):
+    return Candidate(kind, bodies, log_ratio, -1, {})
 
 
 def test_what_seems_to_join_both_sides_ties_them_no_more():
     body = np.array([1, 1, 1, 2, 2, 3, 3, 0])
     sides = Parted(RigidBodies(body, 4), (OUTER,))  # bodies 1 and 2 are of the larger side, 3 and 0 of the other
     kept = [joint("bundle", (1, 2)), joint("level", (1, 3)), joint("ground", (1, 4)), joint("bundle", (0, 3))]
+    kept += [joint("bundle", (1, 3), 0.15), joint("plane", (2, 3), -0.1)]
     gone = [joint("bundle", (1, 3)), joint("plane", (2, 3)), joint("bundle", (0, 1))]
     assert sides.keep_apart([*kept, *gone], body) == kept
     pieces = Pieces(body, np.arange(4), [*kept, *gone])

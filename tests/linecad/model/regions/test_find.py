@@ -77,17 +77,17 @@ def test_an_exact_map_shows_the_road_below_a_kerb_that_is_hidden(house, feet, wi
     assert all(float(note.split("has it, ")[1].split("%")[0]) == pytest.approx(7.5, abs=0.3) for note in said)
 
 
-def test_where_a_person_tells_what_is_shown_a_map_lowers_no_ground(house):
+def test_what_a_person_tells_elsewhere_leaves_the_ground_that_a_map_lowered(house):
     v, u = np.mgrid[:720, :960].astype(float)
     rays = world_rays(np.stack([u, v], axis=2), house.camera.matrix, house.rotation)
     ground = house.truth == 2
     depth = np.where(ground, -2.0 / np.where(ground, rays[..., 2], 1.0), 0.0).astype(np.float32)
     seen = MappedDepths(DepthMap("map.npz", depth, depth > 0, "z"), "z", 0.0, 1.0, house.camera.matrix, 0.02, 0.02)
     clutter = Region(((20.0, 640.0), (120.0, 640.0), (120.0, 700.0), (20.0, 700.0)), "clutter")
-    for faces, height in (((), 2.0), ((clutter,), 1.86)):
+    for faces in ((), (clutter,)):
         look = Look(house.photo, GroundOfFeet(1.86, 12.0), None, mapped=seen, faces=faces)
         found = surfaces(find_regions(house.planes, house.lines, house.camera, house.rotation, look))
-        assert [-offset for kind, _, offset in found if kind == "ground"] == pytest.approx([height], rel=0.01)
+        assert [-offset for kind, _, offset in found if kind == "ground"] == pytest.approx([2.0], rel=0.01)
 
 
 def test_normals_of_a_depth_map_are_looked_at(house, house_regions):
