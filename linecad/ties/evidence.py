@@ -18,7 +18,7 @@ from linecad.ties.depth_ties import DepthWitness, hear
 from linecad.ties.facts import CERTAIN
 from linecad.ties.looks import Looks
 from linecad.ties.pieces import Pieces, find_pieces
-from linecad.ties.seams import Seam, find_seams
+from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting, Sight
 from linecad.ties.two_grounds import Parted, part_by_feet
 from solver.annotations import check_annotations, read_annotations
@@ -74,7 +74,7 @@ def find_evidence(
     looks, parted, setting, reference, of_parts = _setting(graph, sight, options, (real, fake), facts, parts, new)
     on_stage(f"finding what ties {setting.bodies.count} bodies")
     candidates = parted.keep_apart(find_candidates(setting, looks), setting.bodies.body)
-    seams = find_seams(setting, looks)
+    seams = parted.seams_of(setting, looks)
     pieces = parted.keep_pieces_apart(find_pieces(setting, seams, looks))
     heard = hear(setting, candidates, sight.depth)
     found = Evidence(setting, tuple(candidates), tuple(seams), pieces, heard, real, fake, reference)

@@ -130,7 +130,7 @@ def with_pieces_heard(seams: list[Seam], pieces: Pieces, log_scale: Float) -> li
 
 def _by_pieces(seam: Seam, pieces: Pieces, moved: Float, feet: Float) -> Features:
     larger, smaller = (feet[np.isin(feet[:, 0], pieces.of(side))] for side in (seam.larger, seam.smaller))
-    return {"stays": _share_that_stays(seam, pieces, moved), "one ground": _on_one_ground(larger, smaller)}
+    return {"stays": _share_that_stays(seam, pieces, moved), "one ground": on_one_ground(larger, smaller, OTHER_GROUND)}
 
 
 def _share_that_stays(seam: Seam, pieces: Pieces, moved: Float) -> float:
@@ -145,11 +145,12 @@ def chances_of_feet(pieces: Pieces) -> Float:
     return np.array([(foot.bodies[0], foot.log_ratio, expit(log_odds_of(foot))) for foot in feet]).reshape(-1, 3)
 
 
-def _on_one_ground(one: Float, other: Float) -> float:
+def on_one_ground(one: Float, other: Float, from_apart: float) -> float:
     """How clearly feet (M, 3) of both sides of a seam stand on one ground, from -1, on two, to 1.
 
+    Those are on two that are `from_apart` of the log ratio apart, or more.
     By the clearest two of either kind. Squares, since on made scenes two feet of 0.6 tell nothing yet.
     """
     apart = np.abs(one[:, None, 1] - other[None, :, 1])
     both = (one[:, None, 2] * other[None, :, 2]) ** 2
-    return float(both[apart < SAME_GROUND].max(initial=0.0) - both[apart >= OTHER_GROUND].max(initial=0.0))
+    return float(both[apart < SAME_GROUND].max(initial=0.0) - both[apart >= from_apart].max(initial=0.0))

@@ -15,7 +15,7 @@ from linecad.arrays import Float, Int
 from linecad.ties.bodies import RigidBodies, agreeing, with_hanging
 from linecad.ties.candidates import CONNECTING, Candidate, find_ground
 from linecad.ties.looks import Looks
-from linecad.ties.pieces import SAME_GROUND, Pieces, chances_of_feet, part_bodies
+from linecad.ties.pieces import Pieces, chances_of_feet, on_one_ground, part_bodies
 from linecad.ties.seams import Seam, find_seams, without_feet
 from linecad.ties.setting import Setting
 
@@ -31,6 +31,17 @@ class Parted:
 
     bodies: RigidBodies
     at: tuple[Seam, ...]  # the seams that were parted
+    whole: Setting | None = None  # before that
+    seams: tuple[Seam, ...] = ()  # of its bodies
+
+    def seams_of(self, setting: Setting, looks: Looks) -> list[Seam]:
+        """The seams of a setting: those that were looked at, unless its bodies or crossings are others by now."""
+        known = self.whole
+        if known is None or not np.array_equal(known.bodies.body, setting.bodies.body):
+            return find_seams(setting, looks)
+        if not np.array_equal(known.graph.informative, setting.graph.informative):
+            return find_seams(setting, looks)
+        return list(self.seams)
 
     def keep_apart(self, candidates: Sequence[Candidate], body: Int) -> list[Candidate]:
         """The candidates between nodes with lines by `body` (N,), but for what joins the sides of a parted seam."""
@@ -74,7 +85,7 @@ def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
         body[others] = _sides_of(others, body, setting)
         count += 1
         at.append(seam)
-    return Parted(RigidBodies(body, count), tuple(at))
+    return Parted(RigidBodies(body, count), tuple(at), setting, tuple(seams))
 
 
 def _joined(seam: Seam, real: Int) -> bool:
@@ -84,7 +95,7 @@ def _joined(seam: Seam, real: Int) -> bool:
 
 
 def _sides_of(others: Int, body: Int, setting: Setting) -> Int:
-    """Which of the bodies (N,) that parts of one are in each of some other lines of it hangs on, or its own."""
+    """The body (N,) that crossings tie each of the other lines of a parted body to; else the one that it is in."""
     graph, loose = setting.graph, np.full(len(body), -1)
     whole = setting.bodies.body
     inside = agreeing(graph, setting.log_depth) & (whole[graph.edges[:, 0]] == whole[graph.edges[:, 1]])
@@ -96,6 +107,4 @@ def _sides_of(others: Int, body: Int, setting: Setting) -> Int:
 
 def clearly_apart(one: Float, other: Float) -> float:
     """How clearly feet (M, 3) of two sides, as `chances_of_feet` gives them, stand on two grounds, from -1 to 1."""
-    apart = np.abs(one[:, None, 1] - other[None, :, 1])
-    both = (one[:, None, 2] * other[None, :, 2]) ** 2
-    return float(both[apart >= APART].max(initial=0.0) - both[apart < SAME_GROUND].max(initial=0.0))
+    return -on_one_ground(one, other, APART)

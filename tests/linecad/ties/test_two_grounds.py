@@ -118,3 +118,15 @@ def test_what_seems_to_join_both_sides_ties_them_no_more():
     pieces = Pieces(body, np.arange(4), [*kept, *gone])
     assert sides.keep_pieces_apart(pieces).candidates == kept
     assert Parted(RigidBodies(body, 4), ()).keep_apart([*kept, *gone], body) == [*kept, *gone]
+
+
+def test_seams_are_looked_for_anew_where_bodies_or_crossings_are_others(parted, monkeypatch):
+    found = parted()
+    whole = found.whole
+    others = replace(whole, bodies=RigidBodies(np.arange(8), 8))
+    whole.graph.informative = np.ones(0, bool)
+    monkeypatch.setattr(module, "find_seams", lambda *_: [INNER])
+    assert found.seams_of(whole, None) == [OUTER, INNER]
+    assert found.seams_of(others, None) == [INNER]
+    fewer = replace(whole, graph=SimpleNamespace(informative=np.zeros(1, bool)))
+    assert found.seams_of(fewer, None) == [INNER]
