@@ -82,7 +82,7 @@ def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
             continue
         others = np.setdiff1d(np.flatnonzero(body == whole[0]), np.concatenate([seam.larger, seam.smaller]))
         body[seam.smaller] = count
-        body[others] = _sides_of(others, body, setting)
+        body[others] = _sides_of(others, body, (int(whole[0]), count), setting)
         count += 1
         at.append(seam)
     return Parted(RigidBodies(body, count), tuple(at), setting, tuple(seams))
@@ -94,12 +94,15 @@ def _joined(seam: Seam, real: Int) -> bool:
     return bool((one.any(axis=1) & other.any(axis=1)).any())
 
 
-def _sides_of(others: Int, body: Int, setting: Setting) -> Int:
-    """The body (N,) that crossings tie each of the other lines of a parted body to; else the one that it is in."""
+def _sides_of(others: Int, body: Int, sides: tuple[int, int], setting: Setting) -> Int:
+    """The side that crossings tie each of the other lines of a parted body to, by the bodies (N,); else its body.
+
+    What these lines seem to meet in bodies that were parted off before does not tie them there again.
+    """
     graph, loose = setting.graph, np.full(len(body), -1)
-    whole = setting.bodies.body
-    inside = agreeing(graph, setting.log_depth) & (whole[graph.edges[:, 0]] == whole[graph.edges[:, 1]])
-    known = np.setdiff1d(np.flatnonzero(body >= 0), others)
+    own = np.isin(body, sides)
+    inside = agreeing(graph, setting.log_depth) & own[graph.edges].all(axis=1)
+    known = np.setdiff1d(np.flatnonzero(own), others)
     loose[known] = body[known]
     hung = with_hanging(loose, graph.edges[inside], graph.weight[inside])[others]
     return np.where(hung >= 0, hung, body[others])

@@ -82,6 +82,15 @@ def test_other_lines_go_with_the_side_that_crossings_tie_them_to(parted):
     assert parted(*feet, seams=(outer, inner), edges=[(2, 6), (6, 7)]).bodies.body.tolist() == [0, 0, 0, 1, 1, 1, 0, 0]
 
 
+def test_other_lines_do_not_go_with_what_was_parted_off_before(parted):
+    """Line 2 seems to meet the smaller side of the outer seam too, which stands elsewhere."""
+    inner = Seam(np.arange(2), np.arange(3, 5), DOUBTFUL)
+    feet = [foot(piece, height, SURE, 4) for piece, height in ((1, 2.5), (2, 2.8), (3, 3.1))]
+    found = parted(*feet, seams=(OUTER, inner), edges=[(2, 6), (2, 7), (2, 4)])
+    assert found.at == (OUTER, inner)
+    assert found.bodies.body.tolist() == [0, 0, 2, 2, 2, 1, 1, 1]
+
+
 def test_a_crossing_called_real_holds_both_sides(parted):
     feet = (foot(0, 2.5, SURE), foot(1, 2.8, SURE))
     assert parted(*feet, real=[(2, 6)]).bodies.count == 1
