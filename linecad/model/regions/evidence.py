@@ -35,7 +35,7 @@ WALLED_COST = 0.5  # of ground and ceiling behind a wall
 ROOM_COST = 3.0  # the same below a ceiling, behind all walls there or the last of a side: walls close a room
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
-MAPPED_COST = 0.8  # of a wall that only a depth map shows
+MAPPED_COST = 0.8  # of a wall without lines, which a depth map shows or its foot
 CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
 GREEN_COST = 0.5  # of a wall; what is green grows
 FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
@@ -107,7 +107,7 @@ def is_green(raster: Raster) -> Bool:
 
 
 def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
-    """Cost (S,) of one surface by its lines, and by those that are behind it; of one that a map shows, by its box."""
+    """Cost (S,) of one surface by its lines, and by those that are behind it; of one without lines, by its box."""
     if surface.box is not None and len(surface.lines) == 0:
         return MAPPED_COST + cost_outside(surface, raster, depth)
     is_own = np.zeros(len(lines), bool)

@@ -21,6 +21,7 @@ from linecad.model.regions.overgrown import is_in_the_open
 from linecad.model.regions.raster import Picture, Raster, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
 from linecad.model.regions.segments import View, find_meets
+from linecad.model.regions.skirtings import with_skirtings
 from linecad.model.regions.skyline import sure_sky
 from linecad.model.regions.surfaces import (
     FIRM_FEET,
@@ -95,6 +96,8 @@ def find_regions(
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
     surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)
+    if heaven.is_ceiling and look.mapped is None:
+        surfaces = with_skirtings(surfaces, lines, camera, turns)
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)

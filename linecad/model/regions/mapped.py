@@ -232,7 +232,7 @@ def is_of_map_at(surface: Surface, place: Surface) -> bool:
 
 
 def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:
-    """Cost (S,) of a wall of the map, of such depths (S,), beyond its box."""
+    """Cost (S,) of a wall without lines, of such depths (S,), beyond its box."""
     assert surface.box is not None
     outside = np.zeros(raster.size, bool)
     met = np.where(np.isfinite(depth), depth, 0.0)

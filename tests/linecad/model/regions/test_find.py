@@ -17,6 +17,7 @@ from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.mapped import MappedDepths
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, level_of_ends
+from linecad.scene import Lines
 
 
 def surfaces(found):
@@ -27,6 +28,12 @@ def of_axis(found, axis):
     """The region of the one surface of an axis."""
     (number,) = [row for row, surface in enumerate(found.labels.surfaces) if surface.axis == axis]
     return shapely.union_all([region for own, region in found.labels.regions if own == number])
+
+
+def raster_of(region, shape):
+    """The pixels (H, W) whose centres are in a region."""
+    v, u = np.indices(shape)
+    return shapely.contains_xy(region, u, v)
 
 
 def test_the_photo_tells_walls_from_ground_and_sky(house_regions):
@@ -132,23 +139,52 @@ def test_a_painted_roof_is_found_and_cut_out_of_the_wall(house, house_regions):
     assert house_regions.roofs == ()
 
 
-def test_heads_put_the_ceiling_above_the_ends_of_lines_where_no_map_shows_it(house, monkeypatch):
-    asked = []
+def below_a_ceiling(raster):
+    return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=True)
 
-    def no_sky(raster):
-        return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=True)
+
+@pytest.fixture
+def silent(house):
+    """What a depth map says that knows nothing."""
+    nothing = np.zeros(house.photo.shape[:2], np.float32)
+    return MappedDepths(DepthMap("map.npz", nothing, nothing > 0, "z"), "z", 0.0, 1.0, house.camera.matrix, 0.02)
+
+
+def test_a_plain_wall_of_a_room_stands_on_its_skirting(house, silent, monkeypatch):
+    """Of the side nothing is left but its foot."""
+    ends = house.lines.ends
+    of_side = (np.abs(ends[:, :, 0] - 2.0) < 1e-6).all(axis=1) & (ends[:, :, 1] != 8.0).any(axis=1)
+    is_foot = of_side & (house.lines.axis == 1) & (np.abs(ends[:, 0, 2] + 2.0) < 1e-6)
+    assert is_foot.sum() == 1
+    kept = ~of_side | is_foot
+    names = ("id", "axis", "segment", "ends", "is_boundary", "component", "confidence")
+    lines = Lines(**{name: getattr(house.lines, name)[kept] for name in names})
+    planes = tuple(plane for plane in house.planes if plane.axis == 1)
+
+    def wall(mapped=None):
+        look = Look(house.photo, None, None, mapped=mapped)
+        found = find_regions(planes, lines, house.camera, house.rotation, look)
+        return of_axis(found, 0) if 0 in {surface.axis for surface in found.labels.surfaces} else None
+
+    assert wall() is None  # below the sky
+    monkeypatch.setattr(find, "look_up", below_a_ceiling)
+    assert wall(silent) is None  # a map shows walls
+    side = house.truth == 0
+    shown = raster_of(wall(), side.shape)
+    assert shown[side].mean() > 0.9
+
+
+def test_heads_put_the_ceiling_above_the_ends_of_lines_where_no_map_shows_it(house, silent, monkeypatch):
+    asked = []
 
     def with_ceiling(planes, lines, camera, feet, ceiling):
         asked.append(ceiling)
         return find_surfaces(planes, lines, camera, feet, ceiling)
 
-    monkeypatch.setattr(find, "look_up", no_sky)
+    monkeypatch.setattr(find, "look_up", below_a_ceiling)
     monkeypatch.setattr(find, "find_surfaces", with_ceiling)
-    camera = house.camera
-    nothing = np.zeros(house.photo.shape[:2], np.float32)
-    silent = MappedDepths(DepthMap("map.npz", nothing, nothing > 0, "z"), "z", 0.0, 1.0, camera.matrix, 0.02)
     ends = level_of_ends(house.lines, above=True)
     for told, mapped in ((None, None), (ends / 2, None), (2 * ends, None), (2 * ends, silent)):
         look = Look(house.photo, None, None, mapped=mapped, height_of_ceiling=lambda told=told: told)
-        find_regions(house.planes, house.lines, camera, house.rotation, look)
+        find_regions(house.planes, house.lines, house.camera, house.rotation, look)
     assert asked == [ends, ends, 2 * ends, ends]

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from linecad.model.regions.heaven import BRIGHTER, EVENING, WIRE, look_up
+from linecad.model.regions.heaven import BRIGHTER, EVENING, LAMPS, WIRE, look_up
 from linecad.model.regions.raster import COLUMNS, take_raster
 
 BLUE_SKY, WHITE = (120, 170, 235), (215, 212, 200)
@@ -58,6 +58,18 @@ def test_a_warm_sky_is_much_lighter_than_what_is_before_it(light, is_sky, house)
     assert usual * BRIGHTER < 145 < usual * EVENING < 230
     colour[:120] = (light, 129, 138)
     heaven = look_up(replace(raster, colour=colour))
+    assert (heaven.is_sky, heaven.is_ceiling) == (is_sky, not is_sky)
+
+
+@pytest.mark.parametrize(("warmer", "is_sky"), [(0.8 * LAMPS, True), (1.2 * LAMPS, False)])
+def test_the_light_of_lamps_is_warmer_where_it_falls(warmer, is_sky, house):
+    """The lit wall of a corridor was the sky of an evening."""
+    raster = under(BLUE_SKY, house)
+    colour, gradient = raster.colour.copy(), raster.gradient.reshape(raster.shape).copy()
+    colour[:120] = (230, 129, 138)
+    colour[:120, 240:] = (230, 129, 138 + warmer)
+    gradient[:120, 238:242] = 1.0  # an edge between the two
+    heaven = look_up(replace(raster, colour=colour, gradient=gradient.ravel()))
     assert (heaven.is_sky, heaven.is_ceiling) == (is_sky, not is_sky)
 
 
