@@ -24,7 +24,7 @@ LEAST_CLEAR = 0.004  # of the photo
 MOST_WITHIN, MOST_PANELS = 0.03, 1.5  # as MOST_LINES, gaps included; as MOST_ALIKE, of a clear sky
 WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
 EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
-LAMPS = 8  # of b*, by which one part is warmer than another in the light of lamps, which fades; an evening's does not
+LAMPS = 8  # of b*; parts of an evening's sky differ by less, and walls more that lamps light from near and from far
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 ROUNDS = 1  # of GrabCut; with more of them the sky leaks into what is as white
 ALIKE = np.array([16, 3, 4])  # of L*, a* and b*, within which smooth parts look the same; half of it beside a wire
@@ -124,14 +124,14 @@ def _of_sky(pieces: list[Bool], raster: Raster) -> list[Bool]:
         (own, light, blue) for own, (light, _, blue) in zip(pieces, colours, strict=True)
         if light >= DARKEST * brightest and (blue < BLUE or light >= BRIGHT or light > BRIGHTER * usual)
     ]  # fmt: skip
-    warmth = [blue for _, _, blue in light_enough]
-    is_evening = min(warmth, default=WARM) >= WARM
-    if is_evening and np.ptp(warmth or [WARM]) > LAMPS:
-        return []
-    return [
-        own for own, light, blue in light_enough
+    is_evening = min((blue for _, _, blue in light_enough), default=WARM) >= WARM
+    found = [
+        (own, blue) for own, light, blue in light_enough
         if blue < WARM or light >= BRIGHT or (is_evening and light > EVENING * usual)
     ]  # fmt: skip
+    if is_evening and found and np.ptp([blue for _, blue in found]) > LAMPS:
+        return []
+    return [own for own, _ in found]
 
 
 def _grown(skies: list[Bool], at_top: Bool, below: Bool, raster: Raster) -> Bool:

@@ -4,53 +4,81 @@ A wall without a picture or a door has no line of its own: floor and ceiling wen
 wall was painted on the floor. But its skirting is a line on the floor, and nothing lies farther off on that side.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from linecad.arrays import Float
-from linecad.directions import UP, Turns, components, directions_of, partner
-from linecad.geometry import lengths
-from linecad.model.regions.surfaces import RELIEF, Surface, apart
+from linecad.arrays import Bool, Float, Int
+from linecad.directions import UP, Turns, components, partner
+from linecad.model.regions.surfaces import RELIEF, Surface, apart, weights_of
 from linecad.scene import Camera, Lines
 
-LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together
+LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together, each times the square of how sure it is
 AT_FLOOR = 0.04  # log height within which a line is on the floor: a skirting's upper edge is too
+NEAREST = 0.2  # of the camera's height; a line on the floor that is nearer beside the camera has no wall above it
+BEYOND = 1.03  # times its distance; a line that reaches farther on that side lies behind it
+MOST_BEYOND = 0.02  # of all lines, by their weight, may be panes that show what is behind
+
+
+@dataclass(frozen=True, eq=False)
+class _Room:
+    """What is known of a room."""
+
+    surfaces: list[Surface]
+    floor: float  # offset
+    ceiling: float
+    axis: Int  # (N,) of its lines
+    ends: Float  # (N, 2, K) components of their ends
+    weight: Float  # (N,) of the photo's width
+    on_floor: Bool  # (N,)
+
+    def skirting(self, along: int, side: float) -> Surface | None:
+        """The wall over the farthest skirting along an axis on one side; None where there is none, or another wall."""
+        normal = int(partner(along))
+        walls = [each for each in self.surfaces if each.kind == "wall" and each.axis in (along, normal)]
+        is_walled = any(each.axis == normal and side * each.offset > 0 for each in walls)
+        if is_walled or not walls:  # a frame without walls may be that of a table
+            return None
+        own = np.flatnonzero((self.axis == along) & self.on_floor)
+        group = self._last(own, self.ends[own, 0, normal], side)
+        if group is None:
+            return None
+        longest = group[int(self.weight[group].argmax())]
+        offset, reach = float(self.ends[longest, 0, normal]), self.ends[group, :, along]
+        farther = (side * self.ends[:, :, normal]).max(axis=1) > BEYOND * abs(offset)
+        if abs(offset) < -NEAREST * self.floor or self.weight[farther].sum() > MOST_BEYOND * self.weight.sum():
+            return None
+        low, high = float(reach.min()), float(reach.max())
+        if max(abs(low), abs(high)) > abs(offset):  # it runs towards the camera, beside which a photo shows no foot
+            low, high = min(low, 0.0), max(high, 0.0)
+        box = np.full((2, self.ends.shape[2]), offset)
+        box[:, UP], box[:, along] = (self.floor, self.ceiling), (low, high)
+        return Surface("wall", normal, offset, np.zeros(0, np.int64), None, box)
+
+    def _last(self, own: Int, offset: Float, side: float) -> Int | None:
+        """Those of lines of offsets (M,) that are farthest off on a side and at one place, and long enough together."""
+        for number in np.argsort(-side * offset, kind="stable").tolist():
+            if side * offset[number] <= 0:
+                return None
+            group = own[[apart(each, float(offset[number])) < RELIEF for each in offset.tolist()]]
+            if self.weight[group].sum() >= LEAST_LENGTH:
+                return group
+        return None
 
 
 def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns: Turns) -> list[Surface]:
     """The surfaces of a room, and behind them a plain wall on each side that has none but a skirting.
 
-    `turns` are those of further frames. A room without a floor gets none.
+    `turns` are those of further frames. What has no floor or no ceiling is no room, and gets none.
     """
-    floor = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
-    if floor is None:
+    level = {surface.kind: surface.offset for surface in surfaces if surface.kind in ("ground", "ceiling")}
+    if len(level) < 2:
         return surfaces
     ends = components(lines.ends, turns)
-    top = next((surface.offset for surface in surfaces if surface.kind == "ceiling"), float(ends[:, :, UP].max()))
-    height = ends[:, 0, UP]
-    is_on_floor = (height < 0) & (np.abs(np.log(np.where(height < 0, height / floor, 1.0))) < AT_FLOOR)
-    length = lengths(np.diff(lines.segment, axis=1)[:, 0]) / camera.width
-    found = []
-    for along in (axis for axis in range(len(directions_of(turns))) if axis != UP):
-        normal = int(partner(along))
-        own = (lines.axis == along) & is_on_floor
-        for side in (1.0, -1.0):
-            if any(each.kind == "wall" and each.axis == normal and side * each.offset > 0 for each in surfaces):
-                continue
-            offset = _last_of(ends[own, 0, normal], length[own], side)
-            if offset is None:
-                continue
-            is_it = own & np.array([apart(each, offset) < RELIEF for each in ends[:, 0, normal].tolist()], bool)
-            box = np.full((2, ends.shape[2]), offset)
-            box[:, UP] = floor, top
-            reach = ends[is_it, :, along]
-            box[:, along] = min(0.0, reach.min()), max(0.0, reach.max())  # a photo shows no foot beside the camera
-            found.append(Surface("wall", normal, offset, np.zeros(0, np.int64), None, box))
-    return [*surfaces, *found]
-
-
-def _last_of(offset: Float, length: Float, side: float) -> float | None:
-    """The farthest offset on one side at which lines, of offsets (M,), are long enough together; None for none."""
-    for each in sorted((number for number in offset.tolist() if side * number > 0), key=abs, reverse=True):
-        if length[[apart(other, each) < RELIEF for other in offset.tolist()]].sum() >= LEAST_LENGTH:
-            return float(each)
-    return None
+    height = np.minimum(ends[:, 0, UP] / level["ground"], np.inf)
+    on_floor = np.abs(np.log(np.maximum(height, np.finfo(float).tiny))) < AT_FLOOR
+    weight = weights_of(lines) / camera.width
+    room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, weight, on_floor)
+    axes = [axis for axis in range(ends.shape[2]) if axis != UP]
+    found = [room.skirting(along, side) for along in axes for side in (1.0, -1.0)]
+    return [*surfaces, *filter(None, found)]

@@ -17,7 +17,7 @@ from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.mapped import MappedDepths
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, level_of_ends
-from linecad.scene import Lines
+from linecad.scene import Lines, Plane
 
 
 def surfaces(found):
@@ -151,15 +151,15 @@ def silent(house):
 
 
 def test_a_plain_wall_of_a_room_stands_on_its_skirting(house, silent, monkeypatch):
-    """Of the side nothing is left but its foot."""
-    ends = house.lines.ends
-    of_side = (np.abs(ends[:, :, 0] - 2.0) < 1e-6).all(axis=1) & (ends[:, :, 1] != 8.0).any(axis=1)
-    is_foot = of_side & (house.lines.axis == 1) & (np.abs(ends[:, 0, 2] + 2.0) < 1e-6)
-    assert is_foot.sum() == 1
-    kept = ~of_side | is_foot
-    names = ("id", "axis", "segment", "ends", "is_boundary", "component", "confidence")
-    lines = Lines(**{name: getattr(house.lines, name)[kept] for name in names})
-    planes = tuple(plane for plane in house.planes if plane.axis == 1)
+    """Of the side nothing is left but its foot, before a wall that ends the room."""
+    foot = ((2.0, 8.0, -2.0), (2.0, 16.0, -2.0))
+    corners = [(-3.0, 16.0, -2.0), (2.0, 16.0, -2.0), (2.0, 16.0, 1.5), (-3.0, 16.0, 1.5)]
+    ends = np.array([foot, *zip(corners, [*corners[1:], corners[0]], strict=True)])
+    lines = Lines(
+        id=np.arange(5), axis=np.array([1, 0, 2, 0, 2]), segment=project(ends, house.camera.matrix, house.rotation),
+        ends=ends, is_boundary=np.zeros(5, bool), component=np.zeros(5, int), confidence=np.full(5, "proven"),
+    )  # fmt: skip
+    planes = (Plane(0, 1, 16.0, (1, 2, 3, 4)),)
 
     def wall(mapped=None):
         look = Look(house.photo, None, None, mapped=mapped)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from linecad.directions import components, directions_of, partner
 from linecad.geometry import central_camera
-from linecad.model.regions.skirtings import AT_FLOOR, LEAST_LENGTH, with_skirtings
+from linecad.model.regions.skirtings import AT_FLOOR, BEYOND, LEAST_LENGTH, NEAREST, with_skirtings
 from linecad.model.regions.surfaces import RELIEF, Surface
 from linecad.scene import Camera, Lines
 
@@ -17,7 +17,7 @@ FLOOR, CEILING = Surface("ground", 2, -1.5, NONE, None), Surface("ceiling", 2, 1
 LONG = 1.1 * LEAST_LENGTH * CAMERA.width  # px
 
 
-def level(*lines, turns=()):
+def level(*lines, turns=(), component=None, probability=()):
     """Lines along axes, each (axis, offset along its partner, height, from, to, px)."""
     ends, axes = np.zeros((len(lines), 2, 3)), directions_of(turns)
     segment = np.zeros((len(lines), 2, 2))
@@ -28,53 +28,84 @@ def level(*lines, turns=()):
     count = len(lines)
     return Lines(
         id=np.arange(count), axis=np.array([line[0] for line in lines], np.int64), segment=segment, ends=ends,
-        is_boundary=np.zeros(count, bool), component=np.zeros(count, np.int64), confidence=np.full(count, "proven"),
+        is_boundary=np.zeros(count, bool), component=np.zeros(count, np.int64) if component is None else component,
+        confidence=np.full(count, "proven"), probability=probability,
     )  # fmt: skip
 
 
-def walls(lines, *others, turns=()):
-    """What is added."""
-    before = [*others, FLOOR, CEILING]
+def wall(axis, offset):
+    return Surface("wall", axis, offset, NONE, 0)
+
+
+def added(lines, *walls, turns=()):
+    """What is added to walls, a floor and a ceiling."""
+    before = [*walls, FLOOR, CEILING]
     found = with_skirtings(before, lines, CAMERA, turns)
     assert found[: len(before)] == before
     return found[len(before) :]
 
 
-@given(st.sampled_from([0, 1]), st.sampled_from([-1.0, 1.0]), st.floats(0.5, 8.0), st.floats(2.0, 5.0))
+@given(st.sampled_from([0, 1]), st.sampled_from([-1.0, 1.0]), st.floats(0.5, 8.0), st.floats(2.0, 9.0))
 def test_the_farthest_long_line_on_the_floor_is_the_foot_of_a_wall(along, side, offset, reach):
     of_rug = (along, 0.7 * side * offset, -1.5, 1.0, reach, LONG)
-    (wall,) = walls(level((along, side * offset, -1.5, 1.0, reach, LONG), of_rug))
-    assert (wall.kind, wall.axis, wall.plane, len(wall.lines)) == ("wall", 1 - along, None, 0)
-    assert wall.offset == pytest.approx(side * offset)
-    assert wall.box[:, along] == pytest.approx([0.0, reach])  # from beside the camera on
-    assert wall.box[:, 2] == pytest.approx([-1.5, 1.2])
+    lines = level((along, side * offset, -1.5, 1.0, reach, LONG), of_rug)
+    (found,) = added(lines, wall(1 - along, -20.0 * side))
+    assert (found.kind, found.axis, found.plane, len(found.lines)) == ("wall", 1 - along, None, 0)
+    assert found.offset == pytest.approx(side * offset)
+    # Of what runs towards the camera a photo shows nothing beside it.
+    assert found.box[:, along] == pytest.approx([0.0 if reach > offset else 1.0, reach])
+    assert found.box[:, 2] == pytest.approx([-1.5, 1.2])
 
 
-def test_pieces_of_one_skirting_count_together():
-    pieces = [(0, 3.0, -1.5, 1.0, 2.0, 0.6 * LONG), (0, 3.0 * (1 + 0.9 * RELIEF), -1.5, 3.0, 4.0, 0.6 * LONG)]
-    (wall,) = walls(level(*pieces))
-    assert wall.box[:, 0] == pytest.approx([0.0, 4.0])
-    assert walls(level(pieces[0])) == []
+def test_pieces_of_one_skirting_count_together_and_it_is_where_the_longest_is():
+    pieces = [(0, 3.0, -1.5, 1.0, 2.0, 0.6 * LONG), (0, 3.0 * (1 + 0.9 * RELIEF), -1.5, 3.0, 4.0, 0.5 * LONG)]
+    (found,) = added(level(*pieces), wall(0, 9.0))
+    assert found.offset == pytest.approx(3.0)
+    assert found.box[:, 0] == pytest.approx([0.0, 4.0])
+    assert added(level(pieces[0]), wall(0, 9.0)) == []
 
 
-@pytest.mark.parametrize("height", [-1.5 * np.exp(1.1 * AT_FLOOR), -1.5 * np.exp(-1.1 * AT_FLOOR), 1.5])
-def test_what_is_not_on_the_floor_is_no_skirting(height):
-    assert walls(level((0, 3.0, height, 1.0, 4.0, LONG))) == []
+@pytest.mark.parametrize(
+    ("line", "more"),
+    [
+        ((0, 3.0, -1.5 * np.exp(1.1 * AT_FLOOR), 1.0, 4.0, LONG), {}),
+        ((0, 3.0, -1.5 * np.exp(-1.1 * AT_FLOOR), 1.0, 4.0, LONG), {}),
+        ((0, 3.0, 1.5, 1.0, 4.0, LONG), {}),
+        ((0, 0.9 * NEAREST * 1.5, -1.5, 1.0, 4.0, LONG), {}),
+        ((0, 3.0, -1.5, 1.0, 4.0, LONG), {"component": [1]}),
+        ((0, 3.0, -1.5, 1.0, 4.0, LONG), {"probability": [0.5]}),
+    ],
+    ids=["below the floor", "above it", "at the ceiling", "below the camera", "of another group", "doubtful"],
+)
+def test_what_is_no_skirting(line, more):
+    assert added(level(line, **more), wall(0, 9.0)) == []
+
+
+def test_what_a_line_reaches_behind_is_no_skirting():
+    """A rug before a wall whose pictures go on beside it."""
+    rug = (0, 3.0, -1.5, 1.0, 4.0, LONG)
+    behind = 3.0 * BEYOND
+    assert added(level(rug, (1, 9.0, 0.5, 1.0, 1.1 * behind, 50.0)), wall(0, 9.0)) == []
+    assert len(added(level(rug, (1, 9.0, 0.5, 1.0, 0.9 * behind, 50.0)), wall(0, 9.0))) == 1
 
 
 def test_a_side_with_a_wall_needs_none():
     lines = level((0, 3.0, -1.5, 1.0, 4.0, LONG), (0, -2.0, -1.5, 1.0, 4.0, LONG))
-    (wall,) = walls(lines, Surface("wall", 1, 1.0, NONE, 0), Surface("wall", 0, -5.0, NONE, 1))
-    assert wall.offset == -2.0
+    (found,) = added(lines, wall(1, 1.0), wall(0, -5.0))
+    assert found.offset == -2.0
 
 
-def test_walls_of_a_turned_frame_have_skirtings_too():
+def test_a_turned_frame_has_skirtings_if_it_has_walls():
     turns = (0.3,)
-    (wall,) = walls(level((3, 2.0, -1.5, 1.0, 4.0, LONG), turns=turns), turns=turns)
-    assert (wall.axis, wall.offset) == (int(partner(3)), pytest.approx(2.0))
-    assert wall.box.shape[1] == components(np.zeros(3), turns).shape[-1]
+    lines = level((3, 2.0, -1.5, 1.0, 4.0, LONG), turns=turns)
+    (found,) = added(lines, wall(3, 9.0), turns=turns)
+    assert (found.axis, found.offset) == (int(partner(3)), pytest.approx(2.0))
+    assert found.box.shape[1] == components(np.zeros(3), turns).shape[-1]
+    assert added(lines, wall(0, 9.0), turns=turns) == []  # a table that stands askew
 
 
-def test_without_a_floor_nothing_is_known_of_skirtings():
+@pytest.mark.parametrize("level_surface", [FLOOR, CEILING])
+def test_without_floor_and_ceiling_nothing_is_a_room(level_surface):
     lines = level((0, 3.0, -1.5, 1.0, 4.0, LONG))
-    assert with_skirtings([CEILING], lines, CAMERA, ()) == [CEILING]
+    before = [wall(0, 9.0), level_surface]
+    assert with_skirtings(before, lines, CAMERA, ()) == before
