@@ -10,14 +10,17 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, Turns, components, partner
+from linecad.geometry import lengths
 from linecad.model.regions.surfaces import RELIEF, Surface, apart, weights_of
 from linecad.scene import Camera, Lines
 
-LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together, each times the square of how sure it is
-AT_FLOOR = 0.04  # log height within which a line is on the floor: a skirting's upper edge is too
+LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together
+# Log height within which a line is on the floor: a skirting's upper edge is too. Few lines that stand wrong are there
+# by chance, so that it counts for nothing here how sure each one is.
+AT_FLOOR = 0.04
 NEAREST = 0.2  # of the camera's height; a line on the floor that is nearer beside the camera has no wall above it
 BEYOND = 1.03  # times its distance; a line that reaches farther on that side lies behind it
-MOST_BEYOND = 0.02  # of all lines, by their weight, may be panes that show what is behind
+MOST_BEYOND = 0.02  # of all lines, by length and how sure they are, may do so: a pane shows what is behind
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +32,8 @@ class _Room:
     ceiling: float
     axis: Int  # (N,) of its lines
     ends: Float  # (N, 2, K) components of their ends
-    weight: Float  # (N,) of the photo's width
+    length: Float  # (N,) of the photo's width
+    weight: Float  # (N,) the same, less where their place is unsure
     on_floor: Bool  # (N,)
 
     def skirting(self, along: int, side: float) -> Surface | None:
@@ -43,7 +47,7 @@ class _Room:
         group = self._last(own, self.ends[own, 0, normal], side)
         if group is None:
             return None
-        longest = group[int(self.weight[group].argmax())]
+        longest = group[int(self.length[group].argmax())]
         offset, reach = float(self.ends[longest, 0, normal]), self.ends[group, :, along]
         farther = (side * self.ends[:, :, normal]).max(axis=1) > BEYOND * abs(offset)
         if abs(offset) < -NEAREST * self.floor or self.weight[farther].sum() > MOST_BEYOND * self.weight.sum():
@@ -61,7 +65,7 @@ class _Room:
             if side * offset[number] <= 0:
                 return None
             group = own[[apart(each, float(offset[number])) < RELIEF for each in offset.tolist()]]
-            if self.weight[group].sum() >= LEAST_LENGTH:
+            if self.length[group].sum() >= LEAST_LENGTH:
                 return group
         return None
 
@@ -77,8 +81,9 @@ def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns:
     ends = components(lines.ends, turns)
     height = np.minimum(ends[:, 0, UP] / level["ground"], np.inf)
     on_floor = np.abs(np.log(np.maximum(height, np.finfo(float).tiny))) < AT_FLOOR
+    length = lengths(np.diff(lines.segment, axis=1)[:, 0]) / camera.width
     weight = weights_of(lines) / camera.width
-    room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, weight, on_floor)
+    room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, length, weight, on_floor)
     axes = [axis for axis in range(ends.shape[2]) if axis != UP]
     found = [room.skirting(along, side) for along in axes for side in (1.0, -1.0)]
     return [*surfaces, *filter(None, found)]
