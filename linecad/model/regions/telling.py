@@ -118,6 +118,8 @@ def wall_by_edges(
     surface = _surface(normal, float(offsets[best]), there, int(lines.id[there[best]]), planes)
     alike = [each for each in surfaces if (each.kind, each.axis) == ("wall", normal)]
     alike = [each for each in alike if apart(each.offset, surface.offset) < RELIEF]
+    if surface.plane is not None:  # which is the wall's, whatever is there without lines
+        alike = [each for each in alike if each.plane is not None]
     if alike:
         # In the same plane, but another surface: where it ends, the one that was found ends too.
         near = min(alike, key=lambda each: apart(each.offset, surface.offset))

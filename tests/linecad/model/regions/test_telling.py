@@ -9,7 +9,7 @@ import shapely
 from linecad.corrections.edits import Anchor, Region, WallByEdges
 from linecad.directions import UP
 from linecad.model.regions.segments import View
-from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, weights_of
+from linecad.model.regions.surfaces import GroundOfFeet, Surface, find_surfaces, weights_of
 from linecad.model.regions.telling import IN_THE_SKY, ground_height, tell, wall_by_edges
 
 EVERYWHERE = shapely.box(-0.5, -0.5, 959.5, 719.5)
@@ -32,10 +32,11 @@ def front_edges(house):
     return [int(row) for row in (*upright[by_u[[0, -1]]], *level[by_v[[0, -1]]])]
 
 
-def by_edges(house, lines=None):
+def by_edges(house, lines=None, planes=None, surfaces=None):
     view = View(house.camera, house.rotation, house.photo)
     edit = WallByEdges(tuple(anchor(house, row) for row in front_edges(house)))
-    return wall_by_edges(edit, house.planes, lines or house.lines, surfaces_of(house), view)
+    planes = house.planes if planes is None else planes
+    return wall_by_edges(edit, planes, lines or house.lines, surfaces or surfaces_of(house), view)
 
 
 def test_a_wall_has_the_coordinates_of_its_edges_to_the_last_digit(house):
@@ -45,6 +46,15 @@ def test_a_wall_has_the_coordinates_of_its_edges_to_the_last_digit(house):
     assert (found.surface.kind, found.surface.axis, found.surface.offset, found.apart) == ("wall", 1, 8.0, 0.0)
     assert set(found.corners[:, 0].tolist()) == {ends[left, 0, 0], ends[right, 0, 0]}
     assert set(found.corners[:, 2].tolist()) == {ends[low, 0, 2], ends[high, 0, 2]}
+
+
+def test_a_wall_keeps_its_plane_beside_one_without_lines(house):
+    bare = [Surface("wall", 1, 8.02, np.zeros(0, np.int64), None)]
+    (plane,) = [plane for plane in house.planes if plane.axis == 1 and plane.offset == 8.0]
+    found = by_edges(house, surfaces=bare).surface
+    assert (found.plane, found.offset) == (plane.id, 8.0)
+    alone = by_edges(house, planes=(), surfaces=bare).surface
+    assert (alone.plane, alone.offset) == (None, 8.02)
 
 
 def test_an_edge_at_another_depth_bounds_the_wall_where_the_photo_shows_it(house):
