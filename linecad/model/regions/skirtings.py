@@ -79,8 +79,8 @@ def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns:
     if len(level) < 2:
         return surfaces
     ends = components(lines.ends, turns)
-    height = np.minimum(ends[:, 0, UP] / level["ground"], np.inf)
-    on_floor = np.abs(np.log(np.maximum(height, np.finfo(float).tiny))) < AT_FLOOR
+    below = np.maximum(ends[:, 0, UP] / level["ground"], np.finfo(float).tiny)  # times the camera's height
+    on_floor = np.abs(np.log(below)) < AT_FLOOR
     length = lengths(np.diff(lines.segment, axis=1)[:, 0]) / camera.width
     weight = weights_of(lines) / camera.width
     room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, length, weight, on_floor)
