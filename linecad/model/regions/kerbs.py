@@ -24,7 +24,7 @@ from linecad.model.regions.labelling import Labels
 from linecad.model.regions.mapped import is_of_map_at
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
-from linecad.model.regions.surfaces import Surface
+from linecad.model.regions.surfaces import Surface, apart
 from linecad.scene import Plane
 
 NEAREST, FURTHEST = 0.5, 12.0  # of what is looked at beside the camera, in heights of the camera
@@ -141,10 +141,10 @@ def _level(offset: float, planes: tuple[Plane, ...], surfaces: list[Surface]) ->
     """A road at a height: the nearest level plane within SAME_ROAD, unless another surface is there."""
     taken = {surface.plane for surface in surfaces}
     free = [plane for plane in planes if plane.axis == UP and plane.offset < 0 and plane.id not in taken]
-    near = [plane for plane in free if abs(np.log(plane.offset / offset)) < SAME_ROAD]
+    near = [plane for plane in free if apart(plane.offset, offset) < SAME_ROAD]
     if not near:
         return Surface("ground", UP, offset, np.zeros(0, np.int64), None)
-    plane = min(near, key=lambda each: abs(np.log(each.offset / offset)))
+    plane = min(near, key=lambda each: apart(each.offset, offset))
     return Surface("ground", UP, plane.offset, np.zeros(0, np.int64), plane.id)
 
 

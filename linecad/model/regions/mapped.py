@@ -15,7 +15,7 @@ from linecad.depth.depth_map import DepthMap, camera_depths
 from linecad.directions import UP, across
 from linecad.geometry import homogeneous
 from linecad.model.regions.raster import Raster
-from linecad.model.regions.surfaces import Kind, Surface
+from linecad.model.regions.surfaces import Kind, Surface, apart
 from linecad.scene import Camera, DepthKind
 
 LEAST_WIDTH = 0.012  # log depth; a map's wall is as uneven in itself
@@ -214,7 +214,7 @@ def _levelled(surface: Surface, raster: Raster, facing: Int) -> Surface:
     count, level = _wall(UP, float(np.sign(surface.offset)), facing == UP, raster)
     if level is None or count < LEAST_WALL * raster.size:
         return surface
-    off = abs(np.log(level.offset / surface.offset))
+    off = apart(level.offset, surface.offset)
     return replace(surface, offset=level.offset) if off > SAME_LEVEL else surface
 
 
@@ -225,10 +225,8 @@ def level_of_map(raster: Raster) -> float | None:
 
 
 def is_of_map_at(surface: Surface, place: Surface) -> bool:
-    """Whether a surface is a wall that a map alone shows, and is where another one is, within SAME_LEVEL."""
-    if surface.box is None or surface.axis != place.axis or surface.offset * place.offset <= 0:
-        return False
-    return bool(abs(np.log(surface.offset / place.offset)) < SAME_LEVEL)
+    """Whether a surface is a wall without lines, such as a map shows, where another one is, within SAME_LEVEL."""
+    return surface.box is not None and surface.axis == place.axis and apart(surface.offset, place.offset) < SAME_LEVEL
 
 
 def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:

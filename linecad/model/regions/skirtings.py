@@ -43,8 +43,7 @@ class _Room:
         is_walled = any(each.axis == normal and side * each.offset > 0 for each in walls)
         if is_walled or not walls:  # a frame without walls may be that of a table
             return None
-        own = np.flatnonzero((self.axis == along) & self.on_floor)
-        group = self._last(own, self.ends[own, 0, normal], side)
+        group = self._last(np.flatnonzero((self.axis == along) & self.on_floor), side, normal)
         if group is None:
             return None
         longest = group[int(self.length[group].argmax())]
@@ -59,13 +58,12 @@ class _Room:
         box[:, UP], box[:, along] = (self.floor, self.ceiling), (low, high)
         return Surface("wall", normal, offset, np.zeros(0, np.int64), None, box)
 
-    def _last(self, own: Int, offset: Float, side: float) -> Int | None:
-        """Those of lines of offsets (M,) that are farthest off on a side and at one place, and long enough together."""
-        for number in np.argsort(-side * offset, kind="stable").tolist():
-            if side * offset[number] <= 0:
-                return None
-            group = own[[apart(each, float(offset[number])) < RELIEF for each in offset.tolist()]]
-            if self.length[group].sum() >= LEAST_LENGTH:
+    def _last(self, rows: Int, side: float, normal: int) -> Int | None:
+        """Those of some lines that are farthest off on a side and at one place, and long enough together."""
+        offset = dict(zip(rows.tolist(), self.ends[rows, 0, normal].tolist(), strict=True))
+        for row in sorted(offset, key=lambda each: -side * offset[each]):
+            group = np.array([each for each in offset if apart(offset[each], offset[row]) < RELIEF], np.int64)
+            if side * offset[row] > 0 and self.length[group].sum() >= LEAST_LENGTH:
                 return group
         return None
 
@@ -79,8 +77,7 @@ def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns:
     if len(level) < 2:
         return surfaces
     ends = components(lines.ends, turns)
-    below = np.maximum(ends[:, 0, UP] / level["ground"], np.finfo(float).tiny)  # times the camera's height
-    on_floor = np.abs(np.log(below)) < AT_FLOOR
+    on_floor = np.array([apart(height, level["ground"]) < AT_FLOOR for height in ends[:, 0, UP].tolist()], bool)
     length = lengths(np.diff(lines.segment, axis=1)[:, 0]) / camera.width
     weight = weights_of(lines) / camera.width
     room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, length, weight, on_floor)
