@@ -6,6 +6,7 @@ like it than like the rest of the photo (GrabCut: Rother, Kolmogorov and Blake, 
 scene is crossed but for wires. A small part that looks like what is smooth below it is plaster.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import cv2
@@ -24,6 +25,7 @@ LEAST_CLEAR = 0.004  # of the photo
 MOST_WITHIN, MOST_PANELS = 0.03, 1.5  # as MOST_LINES, gaps included; as MOST_ALIKE, of a clear sky
 WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
 EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
+BELOW = 0.05  # of a smooth part above the horizon; what goes on farther below it is a wall
 LAMPS = 8  # of b*; parts of an evening's sky differ by less, and walls more that lamps light from near and from far
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 ROUNDS = 1  # of GrabCut; with more of them the sky leaks into what is as white
@@ -45,11 +47,12 @@ class Heaven:
 def look_up(raster: Raster) -> Heaven:
     """Whether what is at the top of the photo is sky or ceiling, and how far it reaches."""
     pieces, smooth = _smooth_pieces(raster)
-    skies = _of_sky(pieces, raster)
+    is_wall = _walls(raster)
+    skies = _of_sky([own for own in pieces if not is_wall(own)], raster)
     at_top = np.any([np.zeros(raster.shape, bool), *pieces], axis=0)
     is_ceiling = not skies and bool(at_top.mean() > LEAST_CEILING)
     clear, smooth = _clear_pieces(smooth, raster)
-    skies = skies + clear  # below a ceiling too: through a window, or under a bridge
+    skies = skies + [own for own in clear if not is_wall(own)]  # below a ceiling too: through a window, or under a bridge
     if not skies:
         return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=is_ceiling)
     sky = _grown(skies, at_top, smooth, raster)
@@ -94,6 +97,19 @@ def _clear_pieces(smooth: Bool, raster: Raster) -> tuple[list[Bool], Bool]:
             clear.append(own)
             left = left & ~own
     return clear, left
+
+
+def _walls(raster: Raster) -> Callable[[Bool], bool]:
+    """Whether a smooth part (H, W) goes on below the horizon: so does a wall, and no sky."""
+    smooth = (raster.gradient < SMOOTH).reshape(raster.shape).astype(np.uint8)
+    _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
+    below = ~_is_up(raster).reshape(raster.shape)
+
+    def is_wall(own: Bool) -> bool:
+        numbers = np.unique(piece[own])
+        return bool((np.isin(piece, numbers[numbers > 0]) & below).sum() > BELOW * own.sum())
+
+    return is_wall
 
 
 def _filled(part: Bool) -> Bool:
