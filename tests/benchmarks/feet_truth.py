@@ -6,11 +6,10 @@ import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.dataset.truth import NOTHING, Truth
-from linecad.directions import Turns, components
 from linecad.ties.setting import Setting
 from linecad.ties.walls import COLUMNS, ROW, ROWS, Strip, StripDrawer, find_walls
 
-STEPPED = 0.2  # m: the ground is what lies flat and at most so much higher than the lowest of it, as pavements do
+STEPPED = 0.2  # m: the ground is flat and at most so much higher than the lowest that is seen, as pavements are
 SAME_PLANE = 0.04  # log offset
 SAME_HEIGHT = 0.03  # log
 ASIDE = 2  # rows above and below the foot that are looked at
@@ -32,7 +31,7 @@ class Example:
 
 def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth, is_above: bool = False) -> list[Example]:
     """The walls of all bodies of known scale (B,), NaN where it is not known; with their heads where `is_above`."""
-    drawer, known = StripDrawer(setting, is_above), GroundTruth(truth, setting.graph.turns, is_above)
+    drawer, known = StripDrawer(setting, is_above), GroundTruth(truth, setting, is_above)
     found = []
     for wall in find_walls(setting):
         strip = drawer.draw(wall) if np.isfinite(true_scale[wall.body]) else None
@@ -47,16 +46,18 @@ def examples_of(scene: str, setting: Setting, true_scale: Float, truth: Truth, i
 class GroundTruth:
     """Where walls meet the ground, or, where `is_above`, the ceiling."""
 
-    def __init__(self, truth: Truth, turns: Turns, is_above: bool = False) -> None:
+    def __init__(self, truth: Truth, setting: Setting, is_above: bool = False) -> None:
         self._truth, self._way = truth, 1.0 if is_above else -1.0
         self._wall_ends = OF_CORNICE if is_above else ASIDE
         normal, offset = truth.planes()
-        self.normal = components(normal, turns)  # (Q, K) along all directions, by which walls are numbered
+        # (Q, K) along all directions, by which walls are numbered: those that were found, not those of the truth.
+        self.normal = normal @ truth.rotation.T @ setting.sight.rotation
         self._offset = np.abs(offset)
         flat = np.abs(self.normal[:, 2]) > 0.99
         away = self._way * truth.quads[..., 2].mean(axis=1)
         self._log_height = np.log(np.maximum(away, 1e-9))
-        self._is_ground = flat & (away > away[flat].max() - STEPPED)
+        shown = np.isin(np.arange(len(flat)), truth.ids) & flat  # cellars lie lower
+        self._is_ground = flat & (away > away[shown].max(initial=-np.inf) - STEPPED)
 
     def foot(self, strip: Strip, drawer: StripDrawer, scale: float) -> tuple[float, float]:
         """The lowest row at which a share of the columns shows the wall above and the ground below, and that share."""

@@ -67,6 +67,11 @@ def number_colour(number):
     return lambda points: np.full(points.shape, float(number))
 
 
+def test_a_cellar_that_no_one_sees_is_no_ground(known):
+    (example,) = known(WALL, floor(BELOW), floor(BELOW + 1, 70.0, 80.0))
+    assert example.log_height == pytest.approx(np.log(BELOW), abs=0.6 * ROW)
+
+
 def test_the_foot_is_where_the_wall_meets_the_ground(known):
     (example,) = known(WALL, floor(BELOW))
     assert example.row == pytest.approx((np.log(BELOW) + MOVED - example.strip.top) / ROW - 0.5, abs=0.6)
@@ -122,13 +127,20 @@ def test_without_a_ceiling_there_is_no_head(known):
     assert (example.row, example.is_clear) == (UNSEEN, True)
 
 
-def test_walls_of_further_frames_are_known_by_their_own_directions():
-    """Walls of a turned house are numbered from 3 on."""
+@pytest.mark.parametrize("turned", [0.0, 0.3, -np.pi / 2])
+def test_walls_are_known_by_the_directions_that_were_found(turned):
+    """Whatever the world of the truth, and walls of a turned house, which are numbered from 3 on."""
     turns = (0.4,)
-    normals = directions_of(turns)[[1, 2, 4]]
+    found = directions_of(turns)
+    normals = found[[1, 2, 4]]
+    camera = np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]])
+    cosine, sine = np.cos(turned), np.sin(turned)
+    world = np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]])  # from the found one to that of the truth
     quads = np.zeros((3, 4, 3)) - [0.0, 0.0, BELOW]
-    truth = SimpleNamespace(planes=lambda: (normals, np.ones(3)), quads=quads)
-    known = GroundTruth(truth, turns)
-    along = np.abs(known.normal) > 0.99
+    truth = SimpleNamespace(
+        planes=lambda: (normals @ world.T, np.ones(3)), quads=quads, rotation=camera @ world.T, ids=np.arange(3)[None]
+    )  # fmt: skip
+    setting = SimpleNamespace(sight=SimpleNamespace(rotation=camera @ found.T))
+    along = np.abs(GroundTruth(truth, setting).normal) > 0.99
     assert along.tolist() == [[False, True, False, False, False], [False, False, True, False, False],
                               [False, False, False, False, True]]  # fmt: skip
