@@ -50,6 +50,7 @@ OF_EDGE = 0.3  # weight of the votes: the pixels of one edge are no witnesses ap
 SKY_EDGE = 0.15  # cost of an edge in the sky
 
 SKY_COST, STRANGE_COST, ROUGH_COST, SEED_GAIN = 0.35, 0.35, 1.2, 0.7
+RIM, BEYOND_SKY = 3.0, 1.0  # samples from where it is sky for sure, and what it costs beyond: there it is seldom
 
 COLOUR_WEIGHT = 0.25
 MOST_BY_COLOUR = 2.0  # log-odds
@@ -229,7 +230,8 @@ def _sky_cost(raster: Raster, heaven: Heaven) -> Float:
     edges = (raster.gradient > 0.5).reshape(raster.shape).astype(np.float32)
     rough = cv2.blur(edges, (7, 7)).ravel()
     cost = SKY_COST + STRANGE_COST * np.minimum(strange / 2, 3) + ROUGH_COST * np.minimum(rough / 0.2, 1)
-    return np.where(raster.rays[:, 2] > 0, cost - SEED_GAIN * heaven.seed, NEVER)
+    beyond = raster.distance(heaven.seed) > RIM
+    return np.where(raster.rays[:, 2] > 0, cost - SEED_GAIN * heaven.seed + BEYOND_SKY * beyond, NEVER)
 
 
 def sums(cell: Int, count: int, values: Float) -> Float:

@@ -10,6 +10,7 @@ from linecad.corrections.edits import FaceEdit
 from linecad.depth.normals import Normals
 from linecad.directions import Turns
 from linecad.model.regions.as_told import uncovered, with_told
+from linecad.model.regions.blank_walls import with_blank_walls
 from linecad.model.regions.clutter import with_hidden
 from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
@@ -98,6 +99,8 @@ def find_regions(
     surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)
     if heaven.is_ceiling and look.mapped is None:
         surfaces = with_skirtings(surfaces, lines, camera, turns)
+    if not heaven.is_ceiling and look.mapped is None and look.sketch is not None:
+        surfaces = with_blank_walls(surfaces, look.sketch, raster, heaven, view)
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)

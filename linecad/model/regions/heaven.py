@@ -48,11 +48,12 @@ def look_up(raster: Raster) -> Heaven:
     """Whether what is at the top of the photo is sky or ceiling, and how far it reaches."""
     pieces, smooth = _smooth_pieces(raster)
     is_wall = _walls(raster)
-    skies = _of_sky([own for own in pieces if not is_wall(own)], raster)
+    skies = [own for own in _of_sky(pieces, raster) if not is_wall(own)]
     at_top = np.any([np.zeros(raster.shape, bool), *pieces], axis=0)
     is_ceiling = not skies and bool(at_top.mean() > LEAST_CEILING)
     clear, smooth = _clear_pieces(smooth, raster)
-    skies = skies + [own for own in clear if not is_wall(own)]  # below a ceiling too: through a window, or under a bridge
+    # Below a ceiling too: through a window, or under a bridge.
+    skies = skies + [own for own in clear if not is_wall(own)]
     if not skies:
         return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=is_ceiling)
     sky = _grown(skies, at_top, smooth, raster)
@@ -100,14 +101,18 @@ def _clear_pieces(smooth: Bool, raster: Raster) -> tuple[list[Bool], Bool]:
 
 
 def _walls(raster: Raster) -> Callable[[Bool], bool]:
-    """Whether a smooth part (H, W) goes on below the horizon: so does a wall, and no sky."""
+    """Whether a smooth part (H, W) goes on below the horizon and ends there: so does a wall, and no sky.
+
+    What goes on down to the photo's border is a plain background.
+    """
     smooth = (raster.gradient < SMOOTH).reshape(raster.shape).astype(np.uint8)
     _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
     below = ~_is_up(raster).reshape(raster.shape)
 
     def is_wall(own: Bool) -> bool:
         numbers = np.unique(piece[own])
-        return bool((np.isin(piece, numbers[numbers > 0]) & below).sum() > BELOW * own.sum())
+        whole = np.isin(piece, numbers[numbers > 0])
+        return bool((whole & below).sum() > BELOW * own.sum() and not whole[-1].any())
 
     return is_wall
 

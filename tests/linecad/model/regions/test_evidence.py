@@ -8,11 +8,13 @@ import pytest
 
 from linecad.model.regions.evidence import (
     BESIDE_COST,
+    BEYOND_SKY,
     CLUTTER,
     CLUTTER_COST,
     GREEN_COST,
     NEAR_COST,
     NEVER,
+    RIM,
     ROOM_COST,
     SKY,
     SMOOTH_COST,
@@ -58,6 +60,18 @@ def test_depths_are_those_of_rays_on_surfaces(raster, surfaces):
         assert raster.rays[seen, surface.axis] * found[seen, number] == pytest.approx(surface.offset)
         assert (found[seen, number] > 0).all()
         assert (np.sign(raster.rays[~seen, surface.axis]) != np.sign(surface.offset)).all()
+
+
+def test_the_sky_costs_more_away_from_what_is_sky_for_sure(house, raster):
+    """Brick walls were the sky, which had the least cost of all that is strange."""
+    plain = replace(raster, colour=np.full_like(raster.colour, 200), gradient=np.zeros(raster.size))
+    seed = np.zeros(raster.shape, bool)
+    seed[:40] = True
+    heaven = Heaven(seed.ravel(), is_sky=True, is_ceiling=False)
+    cost = sample_costs(plain, house.lines, [], heaven, limit_of_depth(raster))[:, SKY].reshape(raster.shape)
+    rim = 40 + int(RIM)
+    assert cost[rim + 1 : 100] - cost[40] == pytest.approx(BEYOND_SKY)
+    assert cost[40 : rim - 1] == pytest.approx(cost[40, 0])
 
 
 def test_costs_of_a_photo_are_least_where_the_truth_is(house, raster, surfaces):

@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from linecad.model.regions.heaven import BRIGHTER, EVENING, LAMPS, WIRE, look_up
+from linecad.model.regions.heaven import BELOW, BRIGHTER, EVENING, LAMPS, WIRE, look_up
 from linecad.model.regions.raster import COLUMNS, take_raster
 
 BLUE_SKY, WHITE = (120, 170, 235), (215, 212, 200)
@@ -59,6 +59,19 @@ def test_a_warm_sky_is_much_lighter_than_what_is_before_it(light, is_sky, house)
     colour[:120] = (light, 129, 138)
     heaven = look_up(replace(raster, colour=colour))
     assert (heaven.is_sky, heaven.is_ceiling) == (is_sky, not is_sky)
+
+
+@pytest.mark.parametrize(("farther", "is_sky"), [(0.5, True), (2.0, False), (np.inf, True)])
+def test_what_goes_on_below_the_horizon_is_no_sky(farther, is_sky, house):
+    """Bright walls that reached to the photo's top were its sky; what reaches to its foot is a background."""
+    raster = under(BLUE_SKY, house)
+    colour, gradient = raster.colour.copy(), raster.gradient.reshape(raster.shape).copy()
+    down = (raster.rays[:, 2] > 0).reshape(raster.shape).sum(axis=0).max()
+    ends = round(min(down * (1 + farther * BELOW), len(colour)))
+    colour[:ends], gradient[:ends], gradient[ends : ends + 3] = (240, 128, 120), 0.0, 1.0
+    heaven = look_up(replace(raster, colour=colour, gradient=gradient.ravel()))
+    assert heaven.is_sky == is_sky
+    assert (heaven.seed.mean() > 0.3) == is_sky
 
 
 @pytest.mark.parametrize(("warmer", "is_sky"), [(0.8 * LAMPS, True), (1.2 * LAMPS, False)])
