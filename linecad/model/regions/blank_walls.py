@@ -5,31 +5,33 @@ stands on a line on the ground, looks the same from there to above the horizon, 
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, components, partner
-from linecad.geometry import lengths, world_rays
+from linecad.geometry import lengths, segment_coordinates, world_rays
 from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.roofs import Sketch
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import RELIEF, Surface, apart
+from linecad.scene import Lines
 
 LEAST_LENGTH = 0.03  # of the photo's width, of the lines of a foot together
-SAME_WALL = 0.06  # log offset; a foot that is no farther from a wall of lines is that wall's
-LEAST_ABOVE, LEAST_BELOW = 0.003, 0.0001  # of the photo, of what is seen above and below the horizon
-HIGHER = 1.0  # heights of the camera, so far above the horizon a wall is looked at,
-AT_FOOT = 0.06  # and from so far above its foot
+SAME_LINE = 2.0  # px of a photo of 1000, from a line of the scene, within which a line is the same one
+AT_GROUND = 0.04  # log height; what is farther from the ground lies on something else
+SAME_WALL = 0.06  # log offset; a foot that is no farther from a wall is that wall's
+LEAST_ABOVE, LEAST_SAMPLES = 0.003, 0.0001  # of the photo: above the horizon, and of any other part that is looked at
+HIGHER = 1.0  # heights of the camera above the horizon, up to which a wall is compared with what is below
+AT_FOOT = (0.03, 0.13)  # heights of the camera above the foot, between which the wall itself must begin
 BEFORE = (0.75, 0.97)  # of a wall's distance, where the ground before it is looked at
 ALIKE = np.array([16, 4, 5])  # of L*, a* and b*, within which parts of a wall look the same
-LEAST_ALIKE = 0.6  # share of a wall that does, above and below the horizon,
-LEAST_AT_TOP = 0.5  # and of each part above, to where it ends
-PART = 1.25  # of the height of the part below
-OTHER = 5.0  # Lab, between a wall and the ground before it
+LEAST_ALIKE = 0.6  # share that does of what is above the horizon, of what is below, and of what is at the foot
+FIRST_PART, PART, LEAST_IN_PART = 0.3, 1.1, 0.5  # a wall ends where less of the next tenth of its height looks the same
+OTHER = 5.0  # Lab, between a wall at its foot and the ground before it
 MOST_LINES, MOST_SKY = 0.03, 0.1  # share of a wall on lines of the scene, and that is sky for sure
 
 
@@ -69,18 +71,18 @@ class _Scene:
         at, up = self._on_wall(place)
         with np.errstate(invalid="ignore"):
             there = (at >= place.reach[0]) & (at <= place.reach[1])
-            below = there & (up < 0) & (up > (1 - AT_FOOT) * self.ground)
+            below = there & (up < 0) & (up > (1 - AT_FOOT[0]) * self.ground)
+            foot = below & (up < (1 - AT_FOOT[1]) * self.ground)
             above = there & (up > 0) & (up < -HIGHER * self.ground)
         before = self._before(place)
-        least = [LEAST_ABOVE * self.raster.size, *2 * [LEAST_BELOW * self.raster.size]]
-        if any(part.sum() < few for part, few in zip((above, below, before), least, strict=True)):
+        if min(part.mean() for part in (foot, before)) < LEAST_SAMPLES or above.mean() < LEAST_ABOVE:
             return None
         colour, on_line = self._colour, self._on_line
         if on_line[above | below].mean() > MOST_LINES or self.heaven.seed[above].mean() > MOST_SKY:
             return None
         is_like = np.asarray((np.abs(colour - np.median(colour[above | below], axis=0)) < ALIKE).all(axis=1), bool)
-        step = np.linalg.norm(np.median(colour[before], axis=0) - np.median(colour[below], axis=0))
-        if min(is_like[above].mean(), is_like[below].mean()) < LEAST_ALIKE or step < OTHER:
+        step = np.linalg.norm(np.median(colour[before], axis=0) - np.median(colour[foot], axis=0))
+        if min(is_like[part].mean() for part in (above, below, foot)) < LEAST_ALIKE or step < OTHER:
             return None
         box = np.full((2, self.raster.rays.shape[1]), place.offset)
         box[:, UP], box[:, place.along] = (self.ground, self._top(up, there, is_like)), place.reach
@@ -104,29 +106,43 @@ class _Scene:
             return near & (at >= place.reach[0]) & (at <= place.reach[1])
 
     def _top(self, up: Float, there: Bool, is_like: Bool) -> float:
-        """Up to where what is above the horizon looks like the wall."""
-        top = -HIGHER * self.ground
+        """Up to where what is above the horizon looks like the wall, and a part more."""
+        top = -FIRST_PART * self.ground
         while True:
             with np.errstate(invalid="ignore"):
                 part = there & (up >= top) & (up < PART * top)
-            if part.sum() < LEAST_BELOW * self.raster.size or is_like[part].mean() < LEAST_AT_TOP:
-                return top
             top *= PART
+            if part.mean() < LEAST_SAMPLES or is_like[part].mean() < LEAST_IN_PART:
+                return top
 
 
 def with_blank_walls(
-    surfaces: list[Surface], sketch: Sketch, raster: Raster, heaven: Heaven, view: View
+    surfaces: list[Surface], sketch: Sketch, lines: Lines, raster: Raster, heaven: Heaven, view: View
 ) -> list[Surface]:
-    """The surfaces, and walls of which the photo shows no line but their foot, and that no wall of lines is near."""
+    """The surfaces, and walls of which the photo shows no line but their foot, and that no other wall is near."""
     ground = next((each.offset for each in surfaces if each.kind == "ground"), None)
     if ground is None:
         return surfaces
     scene, found = _Scene(raster, heaven, ground), list(surfaces)
-    for place in _feet(sketch, ground, raster, view):
+    for place in _feet(_not_above(sketch, lines, ground, raster), ground, raster, view):
         walls = [each.offset for each in found if each.kind == "wall" and each.axis == place.normal]
         if all(apart(offset, place.offset) >= SAME_WALL for offset in walls):
             found += filter(None, [scene.wall(place)])
     return found
+
+
+def _not_above(sketch: Sketch, lines: Lines, ground: float, raster: Raster) -> Sketch:
+    """The sketch without the lines that the scene has somewhere else than on the ground: plinths and sills."""
+    height = components(lines.ends, raster.turns)[:, 0, UP].tolist()
+    elsewhere = np.array([apart(each, ground) >= AT_GROUND for each in height], bool)
+    near = SAME_LINE / 1000 * raster.step * raster.shape[1]
+    middle, kept = sketch.whole.mean(axis=1), np.ones(len(sketch.whole), bool)
+    for line in np.flatnonzero(elsewhere).tolist():
+        own = np.flatnonzero(sketch.axis == lines.axis[line])
+        along, beside = segment_coordinates(middle[own], lines.segment[line])
+        is_on = (along > 0) & (along < np.linalg.norm(lines.segment[line, 1] - lines.segment[line, 0]))
+        kept[own[is_on & (np.abs(beside) < near)]] = False
+    return replace(sketch, whole=sketch.whole[kept], axis=sketch.axis[kept])
 
 
 def _feet(sketch: Sketch, ground: float, raster: Raster, view: View) -> Iterable[_Place]:

@@ -100,7 +100,7 @@ def find_regions(
     if heaven.is_ceiling and look.mapped is None:
         surfaces = with_skirtings(surfaces, lines, camera, turns)
     if not heaven.is_ceiling and look.mapped is None and look.sketch is not None:
-        surfaces = with_blank_walls(surfaces, look.sketch, raster, heaven, view)
+        surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, heaven, view)
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)

@@ -3,7 +3,8 @@
 Smooth parts at the top of the photo of the sky's colours are the seed, and so are parts anywhere above the horizon that
 are as light and blue as only a clear sky is: under a bridge, or beyond leaves. From there the sky is what looks more
 like it than like the rest of the photo (GrabCut: Rother, Kolmogorov and Blake, SIGGRAPH 2004), as far as no line of the
-scene is crossed but for wires. A small part that looks like what is smooth below it is plaster.
+scene is crossed but for wires. A small part that looks like what is smooth below it is plaster, and a part that goes on
+below the horizon and ends there is a wall.
 """
 
 from collections.abc import Callable
@@ -20,12 +21,13 @@ SMOOTH = 0.30  # gradient of the sky
 LEAST_CEILING, LEAST_PIECE = 0.02, 0.002  # share of the photo
 MOST_LINES = 0.02  # share of samples on lines inside the sky
 BLUE, BRIGHT, BRIGHTER = 126, 232, 1.19  # of b*, of L*, and times that usual above the horizon: sky, not a ceiling
+BELOW = 0.05  # of a smooth part above the horizon; what goes on farther below it is no sky
+NOWHERE, ENDS, BACKGROUND = "nowhere", "ends", "background"
 CLEAR, LIGHT = 120, 185  # of b* at most, and of L* at least: sky wherever it is; panes and roads as blue are darker
 LEAST_CLEAR = 0.004  # of the photo
 MOST_WITHIN, MOST_PANELS = 0.03, 1.5  # as MOST_LINES, gaps included; as MOST_ALIKE, of a clear sky
 WARM = 129  # of b*; what is so or more, and not BRIGHT, is plaster where another part of the sky is less,
 EVENING = 1.5  # and where it is no lighter than this times what is usual above the horizon
-BELOW = 0.05  # of a smooth part above the horizon; what goes on farther below it is a wall
 LAMPS = 8  # of b*; parts of an evening's sky differ by less, and walls more that lamps light from near and from far
 DARKEST = 0.75  # times the lightness of its brightest part, of the sky
 ROUNDS = 1  # of GrabCut; with more of them the sky leaks into what is as white
@@ -47,13 +49,18 @@ class Heaven:
 def look_up(raster: Raster) -> Heaven:
     """Whether what is at the top of the photo is sky or ceiling, and how far it reaches."""
     pieces, smooth = _smooth_pieces(raster)
-    is_wall = _walls(raster)
-    skies = [own for own in _of_sky(pieces, raster) if not is_wall(own)]
+    goes_on = _below(raster)
+    lights = _of_sky(pieces, raster)
+    skies = [own for own in lights if goes_on(own) != ENDS]
+    if lights and not skies:  # beside a white wall the sky is too dark to be one
+        skies = _of_sky([own for own in pieces if goes_on(own) == NOWHERE], raster)
     at_top = np.any([np.zeros(raster.shape, bool), *pieces], axis=0)
-    is_ceiling = not skies and bool(at_top.mean() > LEAST_CEILING)
+    is_ceiling = not lights and bool(at_top.mean() > LEAST_CEILING)
     clear, smooth = _clear_pieces(smooth, raster)
+    walls = [own for own in clear if goes_on(own) == ENDS]
     # Below a ceiling too: through a window, or under a bridge.
-    skies = skies + [own for own in clear if not is_wall(own)]
+    skies = skies + [own for own in clear if goes_on(own) != ENDS]
+    at_top = np.any([at_top, *walls], axis=0)
     if not skies:
         return Heaven(np.zeros(raster.size, bool), is_sky=False, is_ceiling=is_ceiling)
     sky = _grown(skies, at_top, smooth, raster)
@@ -100,21 +107,22 @@ def _clear_pieces(smooth: Bool, raster: Raster) -> tuple[list[Bool], Bool]:
     return clear, left
 
 
-def _walls(raster: Raster) -> Callable[[Bool], bool]:
-    """Whether a smooth part (H, W) goes on below the horizon and ends there: so does a wall, and no sky.
+def _below(raster: Raster) -> Callable[[Bool], str]:
+    """How a smooth part (H, W) goes on below the horizon: as a wall, which ENDS there, and no sky does.
 
-    What goes on down to the photo's border is a plain background.
+    What goes on down to the photo's border is a plain BACKGROUND; the sky goes on NOWHERE.
     """
     smooth = (raster.gradient < SMOOTH).reshape(raster.shape).astype(np.uint8)
     _, piece = cv2.connectedComponents(cv2.erode(smooth, np.ones((3, 3), np.uint8)), connectivity=4)
     below = ~_is_up(raster).reshape(raster.shape)
 
-    def is_wall(own: Bool) -> bool:
-        numbers = np.unique(piece[own])
-        whole = np.isin(piece, numbers[numbers > 0])
-        return bool((whole & below).sum() > BELOW * own.sum() and not whole[-1].any())
+    def goes_on(own: Bool) -> str:
+        whole = np.isin(piece, np.unique(piece[own]))
+        if (whole & below).sum() <= BELOW * own.sum():
+            return NOWHERE
+        return BACKGROUND if whole[-1].any() else ENDS
 
-    return is_wall
+    return goes_on
 
 
 def _filled(part: Bool) -> Bool:

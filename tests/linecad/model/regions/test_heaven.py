@@ -6,7 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from linecad.model.regions.heaven import BELOW, BRIGHTER, EVENING, LAMPS, WIRE, look_up
+from linecad.model.regions.heaven import BELOW, BRIGHTER, DARKEST, EVENING, LAMPS, WIRE, look_up
 from linecad.model.regions.raster import COLUMNS, take_raster
 
 BLUE_SKY, WHITE = (120, 170, 235), (215, 212, 200)
@@ -70,8 +70,22 @@ def test_what_goes_on_below_the_horizon_is_no_sky(farther, is_sky, house):
     ends = round(min(down * (1 + farther * BELOW), len(colour)))
     colour[:ends], gradient[:ends], gradient[ends : ends + 3] = (240, 128, 120), 0.0, 1.0
     heaven = look_up(replace(raster, colour=colour, gradient=gradient.ravel()))
-    assert heaven.is_sky == is_sky
+    assert (heaven.is_sky, heaven.is_ceiling) == (is_sky, False)
     assert (heaven.seed.mean() > 0.3) == is_sky
+
+
+def test_the_sky_beside_a_white_wall_is_darker(house):
+    """As much as it is no sky beside a white cloud."""
+    raster = under(BLUE_SKY, house)
+    colour, gradient = raster.colour.copy(), raster.gradient.reshape(raster.shape).copy()
+    ends = round((raster.rays[:, 2] > 0).reshape(raster.shape).sum(axis=0).max() * (1 + 3 * BELOW))
+    colour[:120, :240], gradient[:120, :240] = (170, 125, 110), 0.0
+    colour[:ends, 240:], gradient[:ends, 240:] = (170 / DARKEST + 5, 128, 125), 0.0
+    gradient[:ends, 238:242] = gradient[ends : ends + 3, 240:] = 1.0
+    heaven = look_up(replace(raster, colour=colour, gradient=gradient.ravel()))
+    seed = heaven.seed.reshape(raster.shape)
+    assert seed[10:110, 10:230].mean() > 0.9
+    assert not seed[:, 242:].any()
 
 
 @pytest.mark.parametrize(("warmer", "is_sky"), [(0.8 * LAMPS, True), (1.2 * LAMPS, False)])
