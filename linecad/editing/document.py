@@ -22,7 +22,7 @@ from linecad.editing.state import Decisions, Model, Now
 from linecad.editing.tiles import TILE
 from linecad.editing.told_faces import told_faces
 from linecad.line_graph import LineGraph
-from linecad.model.known_lengths import measurable
+from linecad.model.scale import measurable
 from linecad.scene import Face, Plane, Scene
 
 NOT_IN_SPACE: dict[str, object] = {

@@ -12,7 +12,7 @@ from exporters.triangulation import triangulate
 from linecad.corrections.edits import FaceAnchor, Point
 from linecad.errors import CorrectionError, OutputError
 from linecad.geometry import project
-from linecad.model.known_lengths import seen_plane
+from linecad.model.scale import seen_plane
 from linecad.scene import Face, Plane, Scene
 
 NEAREST = 1e-3  # camera depth, in units of the scene; corners nearer than that have no place in the photo

@@ -4,18 +4,16 @@ from dataclasses import replace
 
 import numpy as np
 
-from exporters.bands import GUESS, bands_of
-from linecad.arrays import Bool, Float
+from linecad.arrays import Float
 from linecad.corrections.corrected import CorrectedLines, FoundPlace
 from linecad.directions import components
 from linecad.errors import ScaleError
 from linecad.geometry import depths_beside, world_rays
-from linecad.model.scale import SHORTEST, depth_on_face, nearest_on_line
-from linecad.scene import Plane, Scene
+from linecad.model.scale import SHORTEST, UNSURE, is_measurable, measurable, nearest_on_line, seen_plane
+from linecad.scene import Scene
 
 SAYS_NOTHING = "its length says nothing about the scale"  # of notes on lengths, also for who looks for them
 DISAGREE = "the known lengths disagree"
-UNSURE = "stands at a depth that is a guess"
 LENGTHS_DISAGREE = 1.05  # ratio of the scales that two known lengths give, above which a note says so
 GRAZING = 1e-6  # of a ray's part across a plane; what is less meets it nowhere
 
@@ -48,23 +46,6 @@ def measured(scene: Scene, corrected: CorrectedLines) -> Scene:
     return replace(scene, metres_per_unit=metres_per_unit, scale_source=source, notes=scene.notes + tuple(notes))
 
 
-def measurable(scene: Scene) -> Bool:
-    """(N,) whether the length of each line says how long a unit is: where its depth is no guess.
-
-    Where the scene tells probabilities, all components have one scale, and a length is as far off as the depth of its
-    line is (docs/decisions/0108); where it tells none, each has a scale of its own, and only component 0 is measured.
-    """
-    bands = bands_of(scene.lines)
-    tells: Bool = scene.lines.component == 0 if bands is None else bands != GUESS
-    return tells
-
-
-def _is_measurable(scene: Scene, plane: Plane) -> bool:
-    """Whether most of a plane's lines are; one without lines is where it is of component 0."""
-    tells = measurable(scene)[np.isin(scene.lines.id, plane.lines)]
-    return bool(2 * tells.sum() >= len(tells)) if len(tells) else scene.components_of_planes[plane.id] == 0
-
-
 def units_between(scene: Scene, corrected: CorrectedLines, places: tuple[FoundPlace, FoundPlace]) -> float:
     """How far apart two points are, in units of the scene; ScaleError where it has no such point, or not for sure."""
     first, second = (_point(scene, corrected, place) for place in places)
@@ -72,17 +53,6 @@ def units_between(scene: Scene, corrected: CorrectedLines, places: tuple[FoundPl
     if not units > SHORTEST * float(np.linalg.norm(first)):
         raise ScaleError("its two points are one; choose two others")
     return units
-
-
-def seen_plane(scene: Scene, pixel: tuple[float, float], normal: int | None) -> Plane | None:
-    """The plane whose face is the first that a pixel shows of all with this normal, or of all; None where none is."""
-    ray = world_rays(np.array(pixel), scene.camera.matrix, scene.rotation)
-    met = [
-        (depth, face.id, plane)
-        for plane, face in scene.faces
-        if normal in (None, plane.axis) and (depth := depth_on_face(ray, plane, face, scene.turns)) is not None
-    ]
-    return min(met, key=lambda each: each[:2])[2] if met else None
 
 
 def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
@@ -100,7 +70,7 @@ def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
     plane = seen_plane(scene, place.face, place.normal)
     if plane is None:
         raise ScaleError(f"no face that a person measured on is at {place.face[0]:.0f},{place.face[1]:.0f} px any more")
-    if not _is_measurable(scene, plane):
+    if not is_measurable(scene, plane):
         raise ScaleError(f"plane {plane.id} {UNSURE}")
     along = float(plane.along_normal(ray, scene.turns))
     if along * plane.offset <= GRAZING * abs(plane.offset) * float(np.linalg.norm(ray)):

@@ -1,11 +1,11 @@
 """How long a unit of a scene is in metres, from a length that a person knows.
 
 One photo has no scale, so somebody must say one length: of a line of the scene, between two points of the photo that
-lie on one line or in one plane, or the height of the camera above the ground. Only `metres_per_unit` is set; the
+lie on one line or on faces, or the height of the camera above the ground. Only `metres_per_unit` is set; the
 coordinates of a scene stay as they are.
 
-Lines and points are measured in component 0 alone: the scale of every other one is itself a guess
-(linecad.model.build). The ground stands where the lines of the whole scene put it (linecad.model.regions.surfaces).
+Lines and points are measured where their depth is no guess (`measurable`). The ground stands where the lines of the
+whole scene put it (linecad.model.regions.surfaces).
 """
 
 from dataclasses import dataclass, replace
@@ -13,7 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import shapely
 
-from linecad.arrays import Float
+from exporters.bands import GUESS, bands_of
+from linecad.arrays import Bool, Float
 from linecad.directions import Turns, across, axis_name, components
 from linecad.errors import ScaleError
 from linecad.geometry import world_rays
@@ -23,6 +24,8 @@ REACH = 0.004  # of the photo's longer side: a point that is nearer to a line in
 LOWER_SHARE = 0.1  # of the camera's height: what reaches farther below a plane speaks against its being the ground
 STRAY_LINES = 2  # lines that may reach below the ground, because some are always wrong
 SHORTEST = 1e-9  # of the scene's median depth; shorter lengths measure nothing
+WORDS = ("first", "second")
+UNSURE = "stands at a depth that is a guess"  # of lines and planes that are not `measurable`
 
 
 @dataclass(frozen=True)
@@ -133,13 +136,8 @@ def _line_length(scene: Scene, line: int) -> float:
             f"the scene has no line {line}, it {last}; name two places in the photo, U,V:U2,V2=METRES, or see the ids "
             "in a picture by `linecad export` with --option ids=on"
         )
-    component = int(scene.lines.component[rows[0]])
-    if component != 0:
-        raise ScaleError(
-            f"line {line} belongs to component {component}, whose own scale is a guess; "
-            "choose a line of component 0, or make its group that one by `linecad export` with --main U,V, a place on "
-            "it in the photo"
-        )
+    if not measurable(scene)[rows[0]]:
+        raise ScaleError(f"line {line} {UNSURE}; {_advice(scene, 'a surer one, or two places, U,V:U2,V2=METRES')}")
     start, end = scene.lines.ends[rows[0]]
     return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
 
@@ -150,21 +148,37 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
     rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
     row = _line_under(scene, pixels)
     if row is not None:
-        ends = scene.lines.ends[row]
-        points, where = nearest_on_line(rays, ends), f"line {scene.lines.id[row]}"
+        points, where = nearest_on_line(rays, scene.lines.ends[row]), f"line {scene.lines.id[row]}"
     else:
-        plane = _plane_under(scene, rays)
-        depth = plane.offset / plane.along_normal(rays, scene.turns)
-        points, where = rays * depth[:, None], f"plane {plane.id} ({axis_name(plane.axis)})"
+        (one, on), (other, beside) = (_point(scene, pixels[k], rays[k], word) for k, word in enumerate(WORDS))
+        points, where = np.array([one, other]), on if on == beside else f"{on} and {beside}"
     return _checked(scene, float(np.linalg.norm(points[1] - points[0])), "between the two points"), where
 
 
+def _point(scene: Scene, pixel: Float, ray: Float, word: str) -> tuple[Float, str]:
+    """Where (3,) the face lies that a point of the photo (2,) px shows, else a line there, and which it is."""
+    plane = seen_plane(scene, pixel, None)
+    if plane is not None and is_measurable(scene, plane):
+        depth = plane.offset / float(plane.along_normal(ray, scene.turns))
+        return ray * depth, f"plane {plane.id} ({axis_name(plane.axis)})"
+    row = _line_under(scene, pixel[None])
+    if row is not None:
+        return nearest_on_line(ray[None], scene.lines.ends[row])[0], f"line {scene.lines.id[row]}"
+    lies = "no face" if plane is None else f"plane {plane.id}, which {UNSURE},"
+    advice = _advice(scene, "points on faces or lines, or give a line by its id")
+    raise ScaleError(f"the {word} point lies on {lies} and on no line whose depth is surer; {advice}")
+
+
+def _advice(scene: Scene, other: str) -> str:
+    return f"choose {other}" if measurable(scene).any() else "no line is surer: give the camera's height instead"
+
+
 def _line_under(scene: Scene, pixels: Float) -> int | None:
-    """The row of the line of component 0 that both points (2, 2) px lie on, the nearest of several; or None."""
+    """The row of the measurable line that points (M, 2) px all lie on, the nearest of several; or None."""
     lines = scene.lines
     reach = REACH * max(scene.camera.width, scene.camera.height)
     off = shapely.distance(shapely.linestrings(lines.segment)[:, None], shapely.points(pixels)).max(axis=1, initial=0.0)
-    off[(lines.component != 0) | (off > reach)] = np.inf
+    off[~measurable(scene) | (off > reach)] = np.inf
     row = int(off.argmin()) if len(off) else 0
     return row if len(off) and np.isfinite(off[row]) else None
 
@@ -179,31 +193,34 @@ def nearest_on_line(rays: Float, ends: Float) -> Float:
     return points
 
 
-def _plane_under(scene: Scene, rays: Float) -> Plane:
-    """The plane of component 0 in which both rays (2, 3) meet a face."""
-    own = _own_lines(scene)
-    hit: list[set[int]] = [set(), set()]
-    planes = {plane.id: plane for plane in scene.planes if own & set(plane.lines)}
-    roofs = {roof for roof, wall in scene.walls_of_roofs.items() if wall in planes}
-    planes |= {plane.id: plane for plane in scene.planes if plane.id in roofs}
-    for plane, face in scene.faces:
-        if plane.id in planes:
-            for number in range(2):
-                if depth_on_face(rays[number], plane, face, scene.turns) is not None:
-                    hit[number].add(plane.id)
-    for number, word in enumerate(("first", "second")):
-        if not hit[number]:
-            raise ScaleError(
-                f"the {word} point lies on no face of component 0, and the two on none of its lines; "
-                "choose two points on one line or in one plane, or give a line by its id"
-            )
-    common = sorted(hit[0] & hit[1])
-    if not common:
-        raise ScaleError(
-            f"the two points lie in different planes ({min(hit[0])} and {min(hit[1])}); "
-            "choose two points on one line or in one plane"
-        )
-    return planes[common[0]]
+def measurable(scene: Scene) -> Bool:
+    """(N,) whether the length of each line says how long a unit is: where its depth is no guess.
+
+    Where the scene tells probabilities, all components have one scale, and a length is as far off as the depth of its
+    line is (docs/decisions/0108); where it tells none, each has a scale of its own, and only component 0 is measured.
+    """
+    bands = bands_of(scene.lines)
+    tells: Bool = scene.lines.component == 0 if bands is None else bands != GUESS
+    return tells
+
+
+def is_measurable(scene: Scene, plane: Plane) -> bool:
+    """Whether most lines of a plane are, or of a roof's wall; one without lines is where it is of component 0."""
+    wall = scene.walls_of_roofs.get(plane.id, plane.id)
+    own = [line for each in scene.planes if each.id == wall for line in each.lines]
+    tells = measurable(scene)[np.isin(scene.lines.id, own)]
+    return bool(2 * tells.sum() >= len(tells)) if len(tells) else scene.components_of_planes[plane.id] == 0
+
+
+def seen_plane(scene: Scene, pixel: tuple[float, float] | Float, normal: int | None) -> Plane | None:
+    """The plane whose face is the first that a pixel shows of all with this normal, or of all; None where none is."""
+    ray = world_rays(np.array(pixel), scene.camera.matrix, scene.rotation)
+    met = [
+        (depth, face.id, plane)
+        for plane, face in scene.faces
+        if normal in (None, plane.axis) and (depth := depth_on_face(ray, plane, face, scene.turns)) is not None
+    ]
+    return min(met, key=lambda each: each[:2])[2] if met else None
 
 
 def depth_on_face(ray: Float, plane: Plane, face: Face, turns: Turns) -> float | None:

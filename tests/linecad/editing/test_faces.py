@@ -9,7 +9,8 @@ from linecad.corrections.file import corrections_from_json, corrections_to_json
 from linecad.editing.faces import face_anchor
 from linecad.errors import CorrectionError
 from linecad.geometry import project
-from linecad.model.known_lengths import measured, seen_plane
+from linecad.model.known_lengths import measured
+from linecad.model.scale import seen_plane
 from linecad.scene import Face
 
 

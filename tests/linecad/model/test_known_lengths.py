@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from linecad.corrections.corrected import FoundPlace
 from linecad.geometry import project
 from linecad.line_graph import Segments
-from linecad.model.known_lengths import measurable, measured, seen_plane
+from linecad.model.known_lengths import measured
+from linecad.model.scale import measurable, seen_plane
 from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
 
 CAMERA = Camera(3000, 2000, np.array([[2500.0, 0, 1499.5], [0, 2500, 999.5], [0, 0, 1]]), "file")

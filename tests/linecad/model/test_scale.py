@@ -97,9 +97,10 @@ def test_a_second_length_replaces_the_first(scene):
         ((4, 10, 0), (4, 10, 2), 2, "line 12"),
         ((-2, 10, 0), (3, 10, 3.5), np.hypot(5, 3.5), "plane 3 (y)"),
         ((-2, 7, -1.6), (3, 8, -1.6), np.hypot(5, 1), "plane 4 (z)"),
+        ((-2, 10, 3), (2, 7, -1.6), np.sqrt(16 + 9 + 4.6**2), "plane 3 (y) and plane 4 (z)"),
     ],
 )
-def test_two_points_on_one_line_or_in_one_plane(scene, first, second, units, where):
+def test_two_points_on_lines_and_faces(scene, first, second, units, where):
     measured = set_scale(scene, PointDistance((pixel(*first), pixel(*second)), units * UNIT))
     assert measured.metres_per_unit == pytest.approx(UNIT, rel=1e-9)
     assert where in measured.scale_source
@@ -110,6 +111,13 @@ def test_points_beside_a_line_count_as_on_it(scene):
     measured = set_scale(scene, PointDistance(((u, v - 4), second), 5 * UNIT))
     assert measured.metres_per_unit == pytest.approx(UNIT, rel=0.01)
     assert "line 13" in measured.scale_source
+
+
+def test_a_point_beside_a_face_is_on_the_line_there(scene):
+    (u, v), second = pixel(4, 10, 2), pixel(2, 7, -1.6)
+    measured = set_scale(scene, PointDistance(((u + 3, v), second), np.sqrt(4 + 9 + 3.6**2) * UNIT))
+    assert measured.metres_per_unit == pytest.approx(UNIT, rel=0.01)
+    assert "line 12 and plane 4 (z)" in measured.scale_source
 
 
 @given(st.floats(-2.9, 3.9), st.floats(-1.5, 3.9), st.floats(1e-3, 1e3))
@@ -128,7 +136,6 @@ def test_any_distance_on_the_wall(u, v, metres):
     [
         ((1, 10, 2), (-2, 10, 3), "the first point lies on no face"),
         ((-2, 10, 3), (1, 10, 2), "the second point lies on no face"),
-        ((-2, 10, 3), (2, 7, -1.6), "in different planes (3 and 4)"),
         ((-2, 10, 3), (-2, 10, 3), "measures nothing"),
     ],
 )
@@ -139,7 +146,10 @@ def test_points_that_cannot_be_measured_are_refused(scene, first, second, words)
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(("line", "words"), [(99, "no line 99, it has ids up to 16"), (16, "belongs to component 1")])
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [(99, "no line 99, it has ids up to 16"), (16, "line 16 stands at a depth that is a guess; choose")],
+)
 def test_a_line_that_cannot_be_measured_is_refused(scene, line, words):
     with pytest.raises(ScaleError, match=words):
         set_scale(scene, LineLength(line, 1.0))
@@ -148,6 +158,41 @@ def test_a_line_that_cannot_be_measured_is_refused(scene, line, words):
 def test_the_lines_of_another_component_are_not_measured_by_points(scene):
     with pytest.raises(ScaleError, match="the first point lies on no face"):
         set_scale(with_planes(scene), PointDistance((pixel(-1, 9, 1.2), pixel(-1, 9, 2.8)), 1.0))
+
+
+def with_probability(scene, *probability):
+    return replace(scene, lines=replace(scene.lines, probability=list(probability)))
+
+
+def test_where_probabilities_are_told_lines_of_every_component_are_measured(scene):
+    told = with_probability(scene, *[0.9] * 6, 0.6)
+    assert set_scale(told, LineLength(16, 2 * UNIT)).metres_per_unit == pytest.approx(UNIT)
+    by_points = set_scale(told, PointDistance((pixel(-1, 9, 1.2), pixel(-1, 9, 2.8)), 1.6 * UNIT))
+    assert by_points.metres_per_unit == pytest.approx(UNIT)
+
+
+def test_a_guess_is_measured_in_no_component(scene):
+    told = with_probability(scene, *[0.4] * 6, 0.6)
+    with pytest.raises(ScaleError, match="line 13 stands at a depth that is a guess; choose a surer one"):
+        set_scale(told, LineLength(13, 1.0))
+    with pytest.raises(ScaleError, match="the first point lies on plane 3, which stands at a depth that is a guess"):
+        set_scale(told, PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
+
+
+def test_where_all_lines_are_guesses_the_height_of_the_camera_is_asked_for(scene):
+    with pytest.raises(ScaleError, match="no line is surer: give the camera's height"):
+        set_scale(with_probability(scene, *[0.4] * 7), LineLength(13, 1.0))
+
+
+def test_a_roof_is_as_sure_as_its_wall(scene):
+    face = Face(2, [[0, 10, 4], [2, 10, 4], [2, 12, 6], [0, 12, 6]], kind="roof")
+    roofed = with_planes(scene, *scene.planes, Plane(8, 1, -6 / np.sqrt(2), (), (face,), tilt=np.radians(135)))
+    points = PointDistance((pixel(0.5, 10.5, 4.5), pixel(1.5, 11.5, 5.5)), np.sqrt(3) * UNIT)
+    told = set_scale(with_probability(roofed, *[0.9] * 7), points)
+    assert told.metres_per_unit == pytest.approx(UNIT)
+    assert "plane 8" in told.scale_source
+    with pytest.raises(ScaleError, match="plane 8, which stands at a depth that is a guess"):
+        set_scale(with_probability(roofed, *[0.4] * 6, 0.9), points)
 
 
 def test_the_height_of_the_camera_above_the_ground(scene):
