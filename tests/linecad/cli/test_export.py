@@ -266,7 +266,7 @@ def told(scene_file, folder):
     """The scene with probabilities: 0.95 for the first half of its lines, 0.4 for the others."""
     scene = json.loads(scene_file.read_text(encoding="utf-8"))
     for number, line in enumerate(scene["lines"]):
-        line["probability"] = 0.95 if 2 * number < len(scene["lines"]) else 0.4
+        line["probability"] = 0.95 if 2 * number < len(scene["lines"]) else 0.6
     (folder / "told.json").write_text(json.dumps(scene), encoding="utf-8")
     return scene
 
@@ -285,6 +285,13 @@ def test_a_line_that_is_left_out_still_sets_the_scale(folder, told):
     arguments = ["--scale", f"{told['lines'][-1]['id']}=2", "--confidence", "0.9", "--quiet"]
     assert main(["export", "told.json", "-o", "a.json", *arguments]) == 0
     assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["metres_per_unit"] is not None
+
+
+def test_a_line_whose_depth_is_a_guess_sets_no_scale(fails, folder, told):
+    told["lines"][-1]["probability"] = 0.4
+    (folder / "told.json").write_text(json.dumps(told), encoding="utf-8")
+    said = fails("export", "told.json", "-o", "a.json", "--scale", f"{told['lines'][-1]['id']}=2")
+    assert "stands at a depth that is a guess; choose a surer one" in said
 
 
 @pytest.mark.usefixtures("told")
