@@ -1,7 +1,7 @@
 """Which group of lines a scene is about: component 0, by its share of the photo, or as a person says.
 
-A group, or component, is what real crossings connect. Depths are told relative to component 0, and known lengths are
-measured in it alone.
+A group, or component, is what real crossings connect. Depths are told relative to component 0, and where no
+probabilities are told known lengths are measured in it alone.
 """
 
 from dataclasses import replace

@@ -9,7 +9,7 @@ from linecad.corrections.corrected import CorrectedLines, FoundPlace
 from linecad.directions import components
 from linecad.errors import ScaleError
 from linecad.geometry import depths_beside, world_rays
-from linecad.model.scale import SHORTEST, UNSURE, is_measurable, measurable, nearest_on_line, seen_plane
+from linecad.model.scale import SHORTEST, UNSURE, UNSURE_PLANE, is_measurable, measurable, nearest_on_line, seen_plane
 from linecad.scene import Scene
 
 SAYS_NOTHING = "its length says nothing about the scale"  # of notes on lengths, also for who looks for them
@@ -71,7 +71,7 @@ def _point(scene: Scene, corrected: CorrectedLines, place: FoundPlace) -> Float:
     if plane is None:
         raise ScaleError(f"no face that a person measured on is at {place.face[0]:.0f},{place.face[1]:.0f} px any more")
     if not is_measurable(scene, plane):
-        raise ScaleError(f"plane {plane.id} {UNSURE}")
+        raise ScaleError(f"plane {plane.id} {UNSURE_PLANE}")
     along = float(plane.along_normal(ray, scene.turns))
     if along * plane.offset <= GRAZING * abs(plane.offset) * float(np.linalg.norm(ray)):
         raise ScaleError(f"the ray of {u:.0f},{v:.0f} px does not meet plane {plane.id}")

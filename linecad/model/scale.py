@@ -25,7 +25,8 @@ LOWER_SHARE = 0.1  # of the camera's height: what reaches farther below a plane 
 STRAY_LINES = 2  # lines that may reach below the ground, because some are always wrong
 SHORTEST = 1e-9  # of the scene's median depth; shorter lengths measure nothing
 WORDS = ("first", "second")
-UNSURE = "stands at a depth that is a guess"  # of lines and planes that are not `measurable`
+UNSURE = "stands at a depth that is a guess"  # of lines that are not `measurable`
+UNSURE_PLANE = f"{UNSURE} or that no line tells"
 
 
 @dataclass(frozen=True)
@@ -137,7 +138,7 @@ def _line_length(scene: Scene, line: int) -> float:
             "in a picture by `linecad export` with --option ids=on"
         )
     if not measurable(scene)[rows[0]]:
-        raise ScaleError(f"line {line} {UNSURE}; {_advice(scene, 'a surer one, or two places, U,V:U2,V2=METRES')}")
+        raise ScaleError(f"line {line} {_why_unmeasured(scene, int(rows[0]))}")
     start, end = scene.lines.ends[rows[0]]
     return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
 
@@ -164,13 +165,20 @@ def _point(scene: Scene, pixel: Float, ray: Float, word: str) -> tuple[Float, st
     row = _line_under(scene, pixel[None])
     if row is not None:
         return nearest_on_line(ray[None], scene.lines.ends[row])[0], f"line {scene.lines.id[row]}"
-    lies = "no face" if plane is None else f"plane {plane.id}, which {UNSURE},"
-    advice = _advice(scene, "points on faces or lines, or give a line by its id")
-    raise ScaleError(f"the {word} point lies on {lies} and on no line whose depth is surer; {advice}")
+    lies = "no face" if plane is None else f"plane {plane.id}, which {UNSURE_PLANE},"
+    raise ScaleError(
+        f"the {word} point lies on {lies} and on no line that can be measured; choose a point on a surer face or line, "
+        "or give a line by its id"
+    )
 
 
-def _advice(scene: Scene, other: str) -> str:
-    return f"choose {other}" if measurable(scene).any() else "no line is surer: give the camera's height instead"
+def _why_unmeasured(scene: Scene, row: int) -> str:
+    if bands_of(scene.lines) is not None:
+        return f"{UNSURE}; choose a surer one, or two places in the photo, U,V:U2,V2=METRES"
+    return (
+        f"belongs to component {scene.lines.component[row]}, whose own scale is a guess; choose a line of component 0, "
+        "or make its group that one by `linecad export` with --main U,V, a place on it in the photo"
+    )
 
 
 def _line_under(scene: Scene, pixels: Float) -> int | None:
@@ -205,11 +213,18 @@ def measurable(scene: Scene) -> Bool:
 
 
 def is_measurable(scene: Scene, plane: Plane) -> bool:
-    """Whether most lines of a plane are, or of a roof's wall; one without lines is where it is of component 0."""
-    wall = scene.walls_of_roofs.get(plane.id, plane.id)
-    own = [line for each in scene.planes if each.id == wall for line in each.lines]
-    tells = measurable(scene)[np.isin(scene.lines.id, own)]
-    return bool(2 * tells.sum() >= len(tells)) if len(tells) else scene.components_of_planes[plane.id] == 0
+    """Whether a plane shows the ground, on which all stands, or half of its lines or more are `measurable`.
+
+    A roof has the lines of the wall that carries it, a pane those of the wall around it. A plane without any is not.
+    """
+    if plane.shows_ground:
+        return True
+    wall_of = {opening.id: opening.plane for opening in scene.openings}
+    own = {scene.walls_of_roofs.get(plane.id, plane.id)}
+    if not plane.lines:
+        own |= {wall_of[face.opening] for face in plane.faces if face.opening is not None}
+    tells = measurable(scene)[np.isin(scene.lines.id, [line for p in scene.planes if p.id in own for line in p.lines])]
+    return bool(len(tells) and 2 * tells.sum() >= len(tells))
 
 
 def seen_plane(scene: Scene, pixel: tuple[float, float] | Float, normal: int | None) -> Plane | None:

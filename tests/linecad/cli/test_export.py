@@ -263,7 +263,7 @@ def test_a_scene_file_sends_nobody_to_another_folder(scene_file, folder):
 
 @pytest.fixture
 def told(scene_file, folder):
-    """The scene with probabilities: 0.95 for the first half of its lines, 0.4 for the others."""
+    """The scene with probabilities: 0.95 for the first half of its lines, 0.6 for the others."""
     scene = json.loads(scene_file.read_text(encoding="utf-8"))
     for number, line in enumerate(scene["lines"]):
         line["probability"] = 0.95 if 2 * number < len(scene["lines"]) else 0.6

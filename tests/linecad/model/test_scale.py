@@ -10,8 +10,8 @@ from hypothesis import strategies as st
 from linecad.errors import ScaleError
 from linecad.geometry import project
 from linecad.io.scene_file import scene_from_json, scene_to_json
-from linecad.model.scale import CameraHeight, LineLength, PointDistance, find_ground, set_scale
-from linecad.scene import Camera, Face, Intersections, Lines, Plane, Scene, SolveReport
+from linecad.model.scale import CameraHeight, LineLength, PointDistance, find_ground, is_measurable, set_scale
+from linecad.scene import Camera, Face, Intersections, Lines, Opening, Plane, Scene, SolveReport
 
 UNIT = 0.25  # m a unit; the scene below is a wall 2.5 m before a camera that stands 0.4 m above the ground
 K = np.array([[1000.0, 0, 640], [0, 1000, 480], [0, 0, 1]])
@@ -148,7 +148,7 @@ def test_points_that_cannot_be_measured_are_refused(scene, first, second, words)
 
 @pytest.mark.parametrize(
     ("line", "words"),
-    [(99, "no line 99, it has ids up to 16"), (16, "line 16 stands at a depth that is a guess; choose")],
+    [(99, "no line 99, it has ids up to 16"), (16, "line 16 belongs to component 1")],
 )
 def test_a_line_that_cannot_be_measured_is_refused(scene, line, words):
     with pytest.raises(ScaleError, match=words):
@@ -179,9 +179,47 @@ def test_a_guess_is_measured_in_no_component(scene):
         set_scale(told, PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
 
 
-def test_where_all_lines_are_guesses_the_height_of_the_camera_is_asked_for(scene):
-    with pytest.raises(ScaleError, match="no line is surer: give the camera's height"):
-        set_scale(with_probability(scene, *[0.4] * 7), LineLength(13, 1.0))
+def test_a_point_on_a_guessed_face_is_on_the_sure_line_there(scene):
+    told = with_probability(scene, 0.4, 0.9, 0.4, 0.4, 0.4, 0.4, 0.4)  # line 11 is the wall's left edge
+    (u, v), second = pixel(-3, 10, 2), pixel(2, 7, -1.6)
+    ground = replace(scene.planes[1], faces=(Face(1, GROUND, kind="ground"),))
+    told = with_planes(told, scene.planes[0], ground)
+    measured = set_scale(told, PointDistance(((u + 3, v), second), np.sqrt(25 + 9 + 3.6**2) * UNIT))
+    assert measured.metres_per_unit == pytest.approx(UNIT, rel=0.01)
+    assert "line 11 and plane 4 (z)" in measured.scale_source
+
+
+@pytest.mark.parametrize(("sure", "is_taken"), [(2, False), (3, True)])
+def test_a_plane_is_measured_where_half_of_its_lines_are(scene, sure, is_taken):
+    told = with_probability(scene, *[0.9] * sure, *[0.4] * (7 - sure))
+    wall = replace(scene.planes[0], lines=(10, 11, 12, 13, 15, 16))
+    assert is_measurable(with_planes(told, wall), wall) == is_taken
+
+
+def test_the_ground_is_always_measured_and_a_wall_without_lines_never(scene):
+    told = with_probability(scene, *[0.4] * 7)
+    ground = replace(scene.planes[1], faces=(Face(1, GROUND, kind="ground"),))
+    points = PointDistance((pixel(-2, 7, -1.6), pixel(3, 8, -1.6)), np.hypot(5, 1) * UNIT)
+    assert set_scale(with_planes(told, ground), points).metres_per_unit == pytest.approx(UNIT)
+    bare = replace(scene.planes[0], lines=())
+    with pytest.raises(ScaleError, match="on plane 3, which stands at a depth that is a guess or that no line tells"):
+        set_scale(with_planes(scene, bare), PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
+
+
+def test_a_face_of_another_component_is_not_measured_where_no_probability_is_told(scene):
+    wall = replace(scene.planes[0], lines=(16,))
+    with pytest.raises(ScaleError, match="on plane 3, which stands"):
+        set_scale(with_planes(scene, wall), PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
+
+
+def test_a_pane_is_as_sure_as_the_wall_around_it(scene):
+    pane = Plane(7, 1, 10.2, (), (Face(5, [[0, 10.2, 1.02], [2, 10.2, 1.02], [2, 10.2, 3], [0, 10.2, 3]], opening=0),))
+    window = Opening(0, 3, 0.0, 2.0, 1.0, 3.0, "window", 0.2, 10.2)
+    glazed = replace(scene, planes=(*scene.planes, pane), openings=(window,))
+    points = PointDistance((pixel(0.5, 10.2, 1.5), pixel(1.5, 10.2, 2.5)), np.sqrt(2) * UNIT)
+    assert set_scale(with_probability(glazed, *[0.9] * 7), points).metres_per_unit == pytest.approx(UNIT)
+    with pytest.raises(ScaleError, match="plane 7, which"):
+        set_scale(with_probability(glazed, *[0.4] * 6, 0.9), points)
 
 
 def test_a_roof_is_as_sure_as_its_wall(scene):
