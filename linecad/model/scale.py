@@ -4,8 +4,9 @@ One photo has no scale, so somebody must say one length: of a line of the scene,
 lie on one line or on faces, or the height of the camera above the ground. Only `metres_per_unit` is set; the
 coordinates of a scene stay as they are.
 
-Lines and points are measured where their depth is no guess (`measurable`). The ground stands where the lines of the
-whole scene put it (linecad.model.regions.surfaces).
+Where the scene tells probabilities, whatever a person names is measured, and what is measured says so where its depth
+is a guess; else component 0 alone (`measurable`). The ground stands where the lines of the whole scene put it
+(linecad.model.regions.surfaces).
 """
 
 from dataclasses import dataclass, replace
@@ -27,6 +28,7 @@ SHORTEST = 1e-9  # of the scene's median depth; shorter lengths measure nothing
 WORDS = ("first", "second")
 UNSURE = "stands at a depth that is a guess"  # of lines that are not `measurable`
 UNSURE_PLANE = f"{UNSURE} or that no line tells"
+DOUBT = ", at a depth that is a guess"  # of what is measured all the same
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,8 @@ def set_scale(scene: Scene, known: Known) -> Scene:
     """
     match known:
         case LineLength():
-            units, what = _line_length(scene, known.line), f"line {known.line} is {known.metres:g} m long"
+            units, doubt = _line_length(scene, known.line)
+            what = f"line {known.line}{doubt}{',' * bool(doubt)} is {known.metres:g} m long"
         case PointDistance():
             units, where = _distance(scene, *known.points)
             (a, b), (c, d) = known.points
@@ -128,8 +131,8 @@ def _own_lines(scene: Scene) -> set[int]:
     return set(scene.lines.id[scene.lines.component == 0].tolist())
 
 
-def _line_length(scene: Scene, line: int) -> float:
-    """In units of the scene."""
+def _line_length(scene: Scene, line: int) -> tuple[float, str]:
+    """In units of the scene, and what is to be told of its depth."""
     rows = np.flatnonzero(scene.lines.id == line)
     if len(rows) == 0:
         last = f"has ids up to {scene.lines.id.max()}" if len(scene.lines) else "has no lines"
@@ -137,17 +140,22 @@ def _line_length(scene: Scene, line: int) -> float:
             f"the scene has no line {line}, it {last}; name two places in the photo, U,V:U2,V2=METRES, or see the ids "
             "in a picture by `linecad export` with --option ids=on"
         )
-    if not measurable(scene)[rows[0]]:
-        raise ScaleError(f"line {line} {_why_unmeasured(scene, int(rows[0]))}")
+    is_sure = bool(measurable(scene)[rows[0]])
+    if not is_sure and bands_of(scene.lines) is None:
+        raise ScaleError(
+            f"line {line} belongs to component {scene.lines.component[rows[0]]}, whose own scale is a guess; "
+            "choose a line of component 0, or make its group that one by `linecad export` with --main U,V, a place on "
+            "it in the photo"
+        )
     start, end = scene.lines.ends[rows[0]]
-    return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}")
+    return _checked(scene, float(np.linalg.norm(end - start)), f"line {line}"), "" if is_sure else DOUBT
 
 
 def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, float]) -> tuple[float, str]:
     """How far apart two points of the photo (px) lie in space, in units of the scene, and on what they lie."""
     pixels = np.array([first, second])
     rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
-    row = _line_under(scene, pixels)
+    row = _line_under(scene, pixels, measurable(scene))
     if row is not None:
         points, where = nearest_on_line(rays, scene.lines.ends[row]), f"line {scene.lines.id[row]}"
     else:
@@ -157,36 +165,32 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
 
 
 def _point(scene: Scene, pixel: Float, ray: Float, word: str) -> tuple[Float, str]:
-    """Where (3,) the face lies that a point of the photo (2,) px shows, else a line there, and which it is."""
-    plane = seen_plane(scene, pixel, None)
-    if plane is not None and is_measurable(scene, plane):
+    """Where (3,) what a point of the photo (2,) px shows lies, and what it is: a face, else a line; the sure before."""
+    plane, sure = seen_plane(scene, pixel, None), measurable(scene)
+    is_sure = plane is not None and is_measurable(scene, plane)
+    is_told = bands_of(scene.lines) is not None
+    row = None if is_sure else _line_under(scene, pixel[None], sure)
+    if plane is not None and (is_sure or (is_told and row is None)):
         depth = plane.offset / float(plane.along_normal(ray, scene.turns))
-        return ray * depth, f"plane {plane.id} ({axis_name(plane.axis)})"
-    row = _line_under(scene, pixel[None])
+        return ray * depth, f"plane {plane.id} ({axis_name(plane.axis)}){'' if is_sure else DOUBT}"
+    if row is None and is_told:
+        row = _line_under(scene, pixel[None], np.ones(len(sure), bool))
     if row is not None:
-        return nearest_on_line(ray[None], scene.lines.ends[row])[0], f"line {scene.lines.id[row]}"
+        what = f"line {scene.lines.id[row]}{'' if sure[row] else DOUBT}"
+        return nearest_on_line(ray[None], scene.lines.ends[row])[0], what
     lies = "no face" if plane is None else f"plane {plane.id}, which {UNSURE_PLANE},"
     raise ScaleError(
-        f"the {word} point lies on {lies} and on no line that can be measured; choose a point on a surer face or line, "
+        f"the {word} point lies on {lies} and on no line that can be measured; choose a point on a face or a line, "
         "or give a line by its id"
     )
 
 
-def _why_unmeasured(scene: Scene, row: int) -> str:
-    if bands_of(scene.lines) is not None:
-        return f"{UNSURE}; choose a surer one, or two places in the photo, U,V:U2,V2=METRES"
-    return (
-        f"belongs to component {scene.lines.component[row]}, whose own scale is a guess; choose a line of component 0, "
-        "or make its group that one by `linecad export` with --main U,V, a place on it in the photo"
-    )
-
-
-def _line_under(scene: Scene, pixels: Float) -> int | None:
-    """The row of the measurable line that points (M, 2) px all lie on, the nearest of several; or None."""
+def _line_under(scene: Scene, pixels: Float, which: Bool) -> int | None:
+    """The row of that of some lines (N,) that points (M, 2) px all lie on, the nearest of several; or None."""
     lines = scene.lines
     reach = REACH * max(scene.camera.width, scene.camera.height)
     off = shapely.distance(shapely.linestrings(lines.segment)[:, None], shapely.points(pixels)).max(axis=1, initial=0.0)
-    off[~measurable(scene) | (off > reach)] = np.inf
+    off[~which | (off > reach)] = np.inf
     row = int(off.argmin()) if len(off) else 0
     return row if len(off) and np.isfinite(off[row]) else None
 

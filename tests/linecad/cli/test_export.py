@@ -287,11 +287,12 @@ def test_a_line_that_is_left_out_still_sets_the_scale(folder, told):
     assert json.loads((folder / "a.json").read_text(encoding="utf-8"))["metres_per_unit"] is not None
 
 
-def test_a_line_whose_depth_is_a_guess_sets_no_scale(fails, folder, told):
+def test_a_scale_from_a_line_whose_depth_is_a_guess_says_so(folder, told):
     told["lines"][-1]["probability"] = 0.4
     (folder / "told.json").write_text(json.dumps(told), encoding="utf-8")
-    said = fails("export", "told.json", "-o", "a.json", "--scale", f"{told['lines'][-1]['id']}=2")
-    assert "stands at a depth that is a guess; choose a surer one" in said
+    arguments = ["--scale", f"{told['lines'][-1]['id']}=2", "--quiet"]
+    assert main(["export", "told.json", "-o", "a.json", *arguments]) == 0
+    assert "at a depth that is a guess" in json.loads((folder / "a.json").read_text(encoding="utf-8"))["scale_source"]
 
 
 @pytest.mark.usefixtures("told")

@@ -171,12 +171,16 @@ def test_where_probabilities_are_told_lines_of_every_component_are_measured(scen
     assert by_points.metres_per_unit == pytest.approx(UNIT)
 
 
-def test_a_guess_is_measured_in_no_component(scene):
+def test_a_scale_from_a_guess_says_so(scene):
     told = with_probability(scene, *[0.4] * 6, 0.6)
-    with pytest.raises(ScaleError, match="line 13 stands at a depth that is a guess; choose a surer one"):
-        set_scale(told, LineLength(13, 1.0))
-    with pytest.raises(ScaleError, match="the first point lies on plane 3, which stands at a depth that is a guess"):
-        set_scale(told, PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
+    by_line = set_scale(told, LineLength(13, 7 * UNIT))
+    assert by_line.scale_source == "line 13, at a depth that is a guess, is 1.75 m long, so a unit is 0.25 m"
+    by_points = set_scale(told, PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), np.hypot(5, 3.5) * UNIT))
+    assert by_points.metres_per_unit == pytest.approx(UNIT)
+    assert "px, on plane 3 (y), at a depth that is a guess, are" in by_points.scale_source
+    on_a_line = set_scale(with_planes(told), PointDistance((pixel(-2, 10, 4), pixel(3, 10, 4)), 5 * UNIT))
+    assert on_a_line.metres_per_unit == pytest.approx(UNIT)
+    assert "on line 13, at a depth that is a guess, are" in on_a_line.scale_source
 
 
 def test_a_point_on_a_guessed_face_is_on_the_sure_line_there(scene):
@@ -200,7 +204,9 @@ def test_the_ground_is_always_measured_and_a_wall_without_lines_never(scene):
     told = with_probability(scene, *[0.4] * 7)
     ground = replace(scene.planes[1], faces=(Face(1, GROUND, kind="ground"),))
     points = PointDistance((pixel(-2, 7, -1.6), pixel(3, 8, -1.6)), np.hypot(5, 1) * UNIT)
-    assert set_scale(with_planes(told, ground), points).metres_per_unit == pytest.approx(UNIT)
+    measured = set_scale(with_planes(told, ground), points)
+    assert measured.metres_per_unit == pytest.approx(UNIT)
+    assert "on plane 4 (z), are" in measured.scale_source
     bare = replace(scene.planes[0], lines=())
     with pytest.raises(ScaleError, match="on plane 3, which stands at a depth that is a guess or that no line tells"):
         set_scale(with_planes(scene, bare), PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
@@ -217,9 +223,10 @@ def test_a_pane_is_as_sure_as_the_wall_around_it(scene):
     window = Opening(0, 3, 0.0, 2.0, 1.0, 3.0, "window", 0.2, 10.2)
     glazed = replace(scene, planes=(*scene.planes, pane), openings=(window,))
     points = PointDistance((pixel(0.5, 10.2, 1.5), pixel(1.5, 10.2, 2.5)), np.sqrt(2) * UNIT)
-    assert set_scale(with_probability(glazed, *[0.9] * 7), points).metres_per_unit == pytest.approx(UNIT)
-    with pytest.raises(ScaleError, match="plane 7, which"):
-        set_scale(with_probability(glazed, *[0.4] * 6, 0.9), points)
+    told = set_scale(with_probability(glazed, *[0.9] * 7), points)
+    assert told.metres_per_unit == pytest.approx(UNIT)
+    assert "on plane 7 (y), are" in told.scale_source
+    assert "plane 7 (y), at a depth" in set_scale(with_probability(glazed, *[0.4] * 6, 0.9), points).scale_source
 
 
 def test_a_roof_is_as_sure_as_its_wall(scene):
@@ -228,9 +235,8 @@ def test_a_roof_is_as_sure_as_its_wall(scene):
     points = PointDistance((pixel(0.5, 10.5, 4.5), pixel(1.5, 11.5, 5.5)), np.sqrt(3) * UNIT)
     told = set_scale(with_probability(roofed, *[0.9] * 7), points)
     assert told.metres_per_unit == pytest.approx(UNIT)
-    assert "plane 8" in told.scale_source
-    with pytest.raises(ScaleError, match="plane 8, which stands at a depth that is a guess"):
-        set_scale(with_probability(roofed, *[0.4] * 6, 0.9), points)
+    assert "on plane 8 (y), are" in told.scale_source
+    assert "plane 8 (y), at a depth" in set_scale(with_probability(roofed, *[0.4] * 6, 0.9), points).scale_source
 
 
 def test_the_height_of_the_camera_above_the_ground(scene):
