@@ -160,7 +160,8 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
         points, where = nearest_on_line(rays, scene.lines.ends[row]), f"line {scene.lines.id[row]}"
     else:
         (one, on), (other, beside) = (_point(scene, pixels[k], rays[k], word) for k, word in enumerate(WORDS))
-        points, where = np.array([one, other]), on if on == beside else f"{on} and {beside}"
+        comma = "," if on.endswith(DOUBT) else ""
+        points, where = np.array([one, other]), on if on == beside else f"{on}{comma} and {beside}"
     return _checked(scene, float(np.linalg.norm(points[1] - points[0])), "between the two points"), where
 
 

@@ -178,6 +178,8 @@ def test_a_scale_from_a_guess_says_so(scene):
     by_points = set_scale(told, PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), np.hypot(5, 3.5) * UNIT))
     assert by_points.metres_per_unit == pytest.approx(UNIT)
     assert "px, on plane 3 (y), at a depth that is a guess, are" in by_points.scale_source
+    on_both = set_scale(told, PointDistance((pixel(-2, 10, 3), pixel(2, 7, -1.6)), 1.0))
+    assert "on plane 3 (y), at a depth that is a guess, and plane 4 (z), at a depth" in on_both.scale_source
     on_a_line = set_scale(with_planes(told), PointDistance((pixel(-2, 10, 4), pixel(3, 10, 4)), 5 * UNIT))
     assert on_a_line.metres_per_unit == pytest.approx(UNIT)
     assert "on line 13, at a depth that is a guess, are" in on_a_line.scale_source
