@@ -155,14 +155,26 @@ def _distance(scene: Scene, first: tuple[float, float], second: tuple[float, flo
     """How far apart two points of the photo (px) lie in space, in units of the scene, and on what they lie."""
     pixels = np.array([first, second])
     rays = world_rays(pixels, scene.camera.matrix, scene.rotation)
-    row = _line_under(scene, pixels, measurable(scene))
+    row = _line_under_both(scene, pixels)
     if row is not None:
-        points, where = nearest_on_line(rays, scene.lines.ends[row]), f"line {scene.lines.id[row]}"
+        doubt = "" if measurable(scene)[row] else DOUBT
+        points, where = nearest_on_line(rays, scene.lines.ends[row]), f"line {scene.lines.id[row]}{doubt}"
     else:
         (one, on), (other, beside) = (_point(scene, pixels[k], rays[k], word) for k, word in enumerate(WORDS))
         comma = "," if on.endswith(DOUBT) else ""
         points, where = np.array([one, other]), on if on == beside else f"{on}{comma} and {beside}"
     return _checked(scene, float(np.linalg.norm(points[1] - points[0])), "between the two points"), where
+
+
+def _line_under_both(scene: Scene, pixels: Float) -> int | None:
+    """The row of the line that both points (2, 2) px lie on; of a guess only where they do not show one sure plane."""
+    row = _line_under(scene, pixels, measurable(scene))
+    if row is not None or bands_of(scene.lines) is None:
+        return row
+    one, other = (seen_plane(scene, pixel, None) for pixel in pixels)
+    if one is not None and other is not None and one.id == other.id and is_measurable(scene, one):
+        return None
+    return _line_under(scene, pixels, np.ones(len(scene.lines), bool))
 
 
 def _point(scene: Scene, pixel: Float, ray: Float, word: str) -> tuple[Float, str]:

@@ -185,6 +185,19 @@ def test_a_scale_from_a_guess_says_so(scene):
     assert "on line 13, at a depth that is a guess, are" in on_a_line.scale_source
 
 
+def test_a_guessed_pole_before_wall_and_ground_is_measured_itself(scene):
+    ends = ENDS.copy()
+    ends[6] = [[-1, 8, -1.6], [-1, 8, 3]]
+    lines = replace(scene.lines, ends=ends, segment=project(ends, K, R), probability=[0.9] * 6 + [0.4])
+    told = replace(scene, lines=lines)
+    pole = set_scale(told, PointDistance((pixel(-1, 8, -1.5), pixel(-1, 8, 2)), 3.5 * UNIT))
+    assert pole.metres_per_unit == pytest.approx(UNIT)
+    assert "on line 16, at a depth that is a guess, are" in pole.scale_source
+    on_wall = set_scale(told, PointDistance((pixel(-1, 8, 0), pixel(-1, 8, 2)), 2.5 * UNIT))
+    assert on_wall.metres_per_unit == pytest.approx(UNIT)
+    assert "on plane 3 (y), are" in on_wall.scale_source
+
+
 def test_a_point_on_a_guessed_face_is_on_the_sure_line_there(scene):
     told = with_probability(scene, 0.4, 0.9, 0.4, 0.4, 0.4, 0.4, 0.4)  # line 11 is the wall's left edge
     (u, v), second = pixel(-3, 10, 2), pixel(2, 7, -1.6)
