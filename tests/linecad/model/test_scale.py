@@ -233,25 +233,26 @@ def test_a_face_of_another_component_is_not_measured_where_no_probability_is_tol
         set_scale(with_planes(scene, wall), PointDistance((pixel(-2, 10, 0), pixel(3, 10, 3.5)), 1.0))
 
 
+def check_as_sure_as_the_wall(scene, points, plane):
+    told = set_scale(with_probability(scene, *[0.9] * 7), points)
+    assert told.metres_per_unit == pytest.approx(UNIT)
+    assert f"on {plane}, are" in told.scale_source
+    assert f"{plane}, at a depth" in set_scale(with_probability(scene, *[0.4] * 6, 0.9), points).scale_source
+
+
 def test_a_pane_is_as_sure_as_the_wall_around_it(scene):
     pane = Plane(7, 1, 10.2, (), (Face(5, [[0, 10.2, 1.02], [2, 10.2, 1.02], [2, 10.2, 3], [0, 10.2, 3]], opening=0),))
     window = Opening(0, 3, 0.0, 2.0, 1.0, 3.0, "window", 0.2, 10.2)
     glazed = replace(scene, planes=(*scene.planes, pane), openings=(window,))
     points = PointDistance((pixel(0.5, 10.2, 1.5), pixel(1.5, 10.2, 2.5)), np.sqrt(2) * UNIT)
-    told = set_scale(with_probability(glazed, *[0.9] * 7), points)
-    assert told.metres_per_unit == pytest.approx(UNIT)
-    assert "on plane 7 (y), are" in told.scale_source
-    assert "plane 7 (y), at a depth" in set_scale(with_probability(glazed, *[0.4] * 6, 0.9), points).scale_source
+    check_as_sure_as_the_wall(glazed, points, "plane 7 (y)")
 
 
 def test_a_roof_is_as_sure_as_its_wall(scene):
     face = Face(2, [[0, 10, 4], [2, 10, 4], [2, 12, 6], [0, 12, 6]], kind="roof")
     roofed = with_planes(scene, *scene.planes, Plane(8, 1, -6 / np.sqrt(2), (), (face,), tilt=np.radians(135)))
     points = PointDistance((pixel(0.5, 10.5, 4.5), pixel(1.5, 11.5, 5.5)), np.sqrt(3) * UNIT)
-    told = set_scale(with_probability(roofed, *[0.9] * 7), points)
-    assert told.metres_per_unit == pytest.approx(UNIT)
-    assert "on plane 8 (y), are" in told.scale_source
-    assert "plane 8 (y), at a depth" in set_scale(with_probability(roofed, *[0.4] * 6, 0.9), points).scale_source
+    check_as_sure_as_the_wall(roofed, points, "plane 8 (y)")
 
 
 def test_the_height_of_the_camera_above_the_ground(scene):
