@@ -1,9 +1,9 @@
 """What tells windows and doors: python tests/benchmarks/openings.py DATASET ... [--unseen DATASET ...] [--write]
 
 DATASET is a folder of scenes that `linecad dataset` or rough_brick.py made. Solves each photo, takes the rectangles
-that are judged in each wall, and fits the log-odds of `linecad.model.openings.odds` to whether they lie on a true
+that are judged in each wall, and fits the networks of `linecad.model.openings.odds` to whether they lie on a true
 opening. Each dataset is judged by the fit of the others, an --unseen one by that of all. Prints the average precision
-of the log-odds as they are and as they are fitted, by the evidence alone and beside the others.
+of the log-odds as they are and as they are fitted, by the evidence alone and beside the others. Needs torch.
 """
 
 import argparse
@@ -12,21 +12,20 @@ from dataclasses import dataclass
 from pathlib import Path
 from unittest import mock
 
-import logistic
 import numpy as np
+import opening_network
 import shapely
-from probability import write
 
 import linecad.model.openings.find
-import linecad.model.openings.odds
 from linecad.arrays import Float, Int
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.openings import shape_in_photo
 from linecad.evaluation.references import open_case
+from linecad.model.openings import evidence, neighbours
 from linecad.model.openings.evidence import measure
 from linecad.model.openings.find import shapes_of
 from linecad.model.openings.neighbours import compare
-from linecad.model.openings.odds import first_odds, odds
+from linecad.model.openings.odds import WEIGHTS, Network, first_odds, odds, write_networks
 from linecad.model.openings.pool import Pool, build_pool
 from linecad.model.openings.raster import Raster, Sight, build_raster
 from linecad.model.openings.rectangles import find_rectangles
@@ -37,7 +36,6 @@ from linecad.pipeline import reconstruct
 BY_ITSELF = (0.72, 0.60)  # overlap with a true opening, from which a rectangle is one, and below which it is none
 BESIDE = (0.66, 0.53)  # the same beside the others
 TOUCHED = 0.02  # overlap, from which a false one counts twice: it takes the place of a true one
-RIDGE = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,12 +120,13 @@ def whole_of(rows: list[Rows]) -> tuple[Float, Float, Float]:
     return split([each.whole for each in rows], [each.overlap for each in rows], BESIDE)
 
 
-def fits_to(rows: list[Rows]) -> tuple[logistic.Logistic, logistic.Logistic]:
+def fits_to(rows: list[Rows]) -> tuple[Network, Network]:
     """By the evidence alone, and beside the others."""
     features, right, _ = first_of(rows)
-    first = logistic.fit(features, right, RIDGE)
+    first = opening_network.train(evidence.NAMES, features, right, np.ones(len(right)))
     features, right, overlap = whole_of(rows)
-    return first, logistic.fit(features, right, RIDGE, np.where((right == 0) & (overlap > TOUCHED), 2.0, 1.0))
+    weight = np.where((right == 0) & (overlap > TOUCHED), 2.0, 1.0)
+    return first, opening_network.train((*evidence.NAMES, *neighbours.NAMES), features, right, weight)
 
 
 def average_precision(right: Float, value: Float) -> float:
@@ -141,7 +140,7 @@ def main() -> None:
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--unseen", nargs="*", type=Path, default=[], help="datasets that no fit sees")
     parser.add_argument("--workers", type=int, default=2, help="processes")
-    parser.add_argument("--write", action="store_true", help="the fits into linecad/model/openings/odds.py")
+    parser.add_argument("--write", action="store_true", help="the fits into linecad/model/openings/odds.npz")
     chosen = parser.parse_args()
     folders = [*chosen.datasets, *chosen.unseen]
     with ProcessPoolExecutor(chosen.workers) as pool:
@@ -162,13 +161,11 @@ def main() -> None:
             (whole, whole_of(own), lambda both: odds(both, both[:, :0])),
         ):
             cells.append(f"{average_precision(right, now(features)):.3f}")
-            cells.append(f"{average_precision(right, fitted.probability(features)):.3f}")
+            cells.append(f"{average_precision(right, fitted.log_odds(features)):.3f}")
         print("| " + " | ".join(cells) + " |")
-    first, whole = fits_to([row for row in rows if row.dataset not in unseen])
     if chosen.write:
         # What is judged follows from the first ones: write, then fit the others once more.
-        write(linecad.model.openings.odds, "FIRST_", first)
-        write(linecad.model.openings.odds, "", whole)
+        write_networks(*fits_to([row for row in rows if row.dataset not in unseen]), WEIGHTS)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""What the photo says for and against a rectangle being an opening: numbers that do not depend on scale."""
+"""What the photo says for and against a rectangle being an opening, in numbers."""
 
 import cv2
 import numpy as np
@@ -16,7 +16,7 @@ LEVELS = 25.0  # grey levels; differences are counted in these, most of a facade
 NAMES = (
     "uprights", "weaker upright", "weaker level", "levels", "beyond uprights", "beyond levels",
     "contrast", "darker", "rough inside", "rough around", "weakest step", "steps", "edges inside", "edges around",
-    "slender", "flat", "plain", "open",
+    "slender", "flat", "plain", "open", "columns", "rows",
 )  # fmt: skip
 
 
@@ -92,6 +92,8 @@ def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
             np.maximum(-slender, 0),
             np.maximum(PLAIN - steps.mean(axis=1), 0),
             np.maximum(OPEN - cover.sum(axis=1), 0),
+            np.log(right - left),
+            np.log(high - low),
         ]
     )
 

@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Float, Int
 from linecad.model.openings.choice import Choice, choose, not_overlapping
-from linecad.model.openings.gaps import are_odd, find_gaps, may_be
-from linecad.model.openings.odds import LEAST_FILLED, LEAST_ODDS
+from linecad.model.openings.gaps import are_between, are_odd, find_gaps, may_be
+from linecad.model.openings.odds import LEAST_ODDS
 from linecad.model.openings.pool import Pool, build_pool
 from linecad.model.openings.raster import Raster, build_raster, look
 from linecad.model.openings.recess import depth_ratios
@@ -134,12 +134,13 @@ def _filled(taken: list[_Likely]) -> tuple[list[_Likely], Choice]:
         gap = replace(likely, box=box, odds=likeliness)
         free = not_overlapping(gap.shapes(), before)
         gaps.append(replace(gap, box=box[free], odds=likeliness[free]))
-    more, choice = _choice(gaps, LEAST_FILLED)
-    pairs = zip(taken, more, strict=True)
-    return [
-        replace(one, box=np.concatenate([one.box, other.box]), odds=np.concatenate([one.odds, other.odds]))
-        for one, other in pairs
-    ], choice
+    more, choice = _choice(gaps, LEAST_ODDS)
+    filled = []
+    for one, other in zip(taken, more, strict=True):
+        box, likeliness = np.concatenate([one.box, other.box]), np.concatenate([one.odds, other.odds])
+        own = ~are_between(one.pool, box)
+        filled.append(replace(one, box=box[own], odds=likeliness[own]))
+    return filled, choice
 
 
 def _ground_height(planes: tuple[Plane, ...]) -> float | None:

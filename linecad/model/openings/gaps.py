@@ -2,7 +2,8 @@
 
 What alone is too uncertain to be an opening, such as a window half behind a bush, is likely one where openings of its
 size stand in its row and its column, so that gaps are filled. Only taken ones ask here: rectangles of bricks cannot
-support each other. And a rectangle that is tiny beside all others, with none of its size in its row or column, is none.
+support each other. And a rectangle that is tiny beside all others, with none of its size in its row or column, is none;
+nor is the wall between two windows, which has their sides.
 """
 
 import numpy as np
@@ -11,7 +12,7 @@ from linecad.arrays import Bool, Float, Int
 from linecad.model.openings.evidence import NAMES, measure
 from linecad.model.openings.lattice import propose, support
 from linecad.model.openings.neighbours import compare
-from linecad.model.openings.odds import LEAST_FILLED, odds
+from linecad.model.openings.odds import LEAST_ODDS, odds
 from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import Raster
 
@@ -21,6 +22,10 @@ LEAST_MATES = 0.9  # support by row and column in sum, which one mate does not r
 LEAST_COVER = 1.2  # of the four sides in sum: between two windows is often wall
 LOOK = [NAMES.index("contrast"), NAMES.index("edges inside")]
 ALIKE = 0.5  # of what those taken show of these, in the median
+STEPS = NAMES.index("steps")
+NEXT = 0.3  # of a rectangle's width: how far off its neighbour in the row is, whose side it may have
+OVER = 2  # columns by which the two may overlap
+LEVEL = 0.6  # of a rectangle's height that both have
 SURE = 3.0  # log-odds of what was taken, at least, for what it says about others
 
 
@@ -41,6 +46,16 @@ def are_odd(raster: Raster, taken: Int) -> Bool:
     return np.asarray((area < TINY * np.median(area)) & ~has_mate)
 
 
+def are_between(pool: Pool, taken: Int) -> Bool:
+    """Which of those taken (T, 4) are wall beside a window: told from what is around them far less than a neighbour."""
+    left, right, low, high = taken.T
+    apart = np.maximum(left[:, None] - right, left - right[:, None])
+    shared = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
+    is_next = (apart >= -OVER) & (apart < NEXT * (right - left)[:, None]) & (shared > LEVEL * (high - low)[:, None])
+    steps = measure(taken, pool.edges, pool.sums, pool.raster)[:, STEPS]
+    return np.asarray((is_next & (steps[:, None] < ALIKE * steps)).any(axis=1))
+
+
 def find_gaps(pool: Pool, taken: Int, taken_odds: Float) -> tuple[Int, Float]:
     """Rectangles (M, 4) that the rows and columns of those taken (T, 4) ask for, and their log-odds (M,)."""
     if len(taken) < 2:
@@ -51,7 +66,7 @@ def find_gaps(pool: Pool, taken: Int, taken_odds: Float) -> tuple[Int, Float]:
     sure = np.maximum(taken_odds, SURE)
     mates = support(box, pool.raster, taken, sure)
     found = odds(evidence, compare(box, pool.raster, taken, sure))
-    asked = may_be(found, LEAST_FILLED, evidence, pool.is_inside) & (mates.sum(axis=1) >= LEAST_MATES)
+    asked = may_be(found, LEAST_ODDS, evidence, pool.is_inside) & (mates.sum(axis=1) >= LEAST_MATES)
     asked &= pool.edges.cover(box).sum(axis=1) >= LEAST_COVER
     # The sides of its neighbours close a piece of wall too, but in it is nothing.
     own = measure(taken, pool.edges, pool.sums, pool.raster)

@@ -1,4 +1,4 @@
-"""Rectangles that edges of a wall's raster close on at least three sides, as columns and rows."""
+"""Rectangles whose sides edges of a wall's raster show for the most part, as columns and rows."""
 
 from dataclasses import dataclass
 
@@ -15,8 +15,8 @@ GAP = 5  # rows, over which an upright edge goes on
 MOST_STICKS = 1200  # the longest
 MOST_LEVELS = 4  # sides that are tried above, and below, a pair of uprights
 AWAY = 0.5  # what a level side loses that lies as far from the uprights' ends as it may
-LEAST_COVER = 0.35  # of a level side
-LEAST_COVERS = 2.2  # of the four sides in sum
+LEAST_COVER = 0.25  # of a level side
+LEAST_COVERS = 1.7  # of the four sides in sum
 COMMON = 0.4  # of the stretch that two uprights show together, which both show
 ABOUT = 0.2  # of an upright's length: how far beyond or before its end the level side may lie
 LARGEST_SHARE = 0.4  # of the raster's columns

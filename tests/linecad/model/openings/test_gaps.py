@@ -7,7 +7,7 @@ import pytest
 
 from linecad.model.openings import gaps
 from linecad.model.openings.evidence import NAMES, Sums, measure
-from linecad.model.openings.gaps import are_odd, find_gaps, may_be
+from linecad.model.openings.gaps import are_between, are_odd, find_gaps, may_be
 from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import build_raster, look
 from linecad.model.openings.rectangles import count_edges
@@ -75,11 +75,18 @@ def test_bare_wall_between_the_sides_of_windows_is_not_asked_for(pool, boxes, mo
     between = np.column_stack([between[:, :1], between[:, :1] + np.diff(boxes[0][:2]), between[:, 2:]])
     evidence = measure(between, pool.edges, pool.sums, pool.raster)
     judged = replace(pool, box=between, evidence=evidence)
-    monkeypatch.setattr(gaps, "LEAST_FILLED", -100.0)
+    monkeypatch.setattr(gaps, "LEAST_ODDS", -100.0)
     assert between[0].tolist() not in find_gaps(judged, others(boxes), np.full(7, 3.0))[0].tolist()
     monkeypatch.setattr(gaps, "ALIKE", -100.0)
     monkeypatch.setattr(gaps, "LEAST_COVER", 0.0)
     assert between[0].tolist() in find_gaps(judged, others(boxes), np.full(7, 3.0))[0].tolist()
+
+
+def test_wall_between_two_windows_is_none(pool, boxes):
+    """It has their jambs for its sides, though they have edges on all four."""
+    assert not are_between(pool, boxes).any()
+    left, right = boxes[0][1], boxes[1][0]
+    assert are_between(pool, np.vstack([boxes, [left, right, *boxes[0][2:]]])).tolist() == [False] * 8 + [True]
 
 
 def test_tiny_one_alone_is_odd(pool, boxes):

@@ -1,19 +1,61 @@
-"""The log-odds have a weight for each number, in the order of the numbers."""
+"""The networks weigh each number by its name, and what they keep is what they were."""
 
 import numpy as np
 import pytest
 
 from linecad.model.openings import evidence, neighbours
-from linecad.model.openings.odds import AT_ONCE, FIRST_AT_ONCE, FIRST_LOG_ODDS, LOG_ODDS, first_odds, odds
+from linecad.model.openings.odds import Network, first_odds, odds, read_networks, write_networks
+
+COUNT = len(evidence.NAMES)
 
 
-def test_weights_are_in_the_order_of_what_they_weigh():
-    assert tuple(FIRST_LOG_ODDS) == evidence.NAMES
-    assert tuple(LOG_ODDS) == (*evidence.NAMES, *neighbours.NAMES)
+def test_numbers_are_in_the_order_of_the_networks():
+    by_itself, beside = read_networks()
+    assert by_itself.names == evidence.NAMES
+    assert beside.names == (*evidence.NAMES, *neighbours.NAMES)
 
 
-def test_each_number_counts_by_its_weight():
-    both = np.eye(len(LOG_ODDS))
-    count = len(evidence.NAMES)
-    assert first_odds(np.eye(count)) == pytest.approx(FIRST_AT_ONCE + np.array(list(FIRST_LOG_ODDS.values())))
-    assert odds(both[:, :count], both[:, count:]) == pytest.approx(AT_ONCE + np.array(list(LOG_ODDS.values())))
+def test_log_odds_are_those_of_the_networks():
+    random = np.random.default_rng(0)
+    by_itself, beside = read_networks()
+    rows = random.uniform(beside.low, beside.high, (20, len(beside.names)))
+    assert first_odds(rows[:, :COUNT]) == pytest.approx(by_itself.log_odds(rows[:, :COUNT]))
+    assert odds(rows[:, :COUNT], rows[:, COUNT:]) == pytest.approx(beside.log_odds(rows))
+    assert first_odds(np.zeros((0, COUNT))).shape == (0,)
+
+
+def test_the_sum_and_the_layers_with_rectified_units_add_up():
+    network = Network(
+        ("one", "two"),
+        np.array([-1.0, -1.0]),
+        np.array([1.0, 1.0]),
+        10.0,
+        np.array([0.0, 100.0]),
+        ((np.array([[1.0, 0.0], [1.0, -2.0]]), np.array([0.5, 0.0])), (np.array([[2.0, 1.0]]), np.array([-1.0]))),
+    )
+    # 10 + 100 b + 2 * max(0, a + 0.5) + max(0, a - 2 b) - 1, a and b being at most 1 and at least -1.
+    given = np.array([[0.5, 0.0], [-1.0, -1.0], [1.0, 1.0], [7.0, -9.0]])
+    assert network.log_odds(given) == pytest.approx([11.5, -90.0, 112.0, -85.0])
+
+
+def test_networks_are_kept(tmp_path):
+    one, same = tmp_path / "one.npz", tmp_path / "same.npz"
+    write_networks(*read_networks(), one)
+    write_networks(*read_networks(one), same)
+    assert one.read_bytes() == same.read_bytes()
+    for before, after in zip(read_networks(), read_networks(one), strict=True):
+        rows = np.linspace(before.low, before.high, 7)
+        assert after.names == before.names
+        assert np.array_equal(after.log_odds(rows), before.log_odds(rows))
+
+
+@pytest.mark.parametrize("which", [0, 1])
+def test_what_closes_a_rectangle_speaks_for_it(which):
+    """All the evidence at its median in the fit, but for the sides."""
+    network = read_networks()[which]
+    middle = (network.low + network.high) / 2
+    rows = np.stack([middle, middle])
+    for name in ("uprights", "weaker upright", "weaker level", "levels"):
+        rows[:, network.names.index(name)] = [0.2, 1.0]
+    open_one, closed = network.log_odds(rows)
+    assert closed > open_one
