@@ -51,7 +51,7 @@ def test_networks_are_kept(tmp_path):
 
 @pytest.mark.parametrize("which", [0, 1])
 def test_what_closes_a_rectangle_speaks_for_it(which):
-    """All the evidence at its median in the fit, but for the sides."""
+    """All the evidence in the middle of what was fitted to, but for the sides."""
     network = read_networks()[which]
     middle = (network.low + network.high) / 2
     rows = np.stack([middle, middle])
