@@ -11,7 +11,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.model.openings.evidence import NAMES, measure
 from linecad.model.openings.lattice import propose, support
-from linecad.model.openings.neighbours import compare
+from linecad.model.openings.neighbours import compare, pairs_of
 from linecad.model.openings.odds import LEAST_ODDS, odds
 from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import Raster
@@ -48,10 +48,9 @@ def are_odd(raster: Raster, taken: Int) -> Bool:
 
 def are_between(pool: Pool, taken: Int) -> Bool:
     """Which of those taken (T, 4) are wall beside a window: told from what is around them far less than a neighbour."""
-    left, right, low, high = taken.T
-    apart = np.maximum(left[:, None] - right, left - right[:, None])
-    shared = np.minimum(high[:, None], high) - np.maximum(low[:, None], low)
-    is_next = (apart >= -OVER) & (apart < NEXT * (right - left)[:, None]) & (shared > LEVEL * (high - low)[:, None])
+    pairs = pairs_of(taken, taken)
+    wide, tall = pairs.size[:, :1], pairs.size[:, 1:]
+    is_next = (pairs.gap_u >= -OVER) & (pairs.gap_u < NEXT * wide) & (-pairs.gap_v > LEVEL * tall)
     steps = measure(taken, pool.edges, pool.sums, pool.raster)[:, STEPS]
     return np.asarray((is_next & (steps[:, None] < ALIKE * steps)).any(axis=1))
 

@@ -33,11 +33,11 @@ NAMES = (
 
 
 @dataclass(frozen=True, eq=False)
-class _Pairs:
+class Pairs:
     """How boxes (N, 4) lie to others (M, 4), in columns and rows."""
 
     gap_u: Int  # (N, M) columns between them, negative where they share some
-    gap_v: Int  # (N, M) rows
+    gap_v: Int  # (N, M) rows, negative where they share some
     size: Int  # (N, 2) columns and rows of each box
     shared: Int  # (N, M) area
     area: Int  # (N, 1) of the boxes
@@ -49,7 +49,8 @@ class _Pairs:
         return np.asarray(self.gap_u < share * wide + MORE), np.asarray(self.gap_v < share * tall + MORE)
 
 
-def _pairs(box: Int, others: Int) -> _Pairs:
+def pairs_of(box: Int, others: Int) -> Pairs:
+    """How each of boxes (N, 4) lies to each of others (M, 4)."""
     left, right, low, high = (side[:, None] for side in box.T)
     gap_u = np.maximum(others[:, 0] - right, left - others[:, 1])
     gap_v = np.maximum(others[:, 2] - high, low - others[:, 3])
@@ -58,13 +59,13 @@ def _pairs(box: Int, others: Int) -> _Pairs:
     other_area = (others[:, 1] - others[:, 0]) * (others[:, 3] - others[:, 2])
     size = np.column_stack([box[:, 1] - box[:, 0], box[:, 3] - box[:, 2]])
     shared = np.maximum(shared_u, 0) * np.maximum(shared_v, 0)
-    return _Pairs(gap_u, gap_v, size, shared, size.prod(axis=1)[:, None], other_area[None])
+    return Pairs(gap_u, gap_v, size, shared, size.prod(axis=1)[:, None], other_area[None])
 
 
 def _close_mates(box: Int, raster: Raster) -> tuple[Bool, Bool]:
     """Which boxes (N, 4) are of the size of another in its row, and in its column, and as close as panes, (N, N)."""
     row, column = mates(box, box, raster)
-    near_u, near_v = _pairs(box, box).within(CLOSE)
+    near_u, near_v = pairs_of(box, box).within(CLOSE)
     return row & near_u, column & near_v
 
 
@@ -76,7 +77,7 @@ def compare(box: Int, raster: Raster, others: Int, other_odds: Float) -> Float:
     if not len(others):
         return np.where(np.char.startswith(NAMES, "likeliest"), -SURE, np.zeros((len(box), 1)))
     row, column = mates(box, others, raster)
-    pairs = _pairs(box, others)
+    pairs = pairs_of(box, others)
     tight_u, tight_v = pairs.within(TIGHT)
     close_u, close_v = pairs.within(CLOSE)
     probability = 1 / (1 + np.exp(-other_odds))
@@ -113,7 +114,7 @@ def windows_of_panes(box: Int, odds: Float, raster: Raster) -> Int:
         return np.zeros((0, 4), np.int64)
     row, column = _close_mates(box, raster)
     near = (row & row.T) | (column & column.T)
-    pairs = _pairs(box, box)
+    pairs = pairs_of(box, box)
     _, group = connected_components(coo_array(near), directed=False)
     found = []
     for number in np.flatnonzero(np.bincount(group) >= 2).tolist():

@@ -5,6 +5,7 @@ rectangles of made scenes, an overlap of 0.72 (by itself) or 0.66 (beside the ot
 one, below 0.6 or 0.53 as none: tests/benchmarks/openings.py. The weights are in odds.npz.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -53,21 +54,22 @@ def odds(evidence: Float, beside: Float) -> Float:
 def read_networks(path: Path = WEIGHTS) -> tuple[Network, Network]:
     """By itself, in the order of `evidence.NAMES`; beside the others: these, then those of `neighbours.NAMES`."""
     with np.load(path) as kept:
-        by_itself, beside = (
-            Network(
-                tuple(kept[f"{kind} names"].tolist()),
-                kept[f"{kind} low"].astype(np.float64),
-                kept[f"{kind} high"].astype(np.float64),
-                float(kept[f"{kind} at once"]),
-                kept[f"{kind} slopes"].astype(np.float64),
-                tuple(
-                    (kept[f"{kind} weights {k}"].astype(np.float64), kept[f"{kind} shifts {k}"].astype(np.float64))
-                    for k in range(int(kept[f"{kind} layers"]))
-                ),
-            )
-            for kind in KINDS
-        )
+        by_itself, beside = (_network(kept, kind) for kind in KINDS)
     return by_itself, beside
+
+
+def _network(kept: Mapping[str, np.ndarray], kind: str) -> Network:
+    def part(name: str) -> Float:
+        return np.asarray(kept[f"{kind} {name}"], np.float64)
+
+    return Network(
+        tuple(kept[f"{kind} names"].tolist()),
+        part("low"),
+        part("high"),
+        float(part("at once")),
+        part("slopes"),
+        tuple((part(f"weights {k}"), part(f"shifts {k}")) for k in range(int(kept[f"{kind} layers"]))),
+    )
 
 
 def write_networks(by_itself: Network, beside: Network, path: Path) -> None:
@@ -75,10 +77,8 @@ def write_networks(by_itself: Network, beside: Network, path: Path) -> None:
     kept: dict[str, np.ndarray] = {}
     for kind, network in zip(KINDS, (by_itself, beside), strict=True):
         kept |= {f"{kind} names": np.array(network.names), f"{kind} layers": np.array(len(network.layers))}
-        kept |= {f"{kind} low": network.low.astype(np.float32), f"{kind} high": network.high.astype(np.float32)}
-        kept[f"{kind} at once"] = np.array(network.at_once, np.float32)
-        kept[f"{kind} slopes"] = network.slopes.astype(np.float32)
+        parts = {"low": network.low, "high": network.high, "at once": network.at_once, "slopes": network.slopes}
         for k, (weights, shifts) in enumerate(network.layers):
-            kept[f"{kind} weights {k}"] = weights.astype(np.float32)
-            kept[f"{kind} shifts {k}"] = shifts.astype(np.float32)
+            parts |= {f"weights {k}": weights, f"shifts {k}": shifts}
+        kept |= {f"{kind} {name}": np.asarray(values, np.float32) for name, values in parts.items()}
     np.savez(path, allow_pickle=False, **kept)

@@ -83,7 +83,7 @@ def test_bare_wall_between_the_sides_of_windows_is_not_asked_for(pool, boxes, mo
 
 
 def test_wall_between_two_windows_is_none(pool, boxes):
-    """It has their jambs for its sides, though they have edges on all four."""
+    """Its sides are their jambs, and at its head and sill nothing changes."""
     assert not are_between(pool, boxes).any()
     left, right = boxes[0][1], boxes[1][0]
     assert are_between(pool, np.vstack([boxes, [left, right, *boxes[0][2:]]])).tolist() == [False] * 8 + [True]
