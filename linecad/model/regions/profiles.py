@@ -71,9 +71,13 @@ class Wall:
         return int(partner(self.axis))
 
     def heights(self, rays: Float) -> Float:
-        """Heights (...) of points of the wall on rays (..., K)."""
-        height: Float = self.offset * rays[..., UP] / rays[..., self.axis]
-        return height
+        """Heights (...) of points of the wall on rays (..., K); not finite where a ray runs along it."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return np.asarray(self.offset * rays[..., UP] / rays[..., self.axis])
+
+    def is_ahead(self, rays: Float) -> Bool:
+        """Which rays (..., K) meet the wall before the camera."""
+        return np.asarray(self.offset * rays[..., self.axis] > 0)
 
     def foot(self, shown: Shown) -> float:
         """The height down to which nearly all of it is seen."""
@@ -149,6 +153,7 @@ def look_over(wall: Wall, pixel: Float, shown: Shown) -> Profile | None:
     rays = shown.rays(columns.pixels[rows, BELOW + top])
     height = wall.heights(rays)
     one = np.abs(wall.heights(shown.rays(columns.pixels[rows, BELOW + top + 1])) - height)
+    is_open &= np.isfinite(height) & np.isfinite(one)
     here = np.flatnonzero(is_open)
     if len(here) * STEP < LEAST_WIDTH * shown.raster.shape[1]:
         return None
@@ -210,7 +215,7 @@ class _Columns:
         eave = pixel + STEP * raster.step * np.arange(-count, count + 1)[:, None] * along
         place = raster.samples_of(eave)
         seen = (place[:, 0] >= 0) & (place[:, 0] <= width - 1) & (place[:, 1] <= rows - 1) & (place[:, 1] >= -rows)
-        seen &= wall.offset / shown.rays(eave)[:, wall.axis] > 0
+        seen &= wall.is_ahead(shown.rays(eave))
         eave = eave[seen]
         up = directions_to(eave, points[UP])
         up = up * np.where(up[:, 1:] > 0, -1.0, 1.0)

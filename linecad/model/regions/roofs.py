@@ -135,7 +135,7 @@ def _eaves(wall: Wall, sketch: Sketch, shown: Shown) -> list[Float]:
     height = wall.heights(rays)
     around = middle[:, None] - np.arange(*NEAR)[:, None] * shown.raster.step * np.array([0.0, 1.0])
     near = shown.at(wall.is_shown, around).any(axis=1)
-    before = (wall.offset / rays[:, wall.axis] > 0) & (height > 0) & near
+    before = wall.is_ahead(rays) & (height > 0) & near
     kept: list[int] = []
     for row in np.flatnonzero(before).tolist():
         if all(abs(height[row] - height[other]) > SAME * abs(wall.offset) for other in kept):
