@@ -1,7 +1,7 @@
 """What tells windows and doors: python tests/benchmarks/openings.py DATASET ... [--unseen DATASET ...] [--write]
 
 DATASET is a folder of scenes that `linecad dataset` or rough_brick.py made. Solves each photo, takes the rectangles
-that are judged in each wall, and fits the networks of `linecad.model.openings.odds` to whether they lie on a true
+that are judged in each wall, and fits the networks of `linecad.model.openings.log_odds` to whether they lie on a true
 opening. Each dataset is judged by the fit of the others, an --unseen one by that of all. Prints the average precision
 of the log-odds as they are and as they are fitted, by the evidence alone and beside the others. Needs torch.
 """
@@ -25,7 +25,7 @@ from linecad.model.openings import evidence, neighbours
 from linecad.model.openings.evidence import measure
 from linecad.model.openings.find import shapes_of
 from linecad.model.openings.neighbours import compare
-from linecad.model.openings.odds import WEIGHTS, Network, first_odds, odds, write_networks
+from linecad.model.openings.odds import WEIGHTS, Network, log_odds_alone, log_odds_beside, write_networks
 from linecad.model.openings.pool import Pool, build_pool
 from linecad.model.openings.raster import Raster, Sight, build_raster
 from linecad.model.openings.rectangles import find_rectangles
@@ -95,7 +95,7 @@ def rows_of(dataset: str, case: Case) -> Rows | None:
         ),
         np.concatenate(
             [
-                np.column_stack([pool.evidence, compare(pool.box, pool.raster, pool.others, pool.other_odds)])
+                np.column_stack([pool.evidence, compare(pool.box, pool.raster, pool.others, pool.other_log_odds)])
                 for _, pool in pools
             ]
         ),
@@ -157,8 +157,8 @@ def main() -> None:
         first, whole = fits_to(others)
         cells = [folder.name, str(sum(len(each.whole) for each in own))]
         for fitted, (features, right, _), now in (
-            (first, first_of(own), first_odds),
-            (whole, whole_of(own), lambda both: odds(both, both[:, :0])),
+            (first, first_of(own), log_odds_alone),
+            (whole, whole_of(own), lambda both: log_odds_beside(both, both[:, :0])),
         ):
             cells.append(f"{average_precision(right, now(features)):.3f}")
             cells.append(f"{average_precision(right, fitted.log_odds(features)):.3f}")

@@ -34,15 +34,15 @@ class Choice:
         return (f"windows and doors: another choice of them may be up to {self.gap:.1%} better; not proven",)
 
 
-def choose(shapes: list[shapely.Polygon], odds: Float) -> Choice:
+def choose(shapes: list[shapely.Polygon], log_odds: Float) -> Choice:
     """Which of shapes (N,) in the photo, convex and of four corners each, are taken.
 
-    `odds` are above those of a rectangle that is as well left out. Openings of different walls compete too, since each
-    pixel shows one of them. Odds count by the size of a shape, as long as its outline is: each opening is told by its
-    outline, and the panes of a window, each nearly as likely as the whole, would outweigh it else.
+    `log_odds` are above those of a rectangle that is as well left out. Openings of different walls compete too, since
+    each pixel shows one of them. They count by the size of a shape, as long as its outline is: each opening is told by
+    its outline, and the panes of a window, each nearly as likely as the whole, would outweigh it else.
     """
     every = np.array(shapes, object)
-    value = odds * np.sqrt(shapely.area(every))
+    value = log_odds * np.sqrt(shapely.area(every))
     taken = value > 0
     pairs = overlapping(every)
     pairs = pairs[taken[pairs].all(axis=1)]

@@ -57,8 +57,9 @@ def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
     outer = sums.of(left - ring, right + ring + 1, low - ring, high + ring + 1) - sums.of(
         left - 1, right + 2, low - 1, high + 2
     )
-    inside, rough_inside, edges_inside = _means(inner)
-    around, rough_around, edges_around = _means(outer)
+    rough_inside, edges_inside = _texture(inner)
+    rough_around, edges_around = _texture(outer)
+    brighter_around = _difference(outer, inner)
     across = []
     for side in range(4):
         beside = []
@@ -68,8 +69,8 @@ def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
                 place[0], place[1] = box[:, side] + shift, box[:, side] + shift + STRIP
             else:
                 place[2], place[3] = box[:, side] + shift, box[:, side] + shift + STRIP
-            beside.append(_means(sums.of(*place))[0])
-        across.append(np.linalg.norm(beside[0] - beside[1], axis=1) / LEVELS)
+            beside.append(sums.of(*place))
+        across.append(np.linalg.norm(_difference(*beside), axis=1))
     steps = np.minimum(np.column_stack(across), 2.0)
     slender = np.log((raster.v[high] - raster.v[low]) / (raster.u[right] - raster.u[left]))
     return np.column_stack(
@@ -80,8 +81,8 @@ def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
             cover[:, 2] + cover[:, 3],
             beyond[:, :2].mean(axis=1),
             beyond[:, 2:].mean(axis=1),
-            np.minimum(np.linalg.norm(inside - around, axis=1) / LEVELS, 3.0),
-            ((around - inside)[:, 0] / LEVELS).clip(-3, 3),
+            np.minimum(np.linalg.norm(brighter_around, axis=1), 3.0),
+            brighter_around[:, 0].clip(-3, 3),
             rough_inside,
             rough_around,
             steps.min(axis=1),
@@ -98,8 +99,18 @@ def measure(box: Int, edges: Edges, sums: Sums, raster: Raster) -> Float:
     )
 
 
-def _means(sums: Float) -> tuple[Float, Float, Float]:
-    """Of sums (N, 6): the mean colour (N, 3), the spread of lightness in LEVELS, the share of edges."""
-    mean = sums / np.maximum(sums[:, 5:], 1.0)
-    spread = np.sqrt(np.maximum(mean[:, 3] - mean[:, 0] ** 2, 0.0)) / LEVELS
-    return mean[:, :3], spread, mean[:, 4]
+def _means(sums: Float) -> Float:
+    """Sums (N, 6) over their numbers of points."""
+    return np.asarray(sums / np.maximum(sums[:, 5:], 1.0))
+
+
+def _difference(one: Float, other: Float) -> Float:
+    """By how much the first of sums (N, 6) is of more colour in the mean (N, 3), in LEVELS; 0 beside the photo."""
+    seen = (one[:, 5] > 0) & (other[:, 5] > 0)
+    return np.asarray((_means(one) - _means(other))[:, :3] * seen[:, None] / LEVELS)
+
+
+def _texture(sums: Float) -> tuple[Float, Float]:
+    """Of sums (N, 6): the spread of lightness (N,) in LEVELS, the share of edges (N,)."""
+    mean = _means(sums)
+    return np.sqrt(np.maximum(mean[:, 3] - mean[:, 0] ** 2, 0.0)) / LEVELS, mean[:, 4]

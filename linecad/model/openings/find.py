@@ -14,10 +14,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from linecad.arrays import Float, Int
+from linecad.arrays import Bool, Float, Int
 from linecad.model.openings.choice import Choice, choose, not_overlapping
-from linecad.model.openings.gaps import are_between, are_odd, find_gaps, may_be
-from linecad.model.openings.odds import LEAST_ODDS
+from linecad.model.openings.gaps import are_beside_clearer, are_odd, find_gaps, may_be
+from linecad.model.openings.odds import LEAST_LOG_ODDS
 from linecad.model.openings.pool import Pool, build_pool
 from linecad.model.openings.raster import Raster, build_raster, look
 from linecad.model.openings.recess import depth_ratios
@@ -45,8 +45,13 @@ class _Likely:
     lines: Lines  # of the frame of the wall
     raster: Raster
     box: Int  # (N, 4)
-    odds: Float  # (N,) log-odds
+    log_odds: Float  # (N,)
+    evidence: Float  # (N, F)
     pool: Pool
+
+    def chosen(self, which: Bool | Int) -> "_Likely":
+        """The same with those of its rectangles alone."""
+        return replace(self, box=self.box[which], log_odds=self.log_odds[which], evidence=self.evidence[which])
 
     def shapes(self) -> list[shapely.Polygon]:
         """The rectangles in the photo."""
@@ -86,7 +91,7 @@ def find_openings(frames: Sequence[FrameView], camera: Camera, pixels: NDArray[n
                 found.append(likely)
     if not found:
         return Found()
-    taken, choice = _choice(found, LEAST_ODDS)
+    taken, choice = _choice(found)
     taken, more = _filled(taken)
     ground = _ground_height(frames[0].planes)
     openings: list[Opening] = []
@@ -107,39 +112,39 @@ def find_openings(frames: Sequence[FrameView], camera: Camera, pixels: NDArray[n
     return Found(tuple(openings), max((choice, more), key=lambda each: each.gap).notes)
 
 
-def _choice(found: list[_Likely], least: float) -> tuple[list[_Likely], Choice]:
+def _choice(found: list[_Likely]) -> tuple[list[_Likely], Choice]:
     """Of the rectangles of all walls the best set of which no two overlap in the photo, wall by wall."""
     choice = choose(
         [shape for likely in found for shape in likely.shapes()],
-        np.concatenate([likely.odds for likely in found]) - least,
+        np.concatenate([likely.log_odds for likely in found]) - LEAST_LOG_ODDS,
     )
     starts = np.cumsum([0, *(len(likely.box) for likely in found)])
     chosen = []
     for likely, start, end in zip(found, starts[:-1].tolist(), starts[1:].tolist(), strict=True):
         own = choice.taken[(choice.taken >= start) & (choice.taken < end)] - start
-        chosen.append(replace(likely, box=likely.box[own], odds=likely.odds[own]))
+        chosen.append(likely.chosen(own))
     return chosen, choice
 
 
 def _filled(taken: list[_Likely]) -> tuple[list[_Likely], Choice]:
     """What was taken of each wall without odd ones, and what fills gaps in its rows and columns."""
-    kept = [~are_odd(likely.raster, likely.box) for likely in taken]
-    taken = [
-        replace(likely, box=likely.box[own], odds=likely.odds[own]) for likely, own in zip(taken, kept, strict=True)
-    ]
+    taken = [likely.chosen(~are_odd(likely.raster, likely.box)) for likely in taken]
     before = [shape for likely in taken for shape in likely.shapes()]
     gaps = []
     for likely in taken:
-        box, likeliness = find_gaps(likely.pool, likely.box, likely.odds)
-        gap = replace(likely, box=box, odds=likeliness)
-        free = not_overlapping(gap.shapes(), before)
-        gaps.append(replace(gap, box=box[free], odds=likeliness[free]))
-    more, choice = _choice(gaps, LEAST_ODDS)
+        box, log_odds, evidence = find_gaps(likely.pool, likely.box, likely.log_odds, likely.evidence)
+        gap = replace(likely, box=box, log_odds=log_odds, evidence=evidence)
+        gaps.append(gap.chosen(not_overlapping(gap.shapes(), before)))
+    more, choice = _choice(gaps)
     filled = []
     for one, other in zip(taken, more, strict=True):
-        box, likeliness = np.concatenate([one.box, other.box]), np.concatenate([one.odds, other.odds])
-        own = ~are_between(one.pool, box)
-        filled.append(replace(one, box=box[own], odds=likeliness[own]))
+        both = replace(
+            one,
+            box=np.concatenate([one.box, other.box]),
+            log_odds=np.concatenate([one.log_odds, other.log_odds]),
+            evidence=np.concatenate([one.evidence, other.evidence]),
+        )
+        filled.append(both.chosen(~are_beside_clearer(both.box, both.evidence)))
     return filled, choice
 
 
@@ -165,6 +170,6 @@ def _with_recess(openings: list[Opening], likely: _Likely) -> list[Opening]:
 def _likely(wall: Wall, lines: Lines, raster: Raster, is_inside: bool) -> _Likely:
     """The rectangles of one wall that may be openings; seen from inside, only those that light comes through."""
     pool = build_pool(raster, is_inside)
-    odds = pool.odds()
-    likely = may_be(odds, LEAST_ODDS, pool.evidence, is_inside)
-    return _Likely(wall, lines, raster, pool.box[likely], odds[likely], pool)
+    log_odds = pool.log_odds()
+    every = _Likely(wall, lines, raster, pool.box, log_odds, pool.evidence, pool)
+    return every.chosen(may_be(log_odds, pool.evidence, is_inside))

@@ -3,16 +3,16 @@
 What alone is too uncertain to be an opening, such as a window half behind a bush, is likely one where openings of its
 size stand in its row and its column, so that gaps are filled. Only taken ones ask here: rectangles of bricks cannot
 support each other. And a rectangle that is tiny beside all others, with none of its size in its row or column, is none;
-nor is the wall between two windows, which has their sides.
+nor is the wall beside a window, of which one side is the window's.
 """
 
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
 from linecad.model.openings.evidence import NAMES, measure
-from linecad.model.openings.lattice import propose, support
+from linecad.model.openings.lattice import mates, new_ones, propose, support
 from linecad.model.openings.neighbours import compare, pairs_of
-from linecad.model.openings.odds import LEAST_ODDS, odds
+from linecad.model.openings.odds import LEAST_LOG_ODDS, log_odds_beside
 from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import Raster
 
@@ -29,9 +29,9 @@ LEVEL = 0.6  # of a rectangle's height that both have
 SURE = 3.0  # log-odds of what was taken, at least, for what it says about others
 
 
-def may_be(odds: Float, least: float, evidence: Float, is_inside: bool) -> Bool:
+def may_be(log_odds: Float, evidence: Float, is_inside: bool) -> Bool:
     """Which rectangles (N,) may be openings; seen from inside, only those that light comes through."""
-    found = odds >= least
+    found = log_odds >= LEAST_LOG_ODDS
     if is_inside:
         found &= evidence[:, NAMES.index("darker")] <= -BRIGHTER
     return np.asarray(found)
@@ -42,32 +42,34 @@ def are_odd(raster: Raster, taken: Int) -> Bool:
     if len(taken) < FEWEST:
         return np.zeros(len(taken), bool)
     area = (raster.u[taken[:, 1]] - raster.u[taken[:, 0]]) * (raster.v[taken[:, 3]] - raster.v[taken[:, 2]])
-    has_mate = support(taken, raster, taken, np.zeros(len(taken))).any(axis=1)
+    has_mate = np.logical_or(*mates(taken, taken, raster)).any(axis=1)
     return np.asarray((area < TINY * np.median(area)) & ~has_mate)
 
 
-def are_between(pool: Pool, taken: Int) -> Bool:
-    """Which of those taken (T, 4) are wall beside a window: told from what is around them far less than a neighbour."""
+def are_beside_clearer(taken: Int, evidence: Float) -> Bool:
+    """Which of those taken (T, 4) are wall beside a window: told from what is around them far less than a neighbour.
+
+    By their evidence (T, F).
+    """
     pairs = pairs_of(taken, taken)
     wide, tall = pairs.size[:, :1], pairs.size[:, 1:]
-    is_next = (pairs.gap_u >= -OVER) & (pairs.gap_u < NEXT * wide) & (-pairs.gap_v > LEVEL * tall)
-    steps = measure(taken, pool.edges, pool.sums, pool.raster)[:, STEPS]
+    is_next = (pairs.gap_u >= -OVER) & (pairs.gap_u < NEXT * wide) & (pairs.shared_v > LEVEL * tall)
+    steps = evidence[:, STEPS]
     return np.asarray((is_next & (steps[:, None] < ALIKE * steps)).any(axis=1))
 
 
-def find_gaps(pool: Pool, taken: Int, taken_odds: Float) -> tuple[Int, Float]:
-    """Rectangles (M, 4) that the rows and columns of those taken (T, 4) ask for, and their log-odds (M,)."""
+def find_gaps(pool: Pool, taken: Int, taken_log_odds: Float, taken_evidence: Float) -> tuple[Int, Float, Float]:
+    """Rectangles (M, 4) that rows and columns of those taken (T, 4) ask for, with log-odds (M,) and evidence (M, F)."""
     if len(taken) < 2:
-        return np.zeros((0, 4), np.int64), np.zeros(0)
-    proposed = propose(taken[np.argsort(-taken_odds, kind="stable")], pool.raster)
+        return np.zeros((0, 4), np.int64), np.zeros(0), taken_evidence[:0]
+    proposed = new_ones(propose(taken[np.argsort(-taken_log_odds, kind="stable")], pool.raster), pool.box)
     box = np.concatenate([pool.box, proposed])
     evidence = np.concatenate([pool.evidence, measure(proposed, pool.edges, pool.sums, pool.raster)])
-    sure = np.maximum(taken_odds, SURE)
-    mates = support(box, pool.raster, taken, sure)
-    found = odds(evidence, compare(box, pool.raster, taken, sure))
-    asked = may_be(found, LEAST_ODDS, evidence, pool.is_inside) & (mates.sum(axis=1) >= LEAST_MATES)
+    sure = np.maximum(taken_log_odds, SURE)
+    standing = support(box, pool.raster, taken, sure)
+    found = log_odds_beside(evidence, compare(box, pool.raster, taken, sure))
+    asked = may_be(found, evidence, pool.is_inside) & (standing.sum(axis=1) >= LEAST_MATES)
     asked &= pool.edges.cover(box).sum(axis=1) >= LEAST_COVER
     # The sides of its neighbours close a piece of wall too, but in it is nothing.
-    own = measure(taken, pool.edges, pool.sums, pool.raster)
-    asked &= (evidence[:, LOOK] >= ALIKE * np.median(own[:, LOOK], axis=0)).all(axis=1)
-    return box[asked], found[asked]
+    asked &= (evidence[:, LOOK] >= ALIKE * np.median(taken_evidence[:, LOOK], axis=0)).all(axis=1)
+    return box[asked], found[asked], evidence[asked]

@@ -27,8 +27,8 @@ def at_home(
     """The openings on the planes whose faces show them, with ids and shapes numbered anew.
 
     Openings that no face shows, such as those behind a tree beside the sky, stay where they are. Left out are those on
-    a face that is not parallel to their plane, and those seen where the wall is hidden; what rows and columns ask for
-    stays there. `rotation` (3, 3) takes world to camera; `turns` are of further frames.
+    a face that is not parallel to their plane, and those seen where the wall is hidden; those that were hardly seen, of
+    which rows and columns tell, stay there. `rotation` (3, 3) takes world to camera; `turns` are of further frames.
     """
     plane_of = {plane.id: plane for plane in planes}
     faces = [(plane, _polygon(face.outline, face.holes, camera, rotation)) for plane in planes for face in plane.faces]

@@ -35,7 +35,7 @@ def distinct(box: Int, value: Float, double: float = DOUBLE, most: int = MOST) -
 
 
 def support(box: Int, raster: Raster, others: Int, other_value: Float) -> Float:
-    """How much the rows and the columns of rectangles (N, 4) support them (N, 2), log of 1 + the sum of odds shares."""
+    """How much rows and columns support rectangles (N, 4): (N, 2), log of 1 + the sum of probabilities of others."""
     same_row, same_column = mates(box, others, raster)
     sure = 1 / (1 + np.exp(-other_value))
     return np.log1p(np.column_stack([same_row @ sure, same_column @ sure]))
@@ -80,7 +80,7 @@ def propose(box: Int, raster: Raster) -> Int:
         np.abs(np.subtract.outer(tall, tall)) <= 0.6 * tall[:, None]
     )
     has_mate = np.any(same_row | same_column, axis=1)
-    a, b = true_places(alike & has_mate[:, None] & has_mate)
+    a, b = true_places(alike & has_mate[:, None] & has_mate & ~np.eye(len(seeds), dtype=bool))
     found.append(np.column_stack([seeds[a, :2], seeds[b, 2:]]))
     # The distance between two of a row, once more on either side and half-way.
     a, b = true_places(same_row)
@@ -99,6 +99,12 @@ def propose(box: Int, raster: Raster) -> Int:
         inside = (start_v >= 0) & (end_v < len(raster.v))
         found.append(np.column_stack([seeds[a, :2], start_v, end_v])[inside])
     return large_ones(np.concatenate(found))
+
+
+def new_ones(box: Int, known: Int) -> Int:
+    """Those of rectangles (N, 4) that are not among others (M, 4), each once, sorted."""
+    every, first = np.unique(np.concatenate([known, box]), axis=0, return_index=True)
+    return np.asarray(every[first >= len(known)], np.int64)
 
 
 def large_ones(box: Int) -> Int:

@@ -38,6 +38,7 @@ class Pairs:
 
     gap_u: Int  # (N, M) columns between them, negative where they share some
     gap_v: Int  # (N, M) rows, negative where they share some
+    shared_v: Int  # (N, M) rows that both have
     size: Int  # (N, 2) columns and rows of each box
     shared: Int  # (N, M) area
     area: Int  # (N, 1) of the boxes
@@ -55,21 +56,24 @@ def pairs_of(box: Int, others: Int) -> Pairs:
     gap_u = np.maximum(others[:, 0] - right, left - others[:, 1])
     gap_v = np.maximum(others[:, 2] - high, low - others[:, 3])
     shared_u = np.minimum(right, others[:, 1]) - np.maximum(left, others[:, 0])
-    shared_v = np.minimum(high, others[:, 3]) - np.maximum(low, others[:, 2])
+    shared_v = np.maximum(np.minimum(high, others[:, 3]) - np.maximum(low, others[:, 2]), 0)
     other_area = (others[:, 1] - others[:, 0]) * (others[:, 3] - others[:, 2])
     size = np.column_stack([box[:, 1] - box[:, 0], box[:, 3] - box[:, 2]])
-    shared = np.maximum(shared_u, 0) * np.maximum(shared_v, 0)
-    return Pairs(gap_u, gap_v, size, shared, size.prod(axis=1)[:, None], other_area[None])
+    shared = np.maximum(shared_u, 0) * shared_v
+    return Pairs(gap_u, gap_v, shared_v, size, shared, size.prod(axis=1)[:, None], other_area[None])
 
 
-def _close_mates(box: Int, raster: Raster) -> tuple[Bool, Bool]:
-    """Which boxes (N, 4) are of the size of another in its row, and in its column, and as close as panes, (N, N)."""
+def _close_mates(box: Int, raster: Raster, pairs: Pairs) -> tuple[Bool, Bool]:
+    """Which boxes (N, 4) are of the size of another in its row, and in its column, and as close as panes, (N, N).
+
+    `pairs` tells how they lie to each other.
+    """
     row, column = mates(box, box, raster)
-    near_u, near_v = pairs_of(box, box).within(CLOSE)
+    near_u, near_v = pairs.within(CLOSE)
     return row & near_u, column & near_v
 
 
-def compare(box: Int, raster: Raster, others: Int, other_odds: Float) -> Float:
+def compare(box: Int, raster: Raster, others: Int, other_log_odds: Float) -> Float:
     """Numbers (N, F), in the order of NAMES, of boxes (N, 4) beside others (M, 4) of log-odds (M,).
 
     Mates in row and column, what lies around, inside and across count by their probabilities, as log(1 + sum).
@@ -80,7 +84,7 @@ def compare(box: Int, raster: Raster, others: Int, other_odds: Float) -> Float:
     pairs = pairs_of(box, others)
     tight_u, tight_v = pairs.within(TIGHT)
     close_u, close_v = pairs.within(CLOSE)
-    probability = 1 / (1 + np.exp(-other_odds))
+    probability = 1 / (1 + np.exp(-other_log_odds))
     standing = [
         np.log1p(np.minimum(which @ probability, MOST_MATES))
         for mate, tight, close in ((row, tight_u, close_u), (column, tight_v, close_v))
@@ -90,16 +94,16 @@ def compare(box: Int, raster: Raster, others: Int, other_odds: Float) -> Float:
     inside = (pairs.shared > WITHIN * pairs.other_area) & (pairs.area > LARGER * pairs.other_area)
     smaller = np.minimum(pairs.area, pairs.other_area)
     across = (pairs.shared > ACROSS * smaller) & (pairs.shared < WITHIN * smaller)
-    close_row, close_column = _close_mates(others, raster)
+    close_row, close_column = _close_mates(others, raster, pairs_of(others, others))
     is_pane = close_row.sum(axis=1) + close_column.sum(axis=1) >= PANES
     panes, rest = inside & is_pane, inside & ~is_pane
-    odds = np.clip(other_odds, -SURE, SURE)
+    log_odds = np.clip(other_log_odds, -SURE, SURE)
     area = pairs.area[:, 0]
     return np.column_stack(
         [
             *standing,
-            np.where(around, odds, -SURE).max(axis=1),
-            np.where(inside, odds, -SURE).max(axis=1),
+            np.where(around, log_odds, -SURE).max(axis=1),
+            np.where(inside, log_odds, -SURE).max(axis=1),
             *(np.log1p(which @ probability) for which in (panes, rest, around, across)),
             np.minimum((pairs.shared * panes) @ (probability > LIKELY_PANE) / area, COVERED),
             np.minimum((pairs.shared * rest) @ probability / area, COVERED),
@@ -107,14 +111,14 @@ def compare(box: Int, raster: Raster, others: Int, other_odds: Float) -> Float:
     )
 
 
-def windows_of_panes(box: Int, odds: Float, raster: Raster) -> Int:
+def windows_of_panes(box: Int, log_odds: Float, raster: Raster) -> Int:
     """What groups of boxes (N, 4) that stand as close as panes span, (M, 4), with a frame as wide as their gaps too."""
-    box = box[odds >= LEAST_GROUPED]
+    box = box[log_odds >= LEAST_GROUPED]
     if len(box) < 2:
         return np.zeros((0, 4), np.int64)
-    row, column = _close_mates(box, raster)
-    near = (row & row.T) | (column & column.T)
     pairs = pairs_of(box, box)
+    row, column = _close_mates(box, raster, pairs)
+    near = (row & row.T) | (column & column.T)
     _, group = connected_components(coo_array(near), directed=False)
     found = []
     for number in np.flatnonzero(np.bincount(group) >= 2).tolist():
@@ -123,7 +127,7 @@ def windows_of_panes(box: Int, odds: Float, raster: Raster) -> Int:
         whole = np.array([panes[:, 0].min(), panes[:, 1].max(), panes[:, 2].min(), panes[:, 3].max()])
         among = np.ix_(own, own)
         gaps = np.concatenate([pairs.gap_u[among][row[among]], pairs.gap_v[among][column[among]]])
-        frame = round(float(np.median(gaps.clip(min=0)))) if len(gaps) else 0
+        frame = round(float(np.median(gaps)))
         found += [whole, whole + frame * np.array([-1, 1, -1, 1])]
     if not found:
         return np.zeros((0, 4), np.int64)

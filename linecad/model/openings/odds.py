@@ -16,7 +16,7 @@ from linecad.arrays import Float
 
 WEIGHTS = Path(__file__).with_name("odds.npz")
 KINDS = ("first", "beside")
-LEAST_ODDS = -0.3  # of an opening
+LEAST_LOG_ODDS = -0.3  # of an opening
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,26 +26,26 @@ class Network:
     names: tuple[str, ...]  # of the evidence (F,), in its order
     low: Float  # (F,) least evidence that it was fitted to; what is less counts as that
     high: Float  # (F,) most
-    at_once: float
+    intercept: float
     slopes: Float  # (F,)
-    layers: tuple[tuple[Float, Float], ...]  # weights (O, I) and shifts (O,); of the last one O is 1
+    layers: tuple[tuple[Float, Float], ...]  # weights (O, I) and biases (O,); of the last one O is 1
 
     def log_odds(self, evidence: Float) -> Float:
         """(N,) of evidence (N, F)."""
         within: Float = np.clip(evidence, self.low, self.high)
         found = within
-        for weights, shifts in self.layers[:-1]:
-            found = np.maximum(found @ weights.T + shifts, 0.0)
-        weights, shifts = self.layers[-1]
-        return np.asarray(self.at_once + within @ self.slopes + (found @ weights.T + shifts)[:, 0])
+        for weights, biases in self.layers[:-1]:
+            found = np.maximum(found @ weights.T + biases, 0.0)
+        weights, biases = self.layers[-1]
+        return np.asarray(self.intercept + within @ self.slopes + (found @ weights.T + biases)[:, 0])
 
 
-def first_odds(evidence: Float) -> Float:
+def log_odds_alone(evidence: Float) -> Float:
     """Log-odds (N,) by the evidence (N, F) of each rectangle alone."""
     return read_networks()[0].log_odds(evidence)
 
 
-def odds(evidence: Float, beside: Float) -> Float:
+def log_odds_beside(evidence: Float, beside: Float) -> Float:
     """Log-odds (N,) by the evidence (N, F) of each rectangle and how it lies to the others (N, G)."""
     return read_networks()[1].log_odds(np.column_stack([evidence, beside]))
 
@@ -77,8 +77,8 @@ def write_networks(by_itself: Network, beside: Network, path: Path) -> None:
     kept: dict[str, np.ndarray] = {}
     for kind, network in zip(KINDS, (by_itself, beside), strict=True):
         kept |= {f"{kind} names": np.array(network.names), f"{kind} layers": np.array(len(network.layers))}
-        parts = {"low": network.low, "high": network.high, "at once": network.at_once, "slopes": network.slopes}
-        for k, (weights, shifts) in enumerate(network.layers):
-            parts |= {f"weights {k}": weights, f"shifts {k}": shifts}
+        parts = {"low": network.low, "high": network.high, "at once": network.intercept, "slopes": network.slopes}
+        for k, (weights, biases) in enumerate(network.layers):
+            parts |= {f"weights {k}": weights, f"shifts {k}": biases}
         kept |= {f"{kind} {name}": np.asarray(values, np.float32) for name, values in parts.items()}
     np.savez(path, allow_pickle=False, **kept)

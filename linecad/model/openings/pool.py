@@ -6,9 +6,9 @@ import numpy as np
 
 from linecad.arrays import Float, Int
 from linecad.model.openings.evidence import Sums, measure
-from linecad.model.openings.lattice import distinct, propose
+from linecad.model.openings.lattice import distinct, new_ones, propose
 from linecad.model.openings.neighbours import compare, windows_of_panes
-from linecad.model.openings.odds import first_odds, odds
+from linecad.model.openings.odds import log_odds_alone, log_odds_beside
 from linecad.model.openings.raster import Raster
 from linecad.model.openings.rectangles import Edges, count_edges, find_rectangles
 
@@ -26,13 +26,13 @@ class Pool:
     box: Int  # (N, 4)
     evidence: Float  # (N, F)
     others: Int  # (M, 4) that they are compared with: distinct ones that edges close, and windows of panes
-    other_odds: Float  # (M,) by themselves
+    other_log_odds: Float  # (M,) by themselves
     is_inside: bool  # seen below a ceiling
 
-    def odds(self) -> Float:
+    def log_odds(self) -> Float:
         """Log-odds (N,) that each is an opening, by itself and beside the others."""
         # Beside these alone: beside what rows and columns ask for, they would support themselves.
-        return odds(self.evidence, compare(self.box, self.raster, self.others, self.other_odds))
+        return log_odds_beside(self.evidence, compare(self.box, self.raster, self.others, self.other_log_odds))
 
 
 def build_pool(raster: Raster, is_inside: bool) -> Pool:
@@ -41,19 +41,19 @@ def build_pool(raster: Raster, is_inside: bool) -> Pool:
     box = find_rectangles(raster, edges)
     sums = Sums(raster)
     evidence = measure(box, edges, sums, raster)
-    likeliness = first_odds(evidence)
-    kept = distinct(box, likeliness, ALMOST_SAME, MOST)
-    box, evidence, likeliness = box[kept], evidence[kept], likeliness[kept]
-    core = distinct(box, likeliness)
-    whole = windows_of_panes(box[core], likeliness[core], raster)
-    whole_odds = first_odds(measure(whole, edges, sums, raster))
+    log_odds = log_odds_alone(evidence)
+    kept = distinct(box, log_odds, ALMOST_SAME, MOST)
+    box, evidence, log_odds = box[kept], evidence[kept], log_odds[kept]
+    core = distinct(box, log_odds)
+    whole = windows_of_panes(box[core], log_odds[core], raster)
+    whole_log_odds = log_odds_alone(measure(whole, edges, sums, raster))
     others = np.concatenate([box[core], whole])
-    other_odds = np.concatenate([likeliness[core], whole_odds])
+    other_log_odds = np.concatenate([log_odds[core], whole_log_odds])
     asked = [
         propose(some[np.argsort(-value, kind="stable")], raster)
-        for some, value in ((others, other_odds), (whole, whole_odds))
+        for some, value in ((others, other_log_odds), (whole, whole_log_odds))
     ]
-    proposed = np.unique(np.concatenate([whole, *asked]), axis=0)
+    proposed = new_ones(np.concatenate([whole, *asked]), box)
     return Pool(
         raster,
         edges,
@@ -61,6 +61,6 @@ def build_pool(raster: Raster, is_inside: bool) -> Pool:
         np.concatenate([box, proposed]),
         np.concatenate([evidence, measure(proposed, edges, sums, raster)]),
         others,
-        other_odds,
+        other_log_odds,
         is_inside,
     )

@@ -111,7 +111,8 @@ def least_edge(strength: Single) -> np.float32:
 
 def _thin(strength: Single, across: int, least: np.float32) -> Bool:
     """Where an edge is the strongest of three across, and at least so strong."""
-    before, after = (np.roll(strength, shift, axis=across) for shift in (1, -1))
+    beyond = np.pad(strength, [(int(axis == across),) * 2 for axis in range(2)])
+    before, after = (beyond[:-2], beyond[2:]) if across == 0 else (beyond[:, :-2], beyond[:, 2:])
     return np.asarray((strength >= least) & (strength >= before) & (strength >= after))
 
 

@@ -1,4 +1,4 @@
-"""Rectangles whose sides edges of a wall's raster show for the most part, as columns and rows."""
+"""Rectangles whose sides edges of a wall's raster show in good part, as columns and rows."""
 
 from dataclasses import dataclass
 
@@ -22,7 +22,7 @@ ABOUT = 0.2  # of an upright's length: how far beyond or before its end the leve
 LARGEST_SHARE = 0.4  # of the raster's columns
 BEYOND = 0.2  # of a side: how far beyond its ends it is looked whether the edge goes on
 MOST = 2000  # rectangles of a wall
-PAST = 1.3  # what edges that go on cost, by edges that are seen, as in the weights of the evidence
+PAST = 1.3  # what edges that go on cost, by edges that are seen
 SLENDER = 6.0  # ratio of sides, from which a rectangle is none
 
 
@@ -178,7 +178,7 @@ def _levels(edges: Edges, left: Int, right: Int, one: Int, other: Int, run: Int,
     kept = shown >= LEAST_COVER
     pair, row, a, b, shown = pair[kept], row[kept], a[kept], b[kept], shown[kept]
     # Edges are three rows wide here: the row between its neighbours is the edge itself.
-    shown = shown + (edges.along_row(row - 1, a, b) + edges.along_row((row + 1).clip(max=last), a, b)) / 4
+    shown = shown + (edges.along_row(row - 1, a, b) + edges.along_row(row + 1, a, b)) / 4
     same_before, same_after = np.zeros(len(row), bool), np.zeros(len(row), bool)
     follows = (pair[1:] == pair[:-1]) & (row[1:] == row[:-1] + 1)
     same_before[1:] = follows & (shown[1:] <= shown[:-1])

@@ -71,9 +71,9 @@ def _shared(ends: Float, start: float, end: float) -> Float:
 def _in_line(wall: Wall, plane: Plane, seen: Seen, first: int, ground: float | None) -> list[Opening]:
     """Openings of one plane of a wall, in rows, columns and sizes."""
     box = seen.box
-    wide, tall = box[:, 1] - box[:, 0], box[:, 3] - box[:, 2]
-    left, low = _alike(box[:, 0], seen.step[:, 0], wide), _alike(box[:, 2], seen.step[:, 1], tall)
-    wide, tall = _alike(wide, seen.step[:, 0], wide), _alike(tall, seen.step[:, 1], tall)
+    own = np.column_stack([box[:, 0], box[:, 2], box[:, 1] - box[:, 0], box[:, 3] - box[:, 2]])
+    alike = np.column_stack([_alike(own[:, k], seen.step[:, k % 2], own[:, 2 + k % 2]) for k in range(4)])
+    left, low, wide, tall = _still_apart(own, alike).T
     foot = ground
     if foot is None:
         foot = float(np.percentile(wall.level.at, LOWEST)) * plane.offset / wall.plane.offset
@@ -97,6 +97,28 @@ def _in_line(wall: Wall, plane: Plane, seen: Seen, first: int, ground: float | N
             )
         )
     return openings
+
+
+def _still_apart(own: Float, alike: Float) -> Float:
+    """Openings (N, 4) made alike, but for those that meet so where they were apart: these keep what is their own.
+
+    Each has left and low side, width and height.
+    """
+    apart, kept = _gaps(own) > 0, np.zeros((len(own), 2), bool)
+    while True:
+        found = np.where(np.tile(kept, 2), own, alike)
+        # What they were apart in is taken back, along u or v, and may make them meet others.
+        meets = (_gaps(found) <= 0).all(axis=0) & apart
+        more = kept | meets.any(axis=2).T
+        if (more == kept).all():
+            return np.asarray(found)
+        kept = more
+
+
+def _gaps(flat: Float) -> Float:
+    """How far apart (2, N, N) rectangles (N, 4) are along u and v, 0 and less where they meet."""
+    start, end = flat[:, :2].T, (flat[:, :2] + flat[:, 2:]).T
+    return np.asarray(np.maximum(start[:, None] - end[:, :, None], start[:, :, None] - end[:, None]))
 
 
 def _at_lines(wall: Wall, plane: Plane, lines: Lines, box: Float, step: Float) -> Float:

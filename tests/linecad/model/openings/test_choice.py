@@ -37,10 +37,10 @@ def test_rectangles_that_overlap_are_never_taken_together_and_no_set_is_better(s
     rng = np.random.default_rng(100 + seed)
     corner, size = rng.uniform(0, 6, (11, 2)), rng.uniform(1, 3, (11, 2))
     shapes = [shapely.box(*low, *(low + side)) for low, side in zip(corner, size, strict=True)]
-    odds = rng.uniform(-0.5, 3.0, 11)
+    log_odds = rng.uniform(-0.5, 3.0, 11)
     pairs = overlapping(np.array(shapes, object))
-    taken = choose(shapes, odds).taken
-    value = odds * np.sqrt([shape.area for shape in shapes])
+    taken = choose(shapes, log_odds).taken
+    value = log_odds * np.sqrt([shape.area for shape in shapes])
     assert not any(a in taken and b in taken for a, b in pairs)
     assert value[taken].sum() == pytest.approx(best_by_trying(value, pairs), abs=1e-9)
 

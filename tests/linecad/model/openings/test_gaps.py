@@ -7,7 +7,7 @@ import pytest
 
 from linecad.model.openings import gaps
 from linecad.model.openings.evidence import NAMES, Sums, measure
-from linecad.model.openings.gaps import are_between, are_odd, find_gaps, may_be
+from linecad.model.openings.gaps import are_beside_clearer, are_odd, find_gaps, may_be
 from linecad.model.openings.pool import Pool
 from linecad.model.openings.raster import build_raster, look
 from linecad.model.openings.rectangles import count_edges
@@ -45,29 +45,53 @@ def others(boxes):
     return np.delete(boxes, HALF_HIDDEN, axis=0)
 
 
+def asked_by(pool, taken):
+    """What is asked for by those taken, each of log-odds 3."""
+    evidence = measure(taken, pool.edges, pool.sums, pool.raster)
+    return find_gaps(pool, taken, np.full(len(taken), 3.0), evidence)
+
+
+def told_by(*steps):
+    """Evidence of rectangles of which nothing but the steps at their sides is known."""
+    evidence = np.zeros((len(steps), len(NAMES)))
+    evidence[:, NAMES.index("steps")] = steps
+    return evidence
+
+
 def test_half_hidden_window_is_asked_for(pool, boxes):
-    found, odds = find_gaps(pool, others(boxes), np.full(7, 3.0))
-    assert len(odds) == len(found)
+    found, log_odds, evidence = asked_by(pool, others(boxes))
+    assert len(log_odds) == len(found)
+    np.testing.assert_array_equal(evidence, measure(found, pool.edges, pool.sums, pool.raster))
     assert np.abs(found - boxes[HALF_HIDDEN]).max(axis=1).min() <= NEAR
 
 
 def test_wall_between_windows_is_not_asked_for(pool, boxes):
-    found, _ = find_gaps(pool, others(boxes), np.full(7, 3.0))
+    found, _, _ = asked_by(pool, others(boxes))
     for box in found:
         shared = np.minimum(boxes[:, [1, 3]], box[[1, 3]]) - np.maximum(boxes[:, [0, 2]], box[[0, 2]])
         assert (shared.clip(min=0).prod(axis=1) > 0).any(), box
 
 
 def test_one_window_asks_for_nothing(pool, boxes):
-    found, odds = find_gaps(pool, boxes[:1], np.array([3.0]))
+    found, log_odds, evidence = asked_by(pool, boxes[:1])
+    assert evidence.shape == (0, len(NAMES))
     assert found.shape == (0, 4)
-    assert odds.shape == (0,)
+    assert log_odds.shape == (0,)
 
 
-def test_two_windows_of_a_row_ask_for_a_third_and_one_does_not_reach(pool, boxes):
-    assert len(find_gaps(pool, boxes[:2], np.full(2, 3.0))[0]) > 0
-    far = np.array([boxes[0], boxes[5]])  # neither in the row nor in the column of the other
-    assert len(find_gaps(pool, far, np.full(2, 3.0))[0]) == 0
+def test_two_windows_of_a_row_ask_for_a_third(pool, boxes):
+    assert len(asked_by(pool, boxes[:2])[0]) > 0
+
+
+def test_one_mate_does_not_reach(pool, boxes, monkeypatch):
+    """The fourth of the upper row beside the third alone, and the first of the lower one, which is no mate of it."""
+    fourth = boxes[7:8]
+    judged = replace(pool, box=fourth, evidence=measure(fourth, pool.edges, pool.sums, pool.raster))
+    taken = boxes[[0, 6]]
+    assert fourth[0].tolist() not in asked_by(judged, taken)[0].tolist()
+    assert fourth[0].tolist() in asked_by(judged, boxes[[0, 5, 6]])[0].tolist()
+    monkeypatch.setattr(gaps, "LEAST_MATES", 0.5)
+    assert fourth[0].tolist() in asked_by(judged, taken)[0].tolist()
 
 
 def test_bare_wall_between_the_sides_of_windows_is_not_asked_for(pool, boxes, monkeypatch):
@@ -75,18 +99,39 @@ def test_bare_wall_between_the_sides_of_windows_is_not_asked_for(pool, boxes, mo
     between = np.column_stack([between[:, :1], between[:, :1] + np.diff(boxes[0][:2]), between[:, 2:]])
     evidence = measure(between, pool.edges, pool.sums, pool.raster)
     judged = replace(pool, box=between, evidence=evidence)
-    monkeypatch.setattr(gaps, "LEAST_ODDS", -100.0)
-    assert between[0].tolist() not in find_gaps(judged, others(boxes), np.full(7, 3.0))[0].tolist()
+    monkeypatch.setattr(gaps, "LEAST_LOG_ODDS", -100.0)
+    assert between[0].tolist() not in asked_by(judged, others(boxes))[0].tolist()
     monkeypatch.setattr(gaps, "ALIKE", -100.0)
     monkeypatch.setattr(gaps, "LEAST_COVER", 0.0)
-    assert between[0].tolist() in find_gaps(judged, others(boxes), np.full(7, 3.0))[0].tolist()
+    assert between[0].tolist() in asked_by(judged, others(boxes))[0].tolist()
 
 
 def test_wall_between_two_windows_is_none(pool, boxes):
     """Its sides are their jambs, and at its head and sill nothing changes."""
-    assert not are_between(pool, boxes).any()
-    left, right = boxes[0][1], boxes[1][0]
-    assert are_between(pool, np.vstack([boxes, [left, right, *boxes[0][2:]]])).tolist() == [False] * 8 + [True]
+    evidence = measure(boxes, pool.edges, pool.sums, pool.raster)
+    assert not are_beside_clearer(boxes, evidence).any()
+    between = np.array([[boxes[0][1], boxes[1][0], *boxes[0][2:]]])
+    evidence = np.vstack([evidence, measure(between, pool.edges, pool.sums, pool.raster)])
+    assert are_beside_clearer(np.vstack([boxes, between]), evidence).tolist() == [False] * 8 + [True]
+
+
+@pytest.mark.parametrize(
+    ("other", "is_wall"),
+    [
+        ([62, 92, 20, 120], True),  # beside all of it
+        ([62, 92, 55, 85], False),  # beside a part of it in its middle
+        ([62, 92, 90, 119], False),  # beside its end
+        ([62, 92, 55, 120], True),  # beside more than half of it
+        ([62, 92, 130, 230], False),  # a storey higher
+        ([58, 92, 20, 120], True),  # with the side of one where the other begins
+        ([57, 92, 20, 120], False),  # before it
+        ([67, 92, 20, 120], False),  # far from it
+    ],
+)
+def test_pale_one_is_wall_where_a_clear_one_has_its_side(other, is_wall):
+    pale = [40, 60, 20, 120]
+    assert are_beside_clearer(np.array([pale, other]), told_by(0.7, 2.0)).tolist() == [is_wall, False]
+    assert not are_beside_clearer(np.array([pale, other]), told_by(1.1, 2.0)).any()
 
 
 def test_tiny_one_alone_is_odd(pool, boxes):
@@ -109,12 +154,12 @@ def test_nothing_is_odd_among_few(pool, boxes):
 
 def test_window_whose_edges_are_hidden_is_not_asked_for(pool, boxes, monkeypatch):
     monkeypatch.setattr(gaps, "LEAST_COVER", 4.0)
-    assert len(find_gaps(pool, others(boxes), np.full(7, 3.0))[0]) == 0
+    assert len(asked_by(pool, others(boxes))[0]) == 0
 
 
 def test_from_inside_only_what_is_bright_may_be_a_window():
     evidence = np.zeros((3, len(NAMES)))
     evidence[:, NAMES.index("darker")] = [1.5, -0.5, -1.5]
-    odds = np.array([0.0, 0.0, 0.0])
-    assert may_be(odds, -0.5, evidence, True).tolist() == [False, False, True]
-    assert may_be(odds - [1, 0, 0], -0.5, evidence, False).tolist() == [False, True, True]
+    log_odds = np.array([0.0, 0.0, 0.0])
+    assert may_be(log_odds, evidence, True).tolist() == [False, False, True]
+    assert may_be(log_odds - [1, 0, 0], evidence, False).tolist() == [False, True, True]

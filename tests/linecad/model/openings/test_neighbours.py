@@ -55,9 +55,9 @@ def shared(box, other):
     return int(np.prod(np.maximum(np.minimum(own[:, 1], its[:, 1]) - np.maximum(own[:, 0], its[:, 0]), 0)))
 
 
-def one_by_one(box, others, odds):
+def one_by_one(box, others, log_odds):
     """The numbers of one box."""
-    sure = 1 / (1 + np.exp(-odds))
+    sure = 1 / (1 + np.exp(-log_odds))
     standing = np.zeros((2, 3))
     for other, share in zip(others, sure, strict=True):
         for along in range(2):
@@ -72,7 +72,7 @@ def one_by_one(box, others, odds):
     around, inside = -SURE, -SURE
     sums = np.zeros(4)
     covered = np.zeros(2)
-    for other, value, share, is_pane in zip(others, odds, sure, panes, strict=True):
+    for other, value, share, is_pane in zip(others, log_odds, sure, panes, strict=True):
         both = shared(box, other)
         if both > WITHIN * area(box) and area(other) > LARGER * area(box):
             around = max(around, min(value, SURE))
@@ -97,9 +97,9 @@ BOXES = st.lists(st.tuples(SIDES, SIDES), min_size=1, max_size=7).map(
 @given(box=BOXES, others=BOXES, data=st.data())
 def test_numbers_are_those_counted_one_by_one(box, others, data):
     values = st.lists(st.floats(-9, 9), min_size=len(others), max_size=len(others))
-    odds = np.array(data.draw(values))
-    expected = np.array([one_by_one(each, others, odds) for each in box])
-    np.testing.assert_allclose(compare(box, EVEN, others, odds), expected, atol=1e-9)
+    log_odds = np.array(data.draw(values))
+    expected = np.array([one_by_one(each, others, log_odds) for each in box])
+    np.testing.assert_allclose(compare(box, EVEN, others, log_odds), expected, atol=1e-9)
 
 
 def test_without_others_there_is_nothing_to_compare_with():
@@ -126,8 +126,8 @@ def test_each_group_of_panes_is_a_window_and_what_stands_apart_is_none():
 
 
 def test_unlikely_panes_are_no_window():
-    odds = np.array([0.0, -9.0])
-    assert len(windows_of_panes(grid(2, 1, bar=1), odds, EVEN)) == 0
+    log_odds = np.array([0.0, -9.0])
+    assert len(windows_of_panes(grid(2, 1, bar=1), log_odds, EVEN)) == 0
 
 
 def test_a_window_with_its_frame_stays_on_the_wall():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from linecad.model.openings import evidence, neighbours
-from linecad.model.openings.odds import Network, first_odds, odds, read_networks, write_networks
+from linecad.model.openings.odds import Network, log_odds_alone, log_odds_beside, read_networks, write_networks
 
 COUNT = len(evidence.NAMES)
 
@@ -19,9 +19,9 @@ def test_log_odds_are_those_of_the_networks():
     random = np.random.default_rng(0)
     by_itself, beside = read_networks()
     rows = random.uniform(beside.low, beside.high, (20, len(beside.names)))
-    assert first_odds(rows[:, :COUNT]) == pytest.approx(by_itself.log_odds(rows[:, :COUNT]))
-    assert odds(rows[:, :COUNT], rows[:, COUNT:]) == pytest.approx(beside.log_odds(rows))
-    assert first_odds(np.zeros((0, COUNT))).shape == (0,)
+    assert log_odds_alone(rows[:, :COUNT]) == pytest.approx(by_itself.log_odds(rows[:, :COUNT]))
+    assert log_odds_beside(rows[:, :COUNT], rows[:, COUNT:]) == pytest.approx(beside.log_odds(rows))
+    assert log_odds_alone(np.zeros((0, COUNT))).shape == (0,)
 
 
 def test_the_sum_and_the_layers_with_rectified_units_add_up():

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from linecad.model.openings.raster import EDGE, TEXTURE, least_edge, look
+from linecad.model.openings.raster import EDGE, TEXTURE, _thin, least_edge, look
 
 
 @pytest.mark.parametrize(
@@ -44,3 +44,13 @@ def test_colours_as_light_as_the_wall_have_edges_too():
 def test_where_lightness_changes_more_colour_adds_nothing():
     plain, tinted = painted((200, 128, 128), (150, 128, 128)), painted((200, 128, 134), (150, 128, 128))
     assert steepest(tinted)[0] == pytest.approx(steepest(plain)[0], rel=0.05)
+
+
+@pytest.mark.parametrize("across", [0, 1])
+def test_an_edge_at_one_end_of_a_wall_does_not_hide_one_at_the_other(across):
+    strength = np.zeros((7, 7), np.float32)
+    strength[3, :] = [5.0, 0.0, 2.0, 3.0, 2.5, 0.0, 9.0]
+    thin = _thin(strength if across == 1 else strength.T, across, np.float32(1.0))
+    shown = thin if across == 1 else thin.T
+    assert shown[3].tolist() == [True, False, False, True, False, False, True]
+    assert not np.delete(shown, 3, axis=0).any()

@@ -1,6 +1,7 @@
 """Openings are put at lines, in the plane of the wall around them, and doors are told from windows."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -32,6 +33,30 @@ def test_nearly_equal_openings_become_equal(facade, sides):
     assert found[0].v0 == found[1].v0
     assert found[0].v1 == found[1].v1
     assert found[0].u1 - found[0].u0 == pytest.approx(found[1].u1 - found[1].u0, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("box", "step"),
+    [
+        # Of one size, the narrow one would touch the next; to equal left sides the upper one would move into it.
+        ([[0, 0.6, 0, 1.5], [0.8, 1.6, 0, 1.5]], 0.1),
+        ([[0, 1, 0, 1.5], [1.03, 2.075, 0, 1.5]], 0.012),
+        ([[0, 1, 0, 1.5], [1.02, 2.0, 1.4, 3.0], [-0.5, 0.5, 1.52, 3.0]], 0.05),
+        ([[0, 1.5, 0, 0.6], [0, 1.5, 0.8, 1.6]], 0.1),
+    ],
+)
+def test_what_is_apart_stays_apart(facade, sides, box, step):
+    edges_of, lines_of = sides
+    lines = lines_of(edges_of(-6, 6, -2, 4) + edges_of(-5, 5, -1.5, 3.5) + edges_of(-4, -3, -1.4, 3.5))
+    box = np.array(box, float)
+    wall = find_walls((plane_of(lines, slice(None), 10.0),), lines, facade.camera, facade.rotation)[0]
+    seen = Seen(box, np.full((len(box), 2), step), np.zeros(len(box), bool))
+    found = np.array([[each.u0, each.u1, each.v0, each.v1] for each in make_regular(wall, lines, seen, 0, None)])
+    for (one, before), (other, then) in combinations(zip(found, box, strict=True), 2):
+        was_apart, is_apart = (
+            a[0] > b[1] or b[0] > a[1] or a[2] > b[3] or b[2] > a[3] for a, b in ((before, then), (one, other))
+        )
+        assert was_apart == is_apart
 
 
 def test_lines_behind_the_wall_do_not_move_its_holes(facade, sides):
