@@ -1,9 +1,9 @@
 """What tells windows and doors: python tests/benchmarks/openings.py DATASET ... [--unseen DATASET ...] [--write]
 
-DATASET is a folder of scenes that `linecad dataset` or rough_brick.py made. Solves each photo, takes the rectangles
-that are judged in each wall, and fits the networks of `linecad.model.openings.log_odds` to whether they lie on a true
-opening. Each dataset is judged by the fit of the others, an --unseen one by that of all. Prints the average precision
-of the log-odds as they are and as they are fitted, by the evidence alone and beside the others. Needs torch.
+DATASET is a folder of scenes that `linecad dataset`, rough_brick.py or high_rises.py made. Solves each photo, takes
+the rectangles that are judged in each wall, and fits the networks of `linecad.model.openings.odds` to whether they lie
+on a true opening. Each dataset is judged by the fit of the others, an --unseen one by that of all. Prints the average
+precision of the log-odds as they are and as they are fitted, by the evidence alone and beside the others. Needs torch.
 """
 
 import argparse

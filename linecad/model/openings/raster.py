@@ -15,7 +15,8 @@ from linecad.model.openings.walls import GRAZING, Wall
 
 Single = NDArray[np.float32]
 
-WIDEST = 1280  # px; larger photos are made smaller first
+WIDEST = 1280  # px; larger photos are made smaller first, smaller ones larger
+MOST_ENLARGED = 2.0  # times: windows five px wide have sides to tell apart then
 MARGIN = 0.05  # of a wall's extent, beyond its outermost lines
 MOST_ROWS, MOST_COLUMNS = 480, 1000
 LEAST_EXTENT = 24  # columns and rows of a raster worth looking at
@@ -31,10 +32,12 @@ NEAREST = 0.05  # of the wall's distance: what is nearer along the view is not l
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """The photo, small enough to be looked at often."""
+    """The photo, small enough to be looked at often and large enough for small windows."""
 
     colours: NDArray[np.uint8]  # (H, W, 3) Lab
-    gradient: Single  # (H, W, 2) grey levels a px, x and y, of lightness or colour, whichever changes more
+    # (H, W, 2) grey levels a px, x and y, of lightness or colour, whichever changes more; a px of the photo where this
+    # is larger
+    gradient: Single
     scale: float  # px of it over px of the photo
 
 
@@ -51,26 +54,32 @@ class Raster:
 
 
 def look(pixels: NDArray[np.uint8]) -> Sight:
-    """A photo (H, W, 3) with its gradients."""
-    scale = min(1.0, WIDEST / pixels.shape[1])
-    small = pixels
-    if scale < 1:
+    """A photo (H, W, 3) with its gradients, at most WIDEST px wide."""
+    scale = min(MOST_ENLARGED, WIDEST / pixels.shape[1])
+    enlarged = max(scale, 1.0)
+    sized = pixels
+    if scale != 1:
         size = (round(pixels.shape[1] * scale), round(pixels.shape[0] * scale))
-        small = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
-    colours = np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2LAB), np.uint8)
-    along_x, along_y = _gradient(np.asarray(cv2.cvtColor(small, cv2.COLOR_RGB2GRAY), np.uint8), 1.0)
+        way = cv2.INTER_AREA if scale < 1 else cv2.INTER_CUBIC
+        sized = np.asarray(cv2.resize(pixels, size, interpolation=way), np.uint8)
+    colours = np.asarray(cv2.cvtColor(sized, cv2.COLOR_RGB2LAB), np.uint8)
+    along_x, along_y = _gradient(np.asarray(cv2.cvtColor(sized, cv2.COLOR_RGB2GRAY), np.uint8), 1.0, enlarged)
     for channel in cv2.split(colours)[1:]:
-        other_x, other_y = _gradient(np.asarray(channel, np.uint8), CHROMA)
+        other_x, other_y = _gradient(np.asarray(channel, np.uint8), CHROMA, enlarged)
         steeper = other_x * other_x + other_y * other_y > along_x * along_x + along_y * along_y
         along_x, along_y = np.where(steeper, other_x, along_x), np.where(steeper, other_y, along_y)
     return Sight(colours, np.dstack([along_x, along_y]), scale)
 
 
-def _gradient(channel: NDArray[np.uint8], levels: float) -> tuple[Single, Single]:
-    """The gradient (H, W) along x and y of a channel (H, W), of which a step counts as so many grey levels."""
-    smooth = cv2.GaussianBlur(channel.astype(np.float32), (0, 0), SMOOTH)
+def _gradient(channel: NDArray[np.uint8], levels: float, enlarged: float) -> tuple[Single, Single]:
+    """The gradient (H, W) along x and y of a channel (H, W), of which a step counts as so many grey levels.
+
+    A px is what it was before the channel was `enlarged` so many times.
+    """
+    smooth = cv2.GaussianBlur(channel.astype(np.float32), (0, 0), SMOOTH * enlarged)
     along_x, along_y = (
-        np.asarray(cv2.Scharr(smooth, cv2.CV_32F, dx, 1 - dx, scale=levels / SCHARR), np.float32) for dx in (1, 0)
+        np.asarray(cv2.Scharr(smooth, cv2.CV_32F, dx, 1 - dx, scale=levels * enlarged / SCHARR), np.float32)
+        for dx in (1, 0)
     )
     return along_x, along_y
 

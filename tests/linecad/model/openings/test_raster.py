@@ -54,3 +54,24 @@ def test_an_edge_at_one_end_of_a_wall_does_not_hide_one_at_the_other(across):
     shown = thin if across == 1 else thin.T
     assert shown[3].tolist() == [True, False, False, True, False, False, True]
     assert not np.delete(shown, 3, axis=0).any()
+
+
+@pytest.mark.parametrize(("width", "scale"), [(320, 2.0), (640, 2.0), (1000, 1.28), (1280, 1.0), (2560, 0.5)])
+def test_photos_are_looked_at_in_one_size_but_for_tiny_ones(width, scale):
+    sight = look(np.zeros((width // 2, width, 3), np.uint8))
+    assert sight.scale == pytest.approx(scale)
+    assert sight.colours.shape == (*sight.gradient.shape[:2], 3)
+    assert sight.gradient.shape[:2] == (round(scale * (width // 2)), round(scale * width))
+
+
+def test_an_edge_is_as_steep_in_a_photo_that_is_made_larger():
+    """A soft one: a sharp one is blurred by less where pixels are more."""
+    small = cv2.GaussianBlur(painted((200, 128, 128), (150, 128, 128)), (0, 0), 2.5)
+    wide = np.pad(small, ((0, 0), (0, 1280 - small.shape[1]), (0, 0)), mode="edge")
+    across, along = look(wide).gradient[20, :40].T
+    larger = look(small)
+    assert larger.scale == 2.0
+    twice = larger.gradient[40]
+    assert np.abs(across).max() > 5
+    assert np.abs(twice[:, 0]).max() == pytest.approx(np.abs(across).max(), rel=0.1)
+    assert np.abs(along).max() == pytest.approx(np.abs(twice[:, 1]).max(), abs=0.1)
