@@ -76,7 +76,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     depth = depths(raster, surfaces)
     green = GREEN_COST * is_green(raster)
     ground = next((surface.offset for surface in surfaces if surface.kind == "ground"), None)
-    is_room = heaven.is_ceiling and raster.map_depth is None
+    is_room = heaven.is_ceiling
     for number, surface in enumerate(surfaces):
         cost = _surface_cost(raster, lines, surface, depth[:, number])
         if ground is not None and surface.kind != "ground":

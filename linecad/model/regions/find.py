@@ -97,9 +97,9 @@ def find_regions(
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
     surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)
-    if heaven.is_ceiling and look.mapped is None:
+    if heaven.is_ceiling:
         surfaces = with_skirtings(surfaces, lines, camera, turns)
-    if not heaven.is_ceiling and look.mapped is None and look.sketch is not None:
+    if not heaven.is_ceiling and look.sketch is not None:
         surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, heaven, view)
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None

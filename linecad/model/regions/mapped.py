@@ -18,7 +18,8 @@ from linecad.model.regions.raster import Raster
 from linecad.model.regions.surfaces import Kind, Surface, apart
 from linecad.scene import Camera, DepthKind
 
-LEAST_WIDTH = 0.012  # log depth; a map's wall is as uneven in itself
+LEAST_WIDTH, MOST_WIDTH = 0.012, 0.08  # log depth; a map's wall is as uneven in itself, the widest maps are as far off
+OF_PARTS = 1.5  # times the width that parts of bodies and corners tell, which is found too small more often
 MAP_COST, MOST_BY_MAP = 0.6, 3.0  # of a surface off the map, for each unit of the log of a Cauchy density; at most
 SOLID_COST = 0.7  # of the sky, and of clutter, where the map has something else
 LEVEL_WIDTH = 0.08  # log depth; feet tell the height of the ground no better
@@ -45,7 +46,7 @@ class MappedDepths:
     factor: float  # depth in the scene over depth in units of the map
     matrix: Float  # (3, 3) K of the photo, px
     width: float  # of the Cauchy error of its walls, log depth
-    width_of_parts: float = np.inf  # of parts of bodies and of lines, which alone tells whether the map is exact
+    width_of_parts: float = np.inf  # as parts of bodies and corners tell it, which alone tells whether the map is exact
 
     def at(self, rows: Int, columns: Int) -> Float:
         """(R, C) camera depth in the pixels of those rows (R,) and columns (C,); NaN where the map has none.
@@ -77,7 +78,8 @@ def laid_on(raster: Raster, mapped: MappedDepths | None, camera: Camera) -> Rast
     height, width = raster.shape
     row = np.minimum(((np.arange(height) + 0.5) * raster.step).astype(np.int64), camera.height - 1)
     column = np.minimum(((np.arange(width) + 0.5) * raster.step).astype(np.int64), camera.width - 1)
-    return replace(raster, map_depth=mapped.at(row, column).ravel(), map_width=max(mapped.width, LEAST_WIDTH))
+    believed = max(mapped.width, LEAST_WIDTH, min(OF_PARTS * mapped.width_of_parts, MOST_WIDTH))
+    return replace(raster, map_depth=mapped.at(row, column).ravel(), map_width=believed)
 
 
 def costs_by_map(raster: Raster, surfaces: list[Surface], depth: Float, limit: float) -> Float:

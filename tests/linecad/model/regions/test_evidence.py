@@ -248,7 +248,7 @@ def test_in_a_room_no_level_is_seen_through_all_of_its_walls(house, raster):
     assert cost_behind(8.0, 11.5) == pytest.approx(WALLED_COST)  # the other one stands beyond what is seen of it
     assert cost_behind(8.0, heaven=NO_HEAVEN) == pytest.approx(WALLED_COST)
     mapped = replace(raster, map_depth=np.full(raster.size, np.nan))
-    assert cost_behind(8.0, seen=mapped) == pytest.approx(WALLED_COST)
+    assert cost_behind(8.0, seen=mapped) == pytest.approx(ROOM_COST)
     # One that the ray never meets is not there, also where it reaches to both sides of the camera.
     behind = Surface("wall", 1, -8.0, NO_LINES, None, box=np.array([[-3.0, -8, -2], [3, -8, 2]]))
     assert cost_behind(8.0, also=behind) == pytest.approx(ROOM_COST)

@@ -13,6 +13,7 @@ from linecad.model.regions.mapped import (
     LEAST_WIDTH,
     MAP_COST,
     MOST_BY_MAP,
+    MOST_WIDTH,
     SOLID_COST,
     MappedDepths,
     costs_by_map,
@@ -108,9 +109,25 @@ def test_a_map_is_read_at_the_pixels_of_the_samples():
     values = (1.0 + u + 1000.0 * v).astype(np.float32)
     depth = DepthMap("map.npz", values, values > 0, "z")
     raster = laid_on(RASTER, MappedDepths(depth, "z", 0.0, 1.0, np.eye(3), 0.001), CAMERA)
-    assert raster.map_width == LEAST_WIDTH
     middle = raster.samples_of(np.array([[100.0, 50.0]])).round().astype(int)[0]
     assert raster.map_depth[middle[1] * raster.shape[1] + middle[0]] == pytest.approx(50101.0, abs=1001)
+
+
+@pytest.mark.parametrize(
+    ("bodies", "parts", "believed"),
+    [
+        (0.001, 0.001, LEAST_WIDTH),
+        (0.02, 0.01, 0.02),
+        (0.02, 0.03, 0.045),
+        (0.05, 0.03, 0.05),
+        (0.02, 0.3, MOST_WIDTH),
+        (0.02, np.inf, MOST_WIDTH),  # nothing tells
+    ],
+)
+def test_a_map_is_believed_as_far_as_bodies_and_their_parts_tell(bodies, parts, believed):
+    ones = np.ones((320, 480), np.float32)
+    seen = MappedDepths(DepthMap("map.npz", ones, ones > 0, "z"), "z", 0.0, 1.0, np.eye(3), bodies, parts)
+    assert laid_on(RASTER, seen, CAMERA).map_width == pytest.approx(believed)
 
 
 def test_costs_are_those_of_a_cauchy_error_above_the_nearest():
