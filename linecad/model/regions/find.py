@@ -97,13 +97,14 @@ def find_regions(
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
     surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)
-    if heaven.is_ceiling:
-        surfaces = with_skirtings(surfaces, lines, camera, turns)
-    if not heaven.is_ceiling and look.sketch is not None:
-        surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, heaven, view)
     trodden = ground_of_feet(surfaces, lines, feet)
     firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
     surfaces = with_mapped(surfaces, raster, firm)
+    # After the map's: its walls may go on farther, and its floor is where feet stand.
+    if heaven.is_ceiling:
+        surfaces = with_skirtings(surfaces, lines, camera, turns)
+    elif look.sketch is not None:
+        surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, heaven, view)
     sight = _Sight(planes, lines, look, raster, view, feet)
     shown = sight.show(surfaces, heaven, firm)
     filled = shown.filled

@@ -19,7 +19,7 @@ from linecad.model.regions.surfaces import Kind, Surface, apart
 from linecad.scene import Camera, DepthKind
 
 LEAST_WIDTH, MOST_WIDTH = 0.012, 0.08  # log depth; a map's wall is as uneven in itself, the widest maps are as far off
-OF_PARTS = 1.5  # times the width that parts of bodies and corners tell, which is found too small more often
+OF_PARTS = 1.5  # times the width that bodies and corners tell, the larger, which is found too small more often
 MAP_COST, MOST_BY_MAP = 0.6, 3.0  # of a surface off the map, for each unit of the log of a Cauchy density; at most
 SOLID_COST = 0.7  # of the sky, and of clutter, where the map has something else
 LEVEL_WIDTH = 0.08  # log depth; feet tell the height of the ground no better
@@ -30,6 +30,7 @@ EVEN = 0.7  # widths, by which it may be uneven there
 LEAST_WALL = 0.01  # of the photo's samples, of a wall that only the map shows
 LEAST_LEVEL = 0.04  # the same of a ground or ceiling that neither feet nor lines show
 MOST_WALLS = 8
+SLACK = 0.06  # of its offset, by which a wall without lines may go on beyond its box, which has the map's errors
 BESIDE_LINES, LEAST_BESIDE = 3.0, 40  # samples from lines, and so many, that tell by how much the map is off a surface
 MOST_OFF = 1.0  # log depth, by which the map may have a surface elsewhere
 AGREEING, MOST_RIGHT = 0.5, 0.2  # least share of them that says the same, and most that has the surface where it is
@@ -46,7 +47,7 @@ class MappedDepths:
     factor: float  # depth in the scene over depth in units of the map
     matrix: Float  # (3, 3) K of the photo, px
     width: float  # of the Cauchy error of its walls, log depth
-    width_of_parts: float = np.inf  # as parts of bodies and corners tell it, which alone tells whether the map is exact
+    width_of_parts: float = np.inf  # the larger of what bodies and corners tell: whether the map is exact
 
     def at(self, rows: Int, columns: Int) -> Float:
         """(R, C) camera depth in the pixels of those rows (R,) and columns (C,); NaN where the map has none.
@@ -238,7 +239,7 @@ def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:
     met = np.where(np.isfinite(depth), depth, 0.0)
     for axis in across(np.array(surface.axis)).tolist():
         low, high = surface.box[:, axis]
-        slack = WITHIN * raster.map_width * abs(surface.offset)
+        slack = SLACK * abs(surface.offset) * (raster.map_depth is not None)
         at = raster.rays[:, axis] * met
         outside |= (at < low - slack) | (at > high + slack)
     return np.where(outside, MOST_BY_MAP, 0.0)

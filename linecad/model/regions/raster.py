@@ -53,7 +53,7 @@ class Raster:
     line_depth: Float  # (T,)
     turns: Turns = ()  # of further frames
     map_depth: Float | None = None  # (S,) camera depth by a depth map, in the scene's unit; NaN where it has none
-    map_width: float = 0.0  # of the Cauchy error of its walls, log depth
+    map_width: float = 0.0  # log depth, Cauchy's, to which it is believed
 
     @property
     def size(self) -> int:

@@ -190,15 +190,16 @@ def test_heads_put_the_ceiling_above_the_ends_of_lines_where_no_map_shows_it(hou
     assert asked == [ends, ends, 2 * ends, ends]
 
 
-@pytest.mark.parametrize("is_seen", [True, False])
-def test_a_blank_wall_outdoors_stands_on_its_foot(is_seen, house, house_regions):
-    """Where a line along it is seen; its place was sky and clutter."""
+@pytest.mark.parametrize(("is_seen", "is_mapped"), [(True, False), (False, False), (True, True)])
+def test_a_blank_wall_outdoors_stands_on_its_foot(is_seen, is_mapped, house, house_regions, silent):
+    """Where a line along it is seen, and no map shows it; its place was sky and clutter."""
     corners = np.array([[-3.0, 10.0, -2.0], [0.5, 10.0, -2.0], [0.5, 10.0, 2.5], [-3.0, 10.0, 2.5]])
     shape = project(corners, house.camera.matrix, house.rotation)
     photo = house.photo.copy()
     cv2.fillPoly(photo, [np.rint(shape).astype(np.int32)], (150, 70, 55))
     whole = shape[None, :2] if is_seen else np.zeros((0, 2, 2))
-    look = Look(photo, None, None, Sketch(whole, whole, np.zeros(len(whole), np.int64)))
+    sketch = Sketch(whole, whole, np.zeros(len(whole), np.int64))
+    look = Look(photo, None, None, sketch, mapped=silent if is_mapped else None)
     found = find_regions(house.planes, house.lines, house.camera, house.rotation, look)
     more = {(kind, axis, round(offset, 6)) for kind, axis, offset in surfaces(found) - surfaces(house_regions)}
     assert more == ({("wall", 1, 10.0)} if is_seen else set())
