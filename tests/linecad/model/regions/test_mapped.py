@@ -124,7 +124,7 @@ def test_a_map_is_read_at_the_pixels_of_the_samples():
         (0.02, np.inf, MOST_WIDTH),  # nothing tells
     ],
 )
-def test_a_map_is_believed_as_far_as_bodies_and_their_parts_tell(bodies, parts, believed):
+def test_a_map_is_believed_as_far_as_bodies_and_corners_tell(bodies, parts, believed):
     ones = np.ones((320, 480), np.float32)
     seen = MappedDepths(DepthMap("map.npz", ones, ones > 0, "z"), "z", 0.0, 1.0, np.eye(3), bodies, parts)
     assert laid_on(RASTER, seen, CAMERA).map_width == pytest.approx(believed)
