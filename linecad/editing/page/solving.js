@@ -50,26 +50,26 @@ export class Solving {
     const wasRunning = this.running;
     try {
       const { solve, saved } = await this.actions.server.get("progress");
-      this.#timer = null;
       // A search that was started while this was asked is not what the answer tells of.
-      if (wasRunning === this.running) this.store.set({ solve, saved });
+      if (wasRunning === this.running) {
+        if (wasRunning && solve.state !== "running") await this.#readModel();
+        else this.store.set({ solve, saved });
+      }
     } catch (error) {
       if (!(error instanceof RequestError)) throw error;
-      this.#timer = null;
       this.actions.messages.tell(error.message, "error");
     }
+    this.#timer = null;
     this.#watch();
   }
 
-  async #ended() {
+  /** The end of a search and its model at once: until they are here, the page shows that it runs. */
+  async #readModel() {
     await this.actions.editing.settled();
-    try {
-      await this.actions.editing.refresh();
-    } catch (error) {
-      if (!(error instanceof RequestError)) throw error;
-      this.actions.messages.tell(error.message, "error");
-      return;
-    }
+    await this.actions.editing.refresh();
+  }
+
+  #ended() {
     const { contradiction, crossings, solve } = this.store.state;
     const { hasAsked } = this.actions;
     this.actions.hasAsked = false;

@@ -64,3 +64,19 @@ def compare(screen):
     now = {"answer": None, "saved": None, "solve": None}
     mine, told = screen.page.evaluate("linecad.store.state"), screen.served.ask("state")
     assert mine | now == told | now
+
+
+def test_a_search_is_over_when_its_model_is_here(screen):
+    """The page never shows an old model as the result of a search that has ended."""
+    screen.wait("linecad.store.solve.state === 'idle'")
+    before = screen.served.ask("progress")["solve"]["solved_version"]
+    states = []
+    screen.page.route("**/api/state*", lambda route: states.append(route))
+    screen.button("Solve again").click()
+    while not states:
+        screen.page.wait_for_timeout(20)
+    assert screen.served.ask("progress")["solve"]["state"] == "idle"
+    assert screen.run("linecad.store.solve.state") == "running"
+    screen.page.unroute("**/api/state*")  # which also lets go of what was kept
+    screen.wait("linecad.store.solve.state === 'idle'")
+    assert screen.state["solve"]["solved_version"] > before
