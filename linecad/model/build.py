@@ -37,9 +37,7 @@ from linecad.model.groups import with_main_first
 from linecad.model.ids import with_ids_by_place
 from linecad.model.lifting import Lifted
 from linecad.model.openings.corners import rectangles_of
-from linecad.model.openings.cutting import with_openings
-from linecad.model.openings.find import find_openings
-from linecad.model.openings.homes import at_home
+from linecad.model.openings.find import find_openings, look_at_walls
 from linecad.model.openings.told import ToldOpenings
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.roofs import Sketch
@@ -124,26 +122,25 @@ def build_scene(
 
     Where bodies were `placed`, all components have one scale. Else each is put at the depth of its neighbours.
     """
-    if placed is not None:
-        found = _with_planes_joined(found, graph, placed)
+    found = found if placed is None else _with_planes_joined(found, graph, placed)
     kept = np.flatnonzero(found.kept)
     scales = _component_scales(graph, found.lifted, found.parts, placed is not None)
     scale = scales[found.component]
-    lines = _lines(graph, solution, decision, found, scale)
-    if placed is not None:
-        lines = replace(lines, probability=placed.probability[kept], by_depth_map=placed.by_map[kept])
+    lines = _lines(graph, solution, decision, found, scale, placed)
     depth_map = _report_on_map(placed, float(scales[0]))
     new_id = np.cumsum(found.kept) - 1
     sight = Sight.of(view.camera, view.frame.rotation, view.pixels)
     framed = in_frames(lines, (found.lifted.offset * scale[:, None])[kept], graph.home[kept], graph.turns)
     cleaned, framed = clean_and_cross(framed, _intersections(graph, decision, found, new_id), sight, view.camera.width)
     planes, lines = planes_of(framed, cleaned.shared), framed.in_world()
-    look = _look(view, placed, scales)
+    seen = look_at_walls(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
+    look = replace(_look(view, placed, scales), walls=seen.shown)
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     whole = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
-    holes = find_openings(frame_views(framed, whole, view.frame.rotation), view.camera, view.pixels)
+    seen = look_at_walls(frame_views(framed, whole, view.frame.rotation), view.camera, view.pixels, seen)
+    holes = find_openings(seen, whole, view.camera, view.frame.rotation)
     drawn = ToldOpenings(view.faces, whole, lines, view.camera, view.frame.rotation, graph.turns)
-    planes, openings, told = _opened(whole, holes.openings, drawn)
+    planes, openings, told = drawn.opened(holes.openings)
     of_bodies = None if placed is None else cleaned.row[new_id[found.kept & placed.told]]
     said = lines_told(cleaned.intersections, of_bodies)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)
@@ -193,16 +190,9 @@ def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Openi
     return framed.each(draw)
 
 
-def _opened(
-    planes: tuple[Plane, ...], openings: tuple[Opening, ...], drawn: ToldOpenings
-) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
-    """The planes with their openings cut out, those in the walls that the photo shows around them, and notes."""
-    found = at_home(openings, planes, drawn.camera, drawn.rotation, drawn.turns)
-    openings, notes = drawn.among(found)
-    return *with_openings(planes, openings, drawn.turns), notes
-
-
-def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float) -> Lines:
+def _lines(
+    graph: LineGraph, solution: Solution, decision: Decision, found: Components, scale: Float, placed: Placed | None
+) -> Lines:
     kept = np.flatnonzero(found.kept)
     # The scene program proves where bodies are best placed, nothing about single crossings.
     sure = "proven" if solution.status == "optimal" and solution.formulation != "bodies" else "supported"
@@ -216,6 +206,8 @@ def _lines(graph: LineGraph, solution: Solution, decision: Decision, found: Comp
         is_boundary=decision.is_boundary[kept],
         component=found.component[kept],
         confidence=confidence[kept],
+        probability=() if placed is None else placed.probability[kept],
+        by_depth_map=() if placed is None else placed.by_map[kept],
     )
 
 

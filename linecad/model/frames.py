@@ -108,7 +108,7 @@ def frame_views(framed: FramedLines, planes: tuple[Plane, ...], rotation: Float)
     """Lines, planes and `rotation` (3, 3), world to camera, in the axes of each frame, the main one first."""
     turns = framed.turns
     return [
-        FrameView(planes_in(planes, frame, turns), framed.along(frame), in_frame(rotation, frame, turns))
+        FrameView(planes_in(planes, frame, turns), framed.along(frame), in_frame(rotation, frame, turns), frame)
         for frame in framed.frames
     ]
 

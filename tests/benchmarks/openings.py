@@ -70,8 +70,8 @@ def rows_of(dataset: str, case: Case) -> Rows | None:
         walls.append(wall)
         return build_raster(wall, sight)
 
-    def pool_of(raster: Raster, is_inside: bool) -> Pool:
-        pool = build_pool(raster, is_inside)
+    def pool_of(raster: Raster) -> Pool:
+        pool = build_pool(raster)
         pools.append((walls[-1], pool))
         return pool
 

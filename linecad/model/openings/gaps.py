@@ -58,7 +58,9 @@ def are_beside_clearer(taken: Int, evidence: Float) -> Bool:
     return np.asarray((is_next & (steps[:, None] < ALIKE * steps)).any(axis=1))
 
 
-def find_gaps(pool: Pool, taken: Int, taken_log_odds: Float, taken_evidence: Float) -> tuple[Int, Float, Float]:
+def find_gaps(
+    pool: Pool, taken: Int, taken_log_odds: Float, taken_evidence: Float, is_inside: bool
+) -> tuple[Int, Float, Float]:
     """Rectangles (M, 4) that rows and columns of those taken (T, 4) ask for, with log-odds (M,) and evidence (M, F)."""
     if len(taken) < 2:
         return np.zeros((0, 4), np.int64), np.zeros(0), taken_evidence[:0]
@@ -68,7 +70,7 @@ def find_gaps(pool: Pool, taken: Int, taken_log_odds: Float, taken_evidence: Flo
     sure = np.maximum(taken_log_odds, SURE)
     standing = support(box, pool.raster, taken, sure)
     found = log_odds_beside(evidence, compare(box, pool.raster, taken, sure))
-    asked = may_be(found, evidence, pool.is_inside) & (standing.sum(axis=1) >= LEAST_MATES)
+    asked = may_be(found, evidence, is_inside) & (standing.sum(axis=1) >= LEAST_MATES)
     asked &= pool.edges.cover(box).sum(axis=1) >= LEAST_COVER
     # The sides of its neighbours close a piece of wall too, but in it is nothing.
     asked &= (evidence[:, LOOK] >= ALIKE * np.median(taken_evidence[:, LOOK], axis=0)).all(axis=1)

@@ -3,15 +3,18 @@
 An opening is found in the plane of the lines around it. Which surface a place of the photo shows is decided by the
 labels of regions, which know more: then the opening goes where its rays meet that surface. On a parallel plane it stays
 a rectangle, since the camera is the origin; on one at right angles it would be none, so the photo shows no opening. Nor
-does it where something stands before the wall: the window of a tractor is none of the house's.
+does it where something stands before the wall, unless an equal one is seen: the window of a tractor is none of the
+house's, but one of a row behind a thin tree is.
 """
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import shapely
 
-from linecad.arrays import Float
+from linecad.arrays import Float, Int
+from linecad.depth.normals import UNTOLD
 from linecad.directions import Turns
 from linecad.geometry import project
 from linecad.model.openings.corners import rectangle_in_space
@@ -27,30 +30,61 @@ def at_home(
     """The openings on the planes whose faces show them, with ids and shapes numbered anew.
 
     Openings that no face shows, such as those behind a tree beside the sky, stay where they are. Left out are those on
-    a face that is not parallel to their plane, and those seen where the wall is hidden; those that were hardly seen, of
-    which rows and columns tell, stay there. `rotation` (3, 3) takes world to camera; `turns` are of further frames.
+    a face that is not parallel to their plane, and those seen where the wall is hidden, unless one of their shape is
+    seen where it is not; those that were hardly seen, of which rows and columns tell, stay there. `rotation` (3, 3)
+    takes world to camera; `turns` are of further frames.
     """
     plane_of = {plane.id: plane for plane in planes}
     faces = [(plane, _polygon(face.outline, face.holes, camera, rotation)) for plane in planes for face in plane.faces]
     shapes = np.array([shape for _, shape in faces], object)
     hidden = [ring for plane in planes for face in plane.faces for ring in face.hidden]
     clutter = shapely.union_all([_polygon(ring, (), camera, rotation) for ring in hidden])
+    seen = [
+        shapely.Polygon(project(rectangle_in_space(each, plane_of[each.plane], turns), camera.matrix, rotation))
+        for each in openings
+    ]
+    is_hidden = [
+        not each.is_completed and clutter.intersection(shape).area > MOST_HIDDEN * shape.area
+        for each, shape in zip(openings, seen, strict=True)
+    ]
+    in_sight = {
+        (each.shape, each.plane)
+        for each, hidden_one in zip(openings, is_hidden, strict=True)
+        if not (hidden_one or each.is_completed)
+    }
     kept: list[Opening] = []
     numbers: dict[tuple[int, int], int] = {}
-    for opening in openings:
+    for opening, shape, hidden_one in zip(openings, seen, is_hidden, strict=True):
         wall = plane_of[opening.plane]
-        seen = shapely.Polygon(project(rectangle_in_space(opening, wall, turns), camera.matrix, rotation))
-        if not opening.is_completed and clutter.intersection(seen).area > MOST_HIDDEN * seen.area:
+        if hidden_one and (opening.shape, opening.plane) not in in_sight:
             continue
-        shared = shapely.area(shapely.intersection(shapes, seen)) if len(shapes) else np.zeros(0)
-        if shared.max(initial=0.0) >= LEAST_SHARE * seen.area:
+        shared = shapely.area(shapely.intersection(shapes, shape)) if len(shapes) else np.zeros(0)
+        if shared.max(initial=0.0) >= LEAST_SHARE * shape.area:
             home = faces[int(shared.argmax())][0]
             if home.axis != wall.axis or home.offset * wall.offset <= 0:
                 continue
             opening = _moved(opening, wall, home)
-        shape = numbers.setdefault((opening.shape, opening.plane), len(kept))
-        kept.append(replace(opening, id=len(kept), shape=shape))
+        number = numbers.setdefault((opening.shape, opening.plane), len(kept))
+        kept.append(replace(opening, id=len(kept), shape=number))
     return tuple(kept)
+
+
+def axes_shown(planes: tuple[Plane, ...], camera: Camera, rotation: Float) -> Callable[[Float], Int]:
+    """What tells the axis (N,) of the planes whose faces the photo shows at pixels (N, 2); UNTOLD where there is none.
+
+    What stands before a face counts as the face.
+    """
+    axes = np.array([plane.axis for plane in planes for _ in plane.faces], np.int64)
+    shapes = [_polygon(face.outline, face.holes, camera, rotation) for plane in planes for face in plane.faces]
+    tree = shapely.STRtree(shapes)
+
+    def axes_at(pixels: Float) -> Int:
+        found = np.full(len(pixels), UNTOLD)
+        point, face = tree.query(shapely.points(pixels), predicate="within")
+        found[point] = axes[face]
+        return found
+
+    return axes_at
 
 
 def _polygon(ring: Float, holes: tuple[Float, ...], camera: Camera, rotation: Float) -> shapely.Geometry:

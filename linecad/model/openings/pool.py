@@ -27,7 +27,6 @@ class Pool:
     evidence: Float  # (N, F)
     others: Int  # (M, 4) that they are compared with: distinct ones that edges close, and windows of panes
     other_log_odds: Float  # (M,) by themselves
-    is_inside: bool  # seen below a ceiling
 
     def log_odds(self) -> Float:
         """Log-odds (N,) that each is an opening, by itself and beside the others."""
@@ -35,7 +34,7 @@ class Pool:
         return log_odds_beside(self.evidence, compare(self.box, self.raster, self.others, self.other_log_odds))
 
 
-def build_pool(raster: Raster, is_inside: bool) -> Pool:
+def build_pool(raster: Raster) -> Pool:
     """The rectangles of one wall."""
     edges = count_edges(raster)
     box = find_rectangles(raster, edges)
@@ -62,5 +61,4 @@ def build_pool(raster: Raster, is_inside: bool) -> Pool:
         np.concatenate([evidence, measure(proposed, edges, sums, raster)]),
         others,
         other_log_odds,
-        is_inside,
     )

@@ -16,6 +16,8 @@ from linecad.directions import UP, Turns, axis_name, components, partner
 from linecad.geometry import project, world_rays
 from linecad.model.openings.choice import not_overlapping
 from linecad.model.openings.corners import rectangle_in_space
+from linecad.model.openings.cutting import with_openings
+from linecad.model.openings.homes import at_home
 from linecad.scene import Camera, Lines, Opening, Plane
 
 EQUAL = 0.1  # log of a side by which windows of one size differ that a hand has drawn
@@ -42,6 +44,11 @@ class ToldOpenings:
     camera: Camera
     rotation: Float  # (3, 3) world to camera
     turns: Turns = ()
+
+    def opened(self, found: tuple[Opening, ...]) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
+        """The planes with their openings cut out, those in the walls that the photo shows around them, and notes."""
+        openings, notes = self.among(at_home(found, self.planes, self.camera, self.rotation, self.turns))
+        return *with_openings(self.planes, openings, self.turns), notes
 
     def among(self, found: tuple[Opening, ...]) -> tuple[tuple[Opening, ...], tuple[str, ...]]:
         """The openings found and told, with ids and shapes numbered anew, and notes on what could not be taken.

@@ -10,7 +10,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
+from linecad.depth.normals import UNTOLD
 from linecad.directions import UP, components, partner
+from linecad.model.regions.opened import costs_by_openings, shows_another
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.steps import Pair, find_step
 from linecad.model.regions.surfaces import Surface
@@ -34,6 +36,7 @@ SIDE_COST = 0.75  # of a side, which has no lines to be near to; that of a groun
 ABOVE_COST, MOST_ABOVE = 4.0, 1.5  # for each height of a wall by which its side is higher
 BEHIND_COST = 0.5  # of a wall that would be seen through a side
 UNBELIEVED = 1.6  # the least cost of that wall there, if it is placed by other ties than the one that ends
+MOST_OPENED = 0.1  # share of a side that openings of another wall may take
 NEVER = 50.0
 
 
@@ -135,7 +138,7 @@ def find_sides(ends: list[End], known: Known) -> list[Side]:
             continue
         side, behind = _side(end, known), known.surfaces[end.other]
         is_itself = behind.axis == side.surface.axis and behind.offset / side.surface.offset <= APART
-        if is_itself or side.hides.mean() <= LEAST_SEEN:
+        if is_itself or side.hides.mean() <= LEAST_SEEN or _shows_another_wall(side, known.raster):
             continue
         same = [at for at, other in enumerate(sides) if other.wall == end.wall and _is_one(other, side)]
         if not same:
@@ -145,6 +148,13 @@ def find_sides(ends: list[End], known: Known) -> list[Side]:
         surest = max(first, side, key=lambda each: (each.is_step, each.hides.sum()))  # lines say where a step is
         sides[same[0]] = replace(surest, hides=first.hides | side.hides)
     return sides
+
+
+def _shows_another_wall(side: Side, raster: Raster) -> bool:
+    """Whether openings that face another way are seen where a side would be, more than such as face its way."""
+    told = raster.opened[side.hides] != UNTOLD
+    other = shows_another(raster, side.surface.axis)[side.hides].mean()
+    return bool(other > max(told.mean() - other, MOST_OPENED))
 
 
 def _is_one(one: Side, other: Side) -> bool:
@@ -166,7 +176,9 @@ def with_sides(costs: Float, sides: list[Side], known: Known) -> Float:
         is_gap = np.ones(known.raster.size, bool) if side.is_step else known.gap
         if is_gap is not None:
             costs[side.hides & is_gap & ~known.raster.plants, -1] += BEHIND_COST
-    return np.column_stack([costs[:, :-2], *(side.cost for side in sides), costs[:, -2:]])
+    opened = costs_by_openings(known.raster, [side.surface for side in sides])
+    own = [side.cost + more for side, more in zip(sides, opened.T, strict=True)]
+    return np.column_stack([costs[:, :-2], *own, costs[:, -2:]])
 
 
 def find_ends(known: Known) -> list[End]:

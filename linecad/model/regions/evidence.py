@@ -12,6 +12,7 @@ from linecad.depth.normals import UNTOLD
 from linecad.directions import MAIN, UP, across, components, frame_axes, frame_of, partner
 from linecad.model.regions.heaven import SMOOTH, Heaven
 from linecad.model.regions.mapped import cost_outside, costs_by_map
+from linecad.model.regions.opened import costs_by_openings
 from linecad.model.regions.raster import SHADES, Raster
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Lines
@@ -96,6 +97,7 @@ def sample_costs(raster: Raster, lines: Lines, surfaces: list[Surface], heaven: 
     smooth = 1 - np.minimum(cv2.blur(edges, (AROUND, AROUND)).ravel() / FULL_OF_EDGES, 1)
     costs[:, SKY] = _sky_cost(raster, heaven)
     costs[:, CLUTTER] = CLUTTER_COST + SMOOTH_COST * smooth
+    costs[:, : len(surfaces)] += costs_by_openings(raster, surfaces)
     if raster.map_depth is not None:
         costs += costs_by_map(raster, surfaces, depth, limit)
     return costs

@@ -9,6 +9,7 @@ from linecad.arrays import Float
 from linecad.corrections.edits import FaceEdit
 from linecad.depth.normals import Normals
 from linecad.directions import Turns
+from linecad.model.openings.shown import WallShown
 from linecad.model.regions.as_told import uncovered, with_told
 from linecad.model.regions.blank_walls import with_blank_walls
 from linecad.model.regions.clutter import with_hidden
@@ -18,6 +19,7 @@ from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.kerbs import STEPS, on_kerbs
 from linecad.model.regions.labelling import find_labels
 from linecad.model.regions.mapped import MappedDepths, laid_on, level_of_map, with_mapped
+from linecad.model.regions.opened import with_walls_shown
 from linecad.model.regions.overgrown import is_in_the_open
 from linecad.model.regions.raster import Picture, Raster, take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs
@@ -50,6 +52,7 @@ class Look:
     mapped: MappedDepths | None = None  # what a depth map says
     faces: tuple[FaceEdit, ...] = ()  # what a person says
     height_of_ceiling: Callable[[], float | None] | None = None  # above the camera, by the heads of walls
+    walls: tuple[WallShown, ...] = ()  # where windows and doors tell of one
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +97,7 @@ def find_regions(
     """What every part of the photo shows. `rotation` (3, 3) takes world to camera; `turns` are of further frames."""
     view = View(camera, rotation, look.photo, turns)
     raster = laid_on(take_raster(lines, camera, rotation, look.photo, look.normals, turns), look.mapped, camera)
+    raster = with_walls_shown(raster, look.walls, look.faces)
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
     surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)

@@ -51,6 +51,8 @@ class Raster:
     at: Int  # (T,) sample in which the point lies
     line_rays: Float  # (T, K)
     line_depth: Float  # (T,)
+    opened: Int  # (S,) axis along which a wall faces by its openings, or UNTOLD
+    opened_cost: Float  # (S,) of what says otherwise
     turns: Turns = ()  # of further frames
     map_depth: Float | None = None  # (S,) camera depth by a depth map, in the scene's unit; NaN where it has none
     map_width: float = 0.0  # log depth, Cauchy's, to which it is believed
@@ -103,9 +105,18 @@ class Raster:
 
     def inside(self, shape: shapely.Geometry) -> Bool:
         """Mask (S,) of the samples whose middles lie in a shape, px."""
+        inside = np.zeros(self.shape, bool)
+        if shape.is_empty:
+            return inside.ravel()
+        left, top, right, bottom = self.samples_of(np.array(shape.bounds).reshape(2, 2)).ravel()
+        rows, columns = (
+            slice(max(0, int(top)), max(0, int(bottom) + 2)),
+            slice(max(0, int(left)), max(0, int(right) + 2)),
+        )
+        x, y = ((np.arange(count) + 0.5) * self.step - 0.5 for count in self.shape[::-1])
         shapely.prepare(shape)
-        inside: Bool = shapely.contains_xy(shape, _pixels(self.shape, self.step))
-        return inside
+        inside[rows, columns] = shapely.contains_xy(shape, *np.meshgrid(x[columns], y[rows]))
+        return inside.ravel()
 
     def samples_of(self, pixels: Float) -> Float:
         """Places (..., 2) on the raster, in samples, of pixels (..., 2)."""
@@ -147,6 +158,8 @@ def take_raster(
         gradient=_gradients(_grey(small), 0.7)[2].ravel(),
         votes=_votes(photo, shape, step, camera, axes),
         facing=facing,
+        opened=np.full(len(pixels), UNTOLD),
+        opened_cost=np.zeros(len(pixels)),
         line=line,
         at=at,
         line_rays=rays,

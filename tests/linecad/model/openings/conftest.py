@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from linecad.geometry import project
-from linecad.model.openings.find import FrameView, find_openings
+from linecad.model.openings.find import FrameView, find_openings, look_at_walls
 from linecad.scene import Camera, Lines, Plane
 
 CAMERA = Camera(1200, 900, np.array([[900.0, 0, 599.5], [0, 900, 449.5], [0, 0, 1]]), "file")
@@ -33,11 +33,13 @@ class Facade:
     def openings(self, pixels=None):
         """What is found in its photo, or in another."""
         seen = self.pixels if pixels is None else pixels
-        return find_openings([self.view()], self.camera, seen).openings
+        return find_openings(
+            look_at_walls([self.view()], self.camera, seen), self.planes, self.camera, self.rotation
+        ).openings
 
     def view(self, planes=None):
         """How it is seen, or other planes than its own."""
-        return FrameView(self.planes if planes is None else planes, self.lines, self.rotation)
+        return FrameView(self.planes if planes is None else planes, self.lines, self.rotation, 0)
 
 
 def paint(pixels, u0, u1, v0, v1, colour):

@@ -29,7 +29,7 @@ def pool(facade):
     raster = build_raster(wall, look(facade.pixels))
     edges, sums = count_edges(raster), Sums(raster)
     none = np.zeros((0, 4), np.int64)
-    return Pool(raster, edges, sums, none, measure(none, edges, sums, raster), none, np.zeros(0), False)
+    return Pool(raster, edges, sums, none, measure(none, edges, sums, raster), none, np.zeros(0))
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def others(boxes):
 def asked_by(pool, taken):
     """What is asked for by those taken, each of log-odds 3."""
     evidence = measure(taken, pool.edges, pool.sums, pool.raster)
-    return find_gaps(pool, taken, np.full(len(taken), 3.0), evidence)
+    return find_gaps(pool, taken, np.full(len(taken), 3.0), evidence, is_inside=False)
 
 
 def told_by(*steps):

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from linecad.depth.normals import UNTOLD
 from linecad.directions import directions_of, frame_axes
 from linecad.geometry import project
 from linecad.model.openings.corners import panel_in_space, rectangle_in_space
-from linecad.model.openings.homes import at_home
+from linecad.model.openings.homes import at_home, axes_shown
 from linecad.scene import Camera, Face, Opening, Plane
 
 CAMERA = Camera(1200, 900, np.array([[900.0, 0, 599.5], [0, 900, 449.5], [0, 0, 1]]), "file")
@@ -93,3 +94,25 @@ def test_what_stands_before_the_wall_has_no_opening_of_it():
     assert len(found(v0 + 0.4 * 1.5)) == 1
     assert found(v0 + 0.6 * 1.5) == ()
     assert len(found(v0 + 0.6 * 1.5, is_completed=True)) == 1
+
+
+def test_what_is_hidden_stays_where_an_equal_one_is_seen():
+    home = wall(7, 8.0)
+    tree = np.array([[0, 8.0, -3], [2, 8, -3], [2, 8, 4], [0, 8, 4]])
+    hidden = replace(home, faces=(replace(home.faces[0], hidden=(tree,)),))
+    other = replace(WINDOW, id=5, u0=-2.5, u1=-1.5)
+    assert len(homes((WINDOW, other), hidden)) == 2
+    assert [each.u0 for each in homes((WINDOW, replace(other, shape=5)), hidden)] == [-2.5]
+    behind = replace(WINDOW, id=5, u0=0.1, u1=1.1)  # the tree hides both
+    assert homes((WINDOW, behind), hidden) == ()
+    assert len(homes((WINDOW, replace(other, is_completed=True)), hidden)) == 1  # which was not seen either
+
+
+def test_the_axes_that_faces_show():
+    ring = np.array([[-5.0, 9, -1], [5, 9, -1], [5, 60, -1], [-5, 60, -1]])
+    planes = (wall(7, 8.0, u0=0.0), NEAR, Plane(3, 2, -1.0, (), (Face(0, ring, kind="ground"),)))
+    points = np.array([[1.0, 8, 0], [-1, 8, 0], [-1, 20, -1], [0, 1, 9]])
+    axes_at = axes_shown(planes, CAMERA, AHEAD)
+    assert axes_at(project(points, CAMERA.matrix, AHEAD)).tolist() == [1, UNTOLD, 2, UNTOLD]
+    assert axes_at(np.zeros((0, 2))).tolist() == []
+    assert axes_shown((NEAR,), CAMERA, AHEAD)(np.zeros((2, 2))).tolist() == [UNTOLD, UNTOLD]

@@ -33,7 +33,7 @@ def in_plane(pool):
 
 def test_a_window_without_edges_of_its_own_is_judged(white):
     wall = find_walls(white.planes, white.lines, white.camera, white.rotation)[0]
-    pool = build_pool(build_raster(wall, look(white.pixels)), False)
+    pool = build_pool(build_raster(wall, look(white.pixels)))
     assert pool.log_odds().shape == (len(pool.box),)
     for box in white.boxes:
         assert np.abs(in_plane(pool) - box).max(axis=1).min() < NEAR, box
@@ -42,7 +42,7 @@ def test_a_window_without_edges_of_its_own_is_judged(white):
 def test_each_rectangle_is_judged_once(white, facade):
     for each in (white, facade):
         wall = find_walls(each.planes, each.lines, each.camera, each.rotation)[0]
-        pool = build_pool(build_raster(wall, look(each.pixels)), False)
+        pool = build_pool(build_raster(wall, look(each.pixels)))
         assert len(np.unique(pool.box, axis=0)) == len(pool.box)
 
 

@@ -99,6 +99,17 @@ def test_a_side_goes_back_to_the_wall_behind_and_hides_it():
     assert side.surface.box[:, 1].tolist() == [5.0, 9.0]
 
 
+@pytest.mark.parametrize(("axis", "share", "count"), [(1, 0.3, 0), (1, 0.05, 1), (0, 0.3, 1), (None, 0.3, 1)])
+def test_where_windows_of_another_wall_are_seen_is_no_side(axis, share, count):
+    known = known_of([(1, 5.0, 1.0, 3.0), (1, 9.0, -40, 40)])
+    (side,) = sides_of(known)
+    hidden = np.flatnonzero(side.hides)
+    opened = known.raster.opened.copy()
+    if axis is not None:
+        opened[hidden[: round(share * len(hidden))]] = axis
+    assert len(sides_of(replace(known, raster=replace(known.raster, opened=opened)))) == count
+
+
 def test_a_side_ends_where_lines_of_its_wall_end_though_the_border_is_elsewhere():
     known = known_of([(1, 5.0, 1.0, 3.0), (1, 9.0, -40, 40)])
     end = min(find_ends(known), key=lambda end: end.place)
