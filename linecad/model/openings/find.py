@@ -135,7 +135,7 @@ def look_at_walls(
     for wall, view in walls:
         raster = build_raster(wall, sight)
         one = None if raster is None else _likely(wall, view, raster)
-        if one is not None and (one.log_odds >= LEAST_LOG_ODDS).any():
+        if one is not None and may_be(one.log_odds, one.evidence, is_inside=False).any():
             likely.append(one)
     looked_at = before.looked_at | {wall.plane.id for wall, _ in walls}
     return SeenWalls(tuple(likely), _take(likely, is_inside=False), looked_at)
