@@ -15,6 +15,7 @@ from scipy.special import pdtrc
 
 from linecad.arrays import Bool, Float, Int
 from solver.bodies.contradiction import find_contradiction
+from solver.least_squares import shortest_solution
 
 ENOUGH = 1.6  # decades of evidence that join two groups of bodies
 LEAST = 0.6  # decades; cues of less are as often wrong as right, and count nowhere
@@ -135,5 +136,5 @@ def _log_scales(cues: ScaleCues, accepted: Bool, group: Int) -> Float:
     right[at] = weight * cues.log_ratio[used]
     lead = np.flatnonzero(group == np.arange(len(group)))
     rows[len(used) + lead, lead] = 1.0
-    scale = np.asarray(np.linalg.lstsq(rows, right, rcond=None)[0], np.float64)
+    scale = shortest_solution(rows, right)
     return scale - scale[group]

@@ -21,6 +21,7 @@ from linecad.model.clean.strokes import FREE, Strokes, strokes_of
 from linecad.model.frame_ends import closed_across, missed_pairs, strokes_in_frames
 from linecad.model.frames import FramedLines, clean_frames, sight_in, without_rounding
 from linecad.scene import Intersections, Lines, Scene
+from solver.least_squares import shortest_solution
 
 # Of the depth, by which a plane may move to meet others. Two nearly parallel walls ask uprights to move far along both.
 FARTHEST = 0.004
@@ -211,7 +212,7 @@ def _least(conditions: Float, planes: _Planes, columns: Int, firm: Bool) -> Floa
     scale = nearest / np.sqrt(np.maximum(planes.weight[columns], 1.0))
     while len(conditions):
         short = -conditions @ value
-        moves = scale * np.linalg.lstsq(conditions * scale, short, rcond=None)[0]
+        moves = scale * shortest_solution(conditions * scale, short)
         left = np.abs(conditions @ moves - short) / (np.abs(conditions) @ nearest)
         far = np.abs(moves) / nearest
         worst = int(far.argmax())
@@ -220,7 +221,7 @@ def _least(conditions: Float, planes: _Planes, columns: Int, firm: Bool) -> Floa
         elif left.max() > EXACT:
             asks = left  # conditions that contradict each other
         else:
-            return np.asarray(moves)
+            return moves
         gone = int(np.lexsort((np.abs(short), asks, ~firm))[-1])
         conditions, firm = np.delete(conditions, gone, axis=0), np.delete(firm, gone)
     return np.zeros(len(columns))

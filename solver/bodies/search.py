@@ -11,6 +11,7 @@ from solver.backends.scip import Watch, run, version
 from solver.bodies.local_search import climb, improve, margins
 from solver.bodies.program import build
 from solver.bodies.ties import ROUNDING, Placement, Ties
+from solver.least_squares import shortest_solution
 from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_gap
 from solver.progress import Reporter, catch_interrupt
 
@@ -130,5 +131,4 @@ def _step(ties: Ties, log_scale: Float, part: Int) -> Float:
     weight = np.sqrt(ties.weight) / ties.tolerance
     missed = weight * (ties.log_ratio - rows @ log_scale)
     of_parts = rows @ (part[:, None] == np.arange(part.max() + 1)).astype(np.float64)
-    step: Float = np.linalg.lstsq(weight[:, None] * of_parts, missed)[0][part]
-    return step
+    return shortest_solution(weight[:, None] * of_parts, missed)[part]
