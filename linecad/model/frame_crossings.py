@@ -20,12 +20,9 @@ from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import FREE, Strokes, strokes_of
 from linecad.model.frame_ends import closed_across, missed_pairs, strokes_in_frames
 from linecad.model.frames import FramedLines, clean_frames, sight_in, without_rounding
+from linecad.model.least_moves import FARTHEST, PlaneOffsets, least_moves
 from linecad.scene import Intersections, Lines, Scene
-from solver.least_squares import shortest_solution
 
-# Of the depth, by which a plane may move to meet others. Two nearly parallel walls ask uprights to move far along both.
-FARTHEST = 0.004
-EXACT = 1e-12  # of the depth; rounding
 HOLDS = 1e-11  # of the depth; rounding of several
 APART = 1e-9  # of the depth, from which crossings are told to be inexact
 PARALLEL = 1e-6  # sine; the pieces of one line have no crossing
@@ -36,9 +33,7 @@ class _Planes:
     """The offsets of all frames, C of them, numbered through."""
 
     number: Int  # (N, 3) of each line's offsets in its frame; FREE along its axis
-    value: Float  # (C,)
-    nearest: Float  # (C,) depth of the nearest line
-    weight: Float  # (C,) px of segments
+    offsets: PlaneOffsets
 
 
 def clean_and_cross(
@@ -87,9 +82,9 @@ def with_exact_crossings(
     pairs = crossings.lines[crossings.real]
     pairs = pairs[framed.frame[pairs[:, 0]] != framed.frame[pairs[:, 1]]]
     conditions = _conditions(framed, planes, pairs)
-    value = planes.value + _moves(conditions, planes, np.ones(conditions.shape[0], bool))
+    value = planes.offsets.value + _moves(conditions, planes, np.ones(conditions.shape[0], bool))
     if missed is not None and len(missed):
-        planes = replace(planes, value=value)
+        planes = replace(planes, offsets=replace(planes.offsets, value=value))
         parts = [_exact(conditions, planes), _conditions(framed, planes, missed)]
         firm = np.repeat([True, False], [part.shape[0] for part in parts])
         value = value + _moves(csr_array(vstack(parts)), planes, firm)
@@ -143,7 +138,7 @@ def _planes(
     value, nearest, weight = (
         np.concatenate([getattr(part, name) for part in parts]) for name in ("value", "nearest", "weight")
     )
-    return _Planes(number, value, nearest, weight), first
+    return _Planes(number, PlaneOffsets(value, nearest, weight)), first
 
 
 def _conditions(framed: FramedLines, planes: _Planes, pairs: Int) -> csr_array:
@@ -160,7 +155,7 @@ def _conditions(framed: FramedLines, planes: _Planes, pairs: Int) -> csr_array:
     row = np.repeat(np.arange(len(rows)), count)
     column = np.concatenate([np.zeros(0, np.int64), *(numbers for numbers, _ in rows)])
     factor = np.concatenate([np.zeros(0), *(factors for _, factors in rows)])
-    return csr_array(coo_array((factor, (row, column)), (len(rows), len(planes.value))))
+    return csr_array(coo_array((factor, (row, column)), (len(rows), len(planes.offsets.value))))
 
 
 def _in_plane(framed: FramedLines, planes: _Planes, upright: int, level: int) -> tuple[Int, Float]:
@@ -180,8 +175,14 @@ def _level_vectors(frame: int, turns: Turns) -> Float:
 
 def _exact(conditions: csr_array, planes: _Planes) -> csr_array:
     """Those of the conditions (R, C) that hold."""
-    left = np.abs(conditions @ planes.value) / np.maximum(abs(conditions) @ planes.nearest, np.finfo(float).tiny)
-    return conditions[np.flatnonzero(left <= HOLDS)]
+    return conditions[np.flatnonzero(_missed(conditions, planes.offsets) <= HOLDS)]
+
+
+def _missed(conditions: csr_array, offsets: PlaneOffsets) -> Float:
+    """What each condition (R,) misses, over what is gained if each plane of it moves by its whole depth."""
+    reach = np.maximum(abs(conditions) @ offsets.nearest, np.finfo(float).tiny)
+    missed: Float = np.abs(conditions @ offsets.value) / reach
+    return missed
 
 
 def _moves(conditions: csr_array, planes: _Planes, firm: Bool) -> Float:
@@ -189,39 +190,12 @@ def _moves(conditions: csr_array, planes: _Planes, firm: Bool) -> Float:
 
     Those that are not `firm` (R,) hold where no other has to go for it.
     """
-    moves = np.zeros(len(planes.value))
-    reach = abs(conditions) @ planes.nearest  # what is gained if each plane of a condition moves by its whole depth
-    missed = np.abs(conditions @ planes.value) / np.maximum(reach, np.finfo(float).tiny)
-    kept = np.flatnonzero(missed <= FARTHEST)
+    moves = np.zeros(conditions.shape[1])
+    kept = np.flatnonzero(_missed(conditions, planes.offsets) <= FARTHEST)
     row, column = conditions[kept].nonzero()
-    ties = np.column_stack([row, len(kept) + column])
-    group = group_numbers(len(kept) + len(planes.value), ties)[: len(kept)]
+    group = group_numbers(len(kept) + len(moves), np.column_stack([row, len(kept) + column]))[: len(kept)]
     for number in np.unique(group).tolist():
-        own = conditions[kept[group == number]]
-        columns = np.unique(own.nonzero()[1])
-        moves[columns] = _least(own[:, columns].toarray(), planes, columns, firm[kept[group == number]])
+        rows = kept[group == number]
+        columns = np.unique(conditions[rows].nonzero()[1])
+        moves[columns] = least_moves(conditions[rows][:, columns].toarray(), planes.offsets.subset(columns), firm[rows])
     return moves
-
-
-def _least(conditions: Float, planes: _Planes, columns: Int, firm: Bool) -> Float:
-    """The least moves (K,) of the planes `columns` (K,), without the worst conditions (R, K) as long as one is far.
-
-    Those that are `firm` (R,) go last.
-    """
-    value, nearest = planes.value[columns], planes.nearest[columns]
-    scale = nearest / np.sqrt(np.maximum(planes.weight[columns], 1.0))
-    while len(conditions):
-        short = -conditions @ value
-        moves = scale * shortest_solution(conditions * scale, short)
-        left = np.abs(conditions @ moves - short) / (np.abs(conditions) @ nearest)
-        far = np.abs(moves) / nearest
-        worst = int(far.argmax())
-        if far[worst] > FARTHEST:
-            asks = np.abs(short) * (conditions[:, worst] != 0)
-        elif left.max() > EXACT:
-            asks = left  # conditions that contradict each other
-        else:
-            return moves
-        gone = int(np.lexsort((np.abs(short), asks, ~firm))[-1])
-        conditions, firm = np.delete(conditions, gone, axis=0), np.delete(firm, gone)
-    return np.zeros(len(columns))
