@@ -22,6 +22,7 @@ from linecad.ties.setting import Setting
 APART = 0.12  # log ratio between feet: a kerb or a plinth is lower
 JOINT = APART / 2  # log ratio of what seems to join both sides where they were one body
 MOST_SURE = 0.98  # probability of a seam without what feet say, from which on these do not part it
+MOST_THROUGH = 1  # lines of a side that pass through lines of the other: walls are opaque, but a post stands before one
 CLEAR = 0.08  # square of the chance that both of two feet are right, less that of two which agree
 
 
@@ -63,7 +64,7 @@ class Parted:
 
 
 def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
-    """The bodies of a setting, parted at seams whose sides clearly stand on two grounds.
+    """The bodies of a setting, parted at seams whose sides clearly stand on two grounds and are not one wall.
 
     `looks` are those at the photo; `real` (K, 2) are the lines of crossings that a person calls real, which hold both
     sides together. Other lines of a body go with the side that crossings tie them to.
@@ -72,13 +73,14 @@ def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
     piece, of_piece = part_bodies(setting.bodies, seams)
     pieces = Pieces(piece, of_piece, find_ground(replace(setting, bodies=RigidBodies(piece, len(of_piece))), looks))
     feet = chances_of_feet(pieces)
+    through = setting.graph.edges[agreeing(setting.graph, setting.log_depth) & (setting.graph.kind == "X")]
     body, count, at = setting.bodies.body.copy(), setting.bodies.count, []
     for seam in seams:  # of a body and its parts that of the body comes first
         whole = np.unique(body[np.concatenate([seam.larger, seam.smaller])])
         larger, smaller = (feet[np.isin(feet[:, 0], pieces.of(side))] for side in (seam.larger, seam.smaller))
         if len(whole) > 1 or clearly_apart(larger, smaller) <= CLEAR:
             continue
-        if without_feet(seam) > MOST_SURE or _joined(seam, real):
+        if without_feet(seam) > MOST_SURE or _joined(seam, real) or _passing(seam, through) > MOST_THROUGH:
             continue
         others = np.setdiff1d(np.flatnonzero(body == whole[0]), np.concatenate([seam.larger, seam.smaller]))
         body[seam.smaller] = count
@@ -92,6 +94,16 @@ def _joined(seam: Seam, real: Int) -> bool:
     """Whether a crossing (K, 2) joins both sides."""
     one, other = (np.isin(real, side) for side in (seam.larger, seam.smaller))
     return bool((one.any(axis=1) & other.any(axis=1)).any())
+
+
+def _passing(seam: Seam, through: Int) -> int:
+    """How many lines of either side pass through lines of the other, of the side with fewer; both of `through` (X, 2).
+
+    Neither line ends there. Of two walls one behind the other, only the nearer is seen where they cross.
+    """
+    larger, smaller = (np.isin(through, side) for side in (seam.larger, seam.smaller))
+    across = larger.any(axis=1) & smaller.any(axis=1)
+    return min(len(np.unique(through[across][own[across]])) for own in (larger, smaller))
 
 
 def _sides_of(others: Int, body: Int, sides: tuple[int, int], setting: Setting) -> Int:

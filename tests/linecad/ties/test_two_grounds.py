@@ -32,10 +32,11 @@ def parted(build_town, build_row, build_setting, monkeypatch):
     row = build_town(*build_row(3))
     setting = build_setting(row, body=np.zeros(len(row.part), int))
 
-    def part(*feet, seams=(OUTER, INNER), real=(), edges=()):
+    def part(*feet, seams=(OUTER, INNER), real=(), edges=(), kind="T"):
         monkeypatch.setattr(module, "find_seams", lambda *_: list(seams))
         monkeypatch.setattr(module, "find_ground", lambda *_: list(feet))
         joined = SimpleNamespace(edges=np.array(edges, int).reshape(-1, 2), weight=np.ones(len(edges)))
+        joined.kind = np.full(len(edges), kind)
         monkeypatch.setattr(module, "agreeing", lambda *_: np.ones(len(edges), bool))
         whole = replace(setting, graph=joined, log_depth=np.zeros(8), bodies=RigidBodies(np.zeros(8, int), 1))
         return part_by_feet(whole, Looks(setting), np.array(real, int).reshape(-1, 2))
@@ -95,6 +96,17 @@ def test_a_crossing_called_real_holds_both_sides(parted):
     feet = (foot(0, 2.5, SURE), foot(1, 2.8, SURE))
     assert parted(*feet, real=[(2, 6)]).bodies.count == 1
     assert parted(*feet, real=[(2, 4), (6, 7)]).bodies.count == 2
+
+
+@pytest.mark.parametrize(
+    ("edges", "count"),
+    [([(0, 6), (1, 7)], 1), ([(0, 6), (1, 6), (2, 6)], 2), ([(6, 0), (6, 1), (7, 1)], 1), ([(0, 1), (6, 7)], 2)],
+    ids=["two and two", "a post before a wall", "either way round", "within the sides"],
+)
+def test_sides_whose_lines_pass_through_each_other_are_one_wall(parted, edges, count):
+    feet = (foot(0, 2.5, SURE), foot(1, 2.8, SURE))
+    assert parted(*feet, edges=edges, kind="X").bodies.count == count
+    assert parted(*feet, edges=edges).bodies.count == 2  # lines that end at others may lie behind them
 
 
 def test_feet_part_no_seam_that_all_else_holds(parted):
