@@ -20,7 +20,7 @@ from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import FREE, Strokes, strokes_of
 from linecad.model.frame_ends import closed_across, missed_pairs, strokes_in_frames
 from linecad.model.frames import FramedLines, clean_frames, sight_in, without_rounding
-from linecad.model.least_moves import FARTHEST, PlaneOffsets, least_moves
+from linecad.model.least_moves import FARTHEST, PlaneOffsets, least_moves, missed_share
 from linecad.scene import Intersections, Lines, Scene
 
 HOLDS = 1e-11  # of the depth; rounding of several
@@ -175,14 +175,7 @@ def _level_vectors(frame: int, turns: Turns) -> Float:
 
 def _exact(conditions: csr_array, planes: _Planes) -> csr_array:
     """Those of the conditions (R, C) that hold."""
-    return conditions[np.flatnonzero(_missed(conditions, planes.offsets) <= HOLDS)]
-
-
-def _missed(conditions: csr_array, offsets: PlaneOffsets) -> Float:
-    """What each condition (R,) misses, over what is gained if each plane of it moves by its whole depth."""
-    reach = np.maximum(abs(conditions) @ offsets.nearest, np.finfo(float).tiny)
-    missed: Float = np.abs(conditions @ offsets.value) / reach
-    return missed
+    return conditions[np.flatnonzero(missed_share(conditions, planes.offsets) <= HOLDS)]
 
 
 def _moves(conditions: csr_array, planes: _Planes, firm: Bool) -> Float:
@@ -191,7 +184,7 @@ def _moves(conditions: csr_array, planes: _Planes, firm: Bool) -> Float:
     Those that are not `firm` (R,) hold where no other has to go for it.
     """
     moves = np.zeros(conditions.shape[1])
-    kept = np.flatnonzero(_missed(conditions, planes.offsets) <= FARTHEST)
+    kept = np.flatnonzero(missed_share(conditions, planes.offsets) <= FARTHEST)
     row, column = conditions[kept].nonzero()
     group = group_numbers(len(kept) + len(moves), np.column_stack([row, len(kept) + column]))[: len(kept)]
     for number in np.unique(group).tolist():

@@ -22,7 +22,7 @@ from linecad.ties.setting import Setting
 APART = 0.12  # log ratio between feet: a kerb or a plinth is lower
 JOINT = APART / 2  # log ratio of what seems to join both sides where they were one body
 MOST_SURE = 0.98  # probability of a seam without what feet say, from which on these do not part it
-MOST_THROUGH = 1  # lines of a side that pass through lines of the other: walls are opaque, but a post stands before one
+MOST_THROUGH = 1  # lines of a side that pass through lines of the other; one may be a wire or a post before both
 CLEAR = 0.08  # square of the chance that both of two feet are right, less that of two which agree
 
 

@@ -69,10 +69,28 @@ def test_the_firm_one_of_two_that_contradict_each_other_holds(firm):
     assert held(rows, planes, moves).tolist() == [firm == 0, firm == 1]
 
 
-def test_conditions_that_are_asked_many_times_outweigh_others():
-    rows = np.array([[1.0, -1.0, 0.0]] + 3 * [[1.0, 0.0, -1.0]])
-    planes = planes_at([0.0, 0.06, -0.06])
+@pytest.mark.parametrize("often", [0, 1])
+def test_conditions_that_are_asked_many_times_outweigh_others(often):
+    both = np.array([[1.0, -1.0, 0.0], [1.0, 0.0, -1.0]])
+    rows, planes = both[[1 - often] + 3 * [often]], planes_at([0.0, 0.06, -0.06])
     assert held(rows, planes, least_moves(rows, planes, np.ones(4, bool))).tolist() == [False, True, True, True]
+
+
+@pytest.mark.parametrize("angle", [1e-5, 1e-3, 0.01, 0.03, 0.5])
+def test_no_plane_moves_far_however_parallel_two_frames_are(angle):
+    """Uprights in planes of level lines of two directions: rounding of the program is multiplied by 1 / sine."""
+    for seed in range(40):
+        generator = np.random.default_rng(seed)
+        uprights, levels = generator.integers(2, 9, 2)
+        rows = np.zeros((uprights * levels, 2 * uprights + levels))
+        for number, row in enumerate(rows):
+            upright, level = divmod(number, levels)
+            along = angle * (level % 2)
+            row[[2 * upright, 2 * upright + 1, 2 * uprights + level]] = np.cos(along), np.sin(along), -1.0
+        planes = planes_at(generator.normal(0, FARTHEST * DEPTH, rows.shape[1]))
+        moves = least_moves(rows, planes, np.ones(len(rows), bool))
+        assert np.abs(moves).max() <= FARTHEST * DEPTH * (1 + 1e-8)
+        assert held(rows, planes, moves).sum() >= held(rows, planes, np.zeros(len(moves))).sum()
 
 
 def test_many_conditions_that_contradict_each_other_are_told_apart_in_few_steps(monkeypatch):
