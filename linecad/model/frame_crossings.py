@@ -82,16 +82,16 @@ def with_exact_crossings(
     pairs = crossings.lines[crossings.real]
     pairs = pairs[framed.frame[pairs[:, 0]] != framed.frame[pairs[:, 1]]]
     conditions = _conditions(framed, planes, pairs)
-    value = planes.offsets.value + _moves(conditions, planes, np.ones(conditions.shape[0], bool))
+    moves = _moves(conditions, planes.offsets, np.ones(conditions.shape[0], bool))
+    met = planes.offsets.moved(moves)
     if missed is not None and len(missed):
-        planes = replace(planes, offsets=replace(planes.offsets, value=value))
-        parts = [_exact(conditions, planes), _conditions(framed, planes, missed)]
+        parts = [_exact(conditions, met), _conditions(framed, planes, missed)]
         firm = np.repeat([True, False], [part.shape[0] for part in parts])
-        value = value + _moves(csr_array(vstack(parts)), planes, firm)
+        met = met.moved(_moves(csr_array(vstack(parts)), met, firm))
 
     def moved(lines: Lines, frame: int) -> Lines:
         old, start = offsets[frame], first[frame]
-        own = value[start : start + len(old.value)].copy()
+        own = met.value[start : start + len(old.value)].copy()
         for axis in range(3):
             own[old.axis == axis] = without_rounding(own[old.axis == axis])
         new = Offsets(old.axis, old.start, old.weight, old.nearest, old.lead, own)
@@ -173,22 +173,23 @@ def _level_vectors(frame: int, turns: Turns) -> Float:
     return vectors
 
 
-def _exact(conditions: csr_array, planes: _Planes) -> csr_array:
+def _exact(conditions: csr_array, offsets: PlaneOffsets) -> csr_array:
     """Those of the conditions (R, C) that hold."""
-    return conditions[np.flatnonzero(missed_share(conditions, planes.offsets) <= HOLDS)]
+    return conditions[np.flatnonzero(missed_share(conditions, offsets) <= HOLDS)]
 
 
-def _moves(conditions: csr_array, planes: _Planes, firm: Bool) -> Float:
+def _moves(conditions: csr_array, offsets: PlaneOffsets, firm: Bool) -> Float:
     """The least moves (C,) with which all conditions (R, C) hold that no plane has to move FARTHEST for.
 
     Those that are not `firm` (R,) hold where no other has to go for it.
     """
     moves = np.zeros(conditions.shape[1])
-    kept = np.flatnonzero(missed_share(conditions, planes.offsets) <= FARTHEST)
+    kept = np.flatnonzero(missed_share(conditions, offsets) <= FARTHEST)
     row, column = conditions[kept].nonzero()
     group = group_numbers(len(kept) + len(moves), np.column_stack([row, len(kept) + column]))[: len(kept)]
     for number in np.unique(group).tolist():
         rows = kept[group == number]
-        columns = np.unique(conditions[rows].nonzero()[1])
-        moves[columns] = least_moves(conditions[rows][:, columns].toarray(), planes.offsets.subset(columns), firm[rows])
+        own = conditions[rows]
+        columns = np.unique(own.nonzero()[1])
+        moves[columns] = least_moves(own[:, columns].toarray(), offsets.subset(columns), firm[rows])
     return moves

@@ -80,7 +80,7 @@ def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
         larger, smaller = (feet[np.isin(feet[:, 0], pieces.of(side))] for side in (seam.larger, seam.smaller))
         if len(whole) > 1 or clearly_apart(larger, smaller) <= CLEAR:
             continue
-        if without_feet(seam) > MOST_SURE or _joined(seam, real) or _passing(seam, through) > MOST_THROUGH:
+        if without_feet(seam) > MOST_SURE or len(_between(seam, real)) or _passing(seam, through) > MOST_THROUGH:
             continue
         others = np.setdiff1d(np.flatnonzero(body == whole[0]), np.concatenate([seam.larger, seam.smaller]))
         body[seam.smaller] = count
@@ -90,10 +90,10 @@ def part_by_feet(setting: Setting, looks: Looks, real: Int) -> Parted:
     return Parted(RigidBodies(body, count), tuple(at), setting, tuple(seams))
 
 
-def _joined(seam: Seam, real: Int) -> bool:
-    """Whether a crossing (K, 2) joins both sides."""
-    one, other = (np.isin(real, side) for side in (seam.larger, seam.smaller))
-    return bool((one.any(axis=1) & other.any(axis=1)).any())
+def _between(seam: Seam, crossings: Int) -> Int:
+    """Those of the crossings (K, 2) that join both sides."""
+    one, other = (np.isin(crossings, side).any(axis=1) for side in (seam.larger, seam.smaller))
+    return crossings[one & other]
 
 
 def _passing(seam: Seam, through: Int) -> int:
@@ -101,9 +101,8 @@ def _passing(seam: Seam, through: Int) -> int:
 
     Neither line ends there. Of two walls one behind the other, only the nearer is seen where they cross.
     """
-    larger, smaller = (np.isin(through, side) for side in (seam.larger, seam.smaller))
-    across = larger.any(axis=1) & smaller.any(axis=1)
-    return min(len(np.unique(through[across][own[across]])) for own in (larger, smaller))
+    lines = _between(seam, through)
+    return min(len(np.intersect1d(lines, side)) for side in (seam.larger, seam.smaller))
 
 
 def _sides_of(others: Int, body: Int, sides: tuple[int, int], setting: Setting) -> Int:
