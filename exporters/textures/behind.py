@@ -23,7 +23,7 @@ _THIN = 5  # px, from which what is left of a part beside nearer faces is more t
 _FADED = 2 / 3  # of what they grow by: the width of the way from the photo's colours to the filled ones
 _SAMPLES = 48  # a side of the small copy whose colours count
 _TEXELS = 4  # at most, down and across, whose mean is one of its colours
-_LEAST_CLEAR = 0.25  # of a sample; with less of it in plain view it does not count
+_LEAST_CLEAR = 0.25  # of a sample; with less of it in plain view it does not count, unless none has more
 _FILLED = 8  # the sides of the still smaller picture of the colours that are filled in
 _REACH = 0.2  # of the patch: the distance at which a colour counts less by a factor of 0.6
 
@@ -51,31 +51,32 @@ def cover_of(
 def _cover_in_photo(face: FlatFace, shape: Shape, behind: Bool, view: View) -> _Pixels:
     left, top, right, bottom = shape.box
     cover = np.zeros((bottom - top, right - left), np.uint8)
+    by_faces = np.zeros_like(cover)
     grown = max(_GROWN * view.width, _LEAST_GROWN)
     for ring in face.hidden:
         seen = seen_part(ring, view)
         if len(seen):
             points = np.round((seen[:, :2] / seen[:, 2:] - [left, top]) * 2**SHIFT).astype(np.int32)
-            _add(cover, points, behind, grown)
+            inside = np.zeros_like(cover)
+            cv2.fillPoly(inside, [points], (255,), cv2.LINE_8, SHIFT)
+            by_faces[behind] |= inside[behind]
+            cv2.max(cover, _grown(inside, points, behind, grown), cover)
     width = 2 * round(_FADED * grown / 2) + 1
-    return np.asarray(cv2.blur(cover, (width, width), borderType=cv2.BORDER_REPLICATE), np.uint8)
+    cover = np.asarray(cv2.blur(cover, (width, width), borderType=cv2.BORDER_REPLICATE), np.uint8)
+    if face.opening is not None:  # of a pane its wall hides a strip, whose ring is exact, and what is beside it is seen
+        return cover
+    # Up to their border: what is painted there in the photo is the other face.
+    return np.asarray(cv2.max(cover, cv2.dilate(by_faces, np.ones((_THIN, _THIN), np.uint8))), np.uint8)
 
 
-def _add(cover: _Pixels, ring: NDArray[np.int32], behind: Bool, grown: float) -> None:
-    """Fill a ring (V, 2), in the fixed point of SHIFT, and `grown` px about it, but for what is `behind` another face.
-
-    Of a pane its wall hides a strip: the ring of that is exact, and what is beside it is seen.
-    """
-    inside = np.zeros_like(cover)
-    cv2.fillPoly(inside, [ring], (255,), cv2.LINE_8, SHIFT)
+def _grown(inside: _Pixels, ring: NDArray[np.int32], behind: Bool, grown: float) -> _Pixels:
+    """What is `inside` a ring (V, 2), in the fixed point of SHIFT, and `grown` px about it, not `behind` a face."""
     if inside[behind].any():
-        inside[behind] = 0
+        inside = np.where(behind, np.uint8(0), inside)
         inside = np.asarray(cv2.morphologyEx(inside, cv2.MORPH_OPEN, np.ones((_THIN, _THIN), np.uint8)), np.uint8)
         side = 2 * round(grown) + 1
-        cv2.dilate(inside, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side)), inside)
-    else:
-        cv2.polylines(inside, [ring], True, (255,), round(2 * grown), cv2.LINE_8, SHIFT)
-    cv2.max(cover, inside, cover)
+        return np.asarray(cv2.dilate(inside, cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (side, side))), np.uint8)
+    return np.asarray(cv2.polylines(inside, [ring], True, (255,), round(2 * grown), cv2.LINE_8, SHIFT), np.uint8)
 
 
 def fill_behind(colours: _Pixels, cover: _Pixels, known: Bool, fill: str = OWN) -> None:
@@ -114,7 +115,7 @@ def _filling(colours: _Pixels, cover: _Pixels, known: Bool) -> _Pixels:
     rows, columns = (max(side // _TEXELS, 1) for side in clear.shape)
     weight = cv2.resize(clear, (columns, rows), interpolation=cv2.INTER_AREA)
     summed = cv2.resize(colours[few] * clear[..., None], (columns, rows), interpolation=cv2.INTER_AREA)
-    counted = weight >= _LEAST_CLEAR
+    counted = (weight > 0) & (weight >= min(_LEAST_CLEAR, weight.max()))
     if not counted.any():
         return np.full((_FILLED, _FILLED, 3), PLAIN, np.uint8)
     samples = summed[counted] / weight[counted][:, None]

@@ -42,8 +42,8 @@ def paint_pages(
     shapes = [shape_of(face, view) for face in model.faces]
     nearest = nearest_of(shapes, view)
     counts = np.bincount(nearest.owner[nearest.inverse_depth > 0], minlength=len(shapes)).tolist()
-    hidden = (sum(_pixels(ring, view) for ring in face.hidden) for face in model.faces)
-    shown = [count - behind for count, behind in zip(counts, hidden, strict=True)]
+    hidden = (_pixels_hidden(face, number, view, nearest) for number, face in enumerate(model.faces))
+    shown = [float(count - behind) for count, behind in zip(counts, hidden, strict=True)]
     painted: dict[int, Pixels] = {}
     covers: dict[int, Pixels] = {}
     for face, shape, patch in zip(model.faces, shapes, layout.patches, strict=True):
@@ -60,10 +60,15 @@ def paint_pages(
     return pages, shown
 
 
-def _pixels(ring: Float, view: View) -> float:
-    """px^2 of the photo inside a ring (V, 3) m."""
-    seen = seen_part(ring, view)
-    return abs(signed_area(seen[:, :2] / seen[:, 2:])) if len(seen) else 0.0
+def _pixels_hidden(face: FlatFace, number: int, view: View, nearest: Nearest) -> int:
+    """How many pixels of the photo show what hides face `number`, where no other face is nearer."""
+    rings = [seen_part(ring, view) for ring in face.hidden]
+    shapes = [[seen[:, :2] / seen[:, 2:]] for seen in rings if len(seen)]
+    if not shapes:
+        return 0
+    size = nearest.owner.shape
+    is_hidden = np.logical_or.reduce([filled(shape, (0, 0), size) for shape in shapes])
+    return int((is_hidden & (nearest.owner == number) & (nearest.inverse_depth > 0)).sum())
 
 
 def hidden_in_photo(shape: Shape, nearest: Nearest) -> Bool:
@@ -96,7 +101,8 @@ def _paint(
     )
     corner = (patch.left - MARGIN, patch.top - MARGIN)
     rings = [patch.texels(ring) - 0.5 for ring in face.rings]
-    known = (seen >= _WHOLLY_SEEN) & filled(rings, corner, size[::-1]) & in_front(to_photo, size)
+    within = filled(rings, corner, size[::-1]) & in_front(to_photo, size)
+    known = (seen >= _WHOLLY_SEEN) & within
 
     texels = abs(signed_area(rings[0]))
     step = math.sqrt(abs(signed_area(shape.rings[0])) / texels)  # px a texel, in the mean
@@ -111,6 +117,7 @@ def _paint(
     without_streaks(painted, clear, streaks(to_photo, size))
     if cover is not None:
         fill_behind(painted, cover, pure, fill)
+        pure |= within & ~known & (cover > 0)  # where it goes on behind another face
     reach = MARGIN + blurred + 1 if face.opening is None else max(size)  # the jamb before a pane hides more of the same
     return _continued(painted, pure, reach), cover
 

@@ -136,11 +136,12 @@ def build_scene(
     seen = look_at_walls(frame_views(framed, planes, view.frame.rotation), view.camera, view.pixels)
     look = replace(_look(view, placed, scales), walls=seen.shown)
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
-    whole = find_faces(planes, lines, regions, view.camera, view.frame.rotation, graph.turns)
+    place = (view.camera, view.frame.rotation, graph.turns)
+    whole = find_faces(planes, lines, replace(regions, behind={}), *place)  # of what is seen
     seen = look_at_walls(frame_views(framed, whole, view.frame.rotation), view.camera, view.pixels, seen)
     holes = find_openings(seen, whole, view.camera, view.frame.rotation)
-    drawn = ToldOpenings(view.faces, whole, lines, view.camera, view.frame.rotation, graph.turns)
-    planes, openings, told = drawn.opened(holes.openings)
+    drawn = ToldOpenings(view.faces, whole, lines, *place)
+    planes, openings, told = drawn.opened(holes.openings, find_faces(planes, lines, regions, *place))
     of_bodies = None if placed is None else cleaned.row[new_id[found.kept & placed.told]]
     said = lines_told(cleaned.intersections, of_bodies)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)

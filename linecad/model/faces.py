@@ -14,7 +14,8 @@ from linecad.arrays import Float
 from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.partition import polygons_of, positive_part, without_holes
+from linecad.model.regions.labelling import STRAIGHT
+from linecad.model.regions.partition import GRID, polygons_of, positive_part, without_holes
 from linecad.model.regions.roofs import Roof
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Face, FaceKind, Lines, Plane
@@ -51,14 +52,20 @@ def find_faces(
     labels = regions.labels
     area = camera.width * camera.height
     depth = FURTHEST * float((lines.ends @ rotation[2]).max(initial=0.0))
+    shown: dict[int, list[shapely.Polygon]] = {}
     parts = []
     for number, whole in labels.regions:
         if number >= labels.sky:
             continue
         surface = labels.surfaces[number]
         seen = _beside(_before(whole, surface, depth, camera, axes), number, regions.roofs)
-        for region in polygons_of(seen, LEAST_AREA * area):
-            hidden = polygons_of(shapely.intersection(region, regions.clutter), LEAST_HIDDEN * area)
+        shown.setdefault(number, []).extend(polygons_of(seen, LEAST_AREA * area))
+    for number, seen in shown.items():
+        surface = labels.surfaces[number]
+        behind = regions.behind.get(number, shapely.Polygon())
+        hides = shapely.union_all([regions.clutter, behind])
+        for region in _going_on(seen, behind):
+            hidden = polygons_of(shapely.intersection(region, hides), LEAST_HIDDEN * area)
             hidden = [piece for part in hidden for piece in without_holes(part)]  # a hidden part is one ring
             parts.append(_lifted(surface, region, hidden, camera, axes))
     parts = _snapped(parts, planes, lines)
@@ -85,6 +92,14 @@ def _before(region: shapely.Polygon, surface: Surface, depth: float, camera: Cam
     frame = np.array([[left, top], [right, top], [right, bottom], [left, bottom]])
     near = world_rays(frame, camera.matrix, axes)[:, surface.axis] / surface.offset - 1 / depth
     return shapely.intersection(region, positive_part(frame, near))
+
+
+def _going_on(seen: list[shapely.Polygon], behind: shapely.Geometry) -> list[shapely.Polygon]:
+    """The regions of a surface, px, with where it goes on `behind` others; what nothing seen goes on as is none."""
+    if behind.is_empty or not seen:
+        return seen
+    whole = shapely.simplify(shapely.union_all([*seen, behind], grid_size=GRID), STRAIGHT)
+    return [part for part in polygons_of(whole) if any(shapely.intersection(part, each).area > 0 for each in seen)]
 
 
 def _beside(region: shapely.Geometry, number: int, roofs: tuple[Roof, ...]) -> shapely.Geometry:

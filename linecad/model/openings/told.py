@@ -39,16 +39,21 @@ class ToldOpenings:
     """What a person said about the openings of a scene."""
 
     faces: Sequence[FaceEdit]
-    planes: tuple[Plane, ...]  # with the faces that openings are cut out of
+    planes: tuple[Plane, ...]  # with the faces that are seen
     lines: Lines
     camera: Camera
     rotation: Float  # (3, 3) world to camera
     turns: Turns = ()
 
-    def opened(self, found: tuple[Opening, ...]) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
-        """The planes with their openings cut out, those in the walls that the photo shows around them, and notes."""
+    def opened(
+        self, found: tuple[Opening, ...], planes: tuple[Plane, ...]
+    ) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
+        """The planes with openings cut out of their faces, those in the walls that the photo shows around them, notes.
+
+        The faces of `planes` may go on where they are not seen.
+        """
         openings, notes = self.among(at_home(found, self.planes, self.camera, self.rotation, self.turns))
-        return *with_openings(self.planes, openings, self.turns), notes
+        return *with_openings(planes, openings, self.turns), notes
 
     def among(self, found: tuple[Opening, ...]) -> tuple[tuple[Opening, ...], tuple[str, ...]]:
         """The openings found and told, with ids and shapes numbered anew, and notes on what could not be taken.

@@ -41,7 +41,9 @@ def with_hidden(filled: Filled, raster: Raster) -> Filled:
     labels = filled.labels
     shown = labels.label[labels.cell].reshape(raster.shape)
     ground = np.isin(shown, [k for k, surface in enumerate(labels.surfaces) if surface.kind == "ground"])
-    before = find_things(raster.colour, ground, (shown < labels.sky) & ~ground) | _before_walls(raster, ground)
+    before = find_things(raster.colour, ground, (shown < labels.sky) & ~ground) | hiding(
+        raster.plants.reshape(raster.shape), ground
+    )
     behind = shapely.difference(filled.clutter, shapely.union_all(outlines(_of_walls(filled, raster), raster.step)))
     clutter = shapely.union_all([part for part in polygons_of(behind) if not is_on_roof(part, filled.labels, raster)])
     return replace(filled, clutter=shapely.union_all([clutter, *outlines(before, raster.step)]))
@@ -134,13 +136,15 @@ def _whole(colour: NDArray[np.uint8], start: Bool, ground: Bool) -> Bool:
     return np.asarray(cv2.morphologyEx(whole, cv2.MORPH_CLOSE, gap) > 0)
 
 
-def _before_walls(raster: Raster, ground: Bool) -> Bool:
-    """Where (H, W) plants hide walls, and the ground at their foot: a lawn is the ground itself."""
-    plants = raster.plants.reshape(raster.shape)
+def hiding(plants: Bool, ground: Bool) -> Bool:
+    """Where (H, W) plants hide walls, and the `ground` (H, W) at their foot: a lawn is the ground itself.
+
+    So is what covers most of the ground, whatever grows on it and up the walls.
+    """
     count, part = cv2.connectedComponents(plants.astype(np.uint8), connectivity=8)
     on_ground = np.bincount(part[plants & ground], minlength=count)
     all_of_it = np.bincount(part[plants], minlength=count)
-    is_lawn = 2 * on_ground > all_of_it
+    is_lawn = (2 * on_ground > all_of_it) | (2 * on_ground > ground.sum())
     hidden: Bool = plants & ~(ground & is_lawn[part])
     return hidden
 

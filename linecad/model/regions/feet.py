@@ -87,7 +87,7 @@ def image_line(one: Surface, other: Surface, view: View) -> Float:
 
 def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
     """The parts of the photo between a border (V, 2) px and a meet (3,), along uprights; none where they are apart."""
-    chain = _beyond_photo(chain, view.camera)
+    chain = beyond_photo(chain, view.camera, REACH * view.camera.width)
     upright = vanishing_points(view.camera.matrix, view.rotation)[UP]
     direction = upright[:2] - chain * upright[2]
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
@@ -107,8 +107,8 @@ def _between(chain: Float, meet: Float, view: View) -> list[shapely.Polygon]:
     return quads
 
 
-def _beyond_photo(chain: Float, camera: Camera) -> Float:
-    """A border (V, 2) px that goes on outside the photo where it ends on the photo's edge.
+def beyond_photo(chain: Float, camera: Camera, reach: float) -> Float:
+    """A border (V, 2) px that goes on for `reach` px outside the photo where it ends on the photo's edge.
 
     Uprights lean there, and a strip between two of them would leave a splinter beside the edge.
     """
@@ -117,5 +117,5 @@ def _beyond_photo(chain: Float, camera: Camera) -> Float:
         low, high = chain[end] + 0.5, np.array([camera.width, camera.height]) - 0.5 - chain[end]
         if min(low.min(), high.min()) < ON_EDGE:
             along = chain[end] - chain[next_to]
-            longer[end] += along * (REACH * camera.width / np.linalg.norm(along))
+            longer[end] += along * (reach / np.linalg.norm(along))
     return longer

@@ -6,7 +6,8 @@ beyond where the photo shows it somewhere; a room is closed. Regions too small f
 wall was said to show beyond a corner that it has with another one.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import shapely
@@ -47,6 +48,7 @@ class Filled:
     lowered: float | None = None  # by which a depth map has the ground lower than where walls stand, in the same unit
     sky: shapely.Geometry = NOWHERE  # px, what is sky for sure, whatever the labels say
     told: tuple[str, ...] = ()  # what a person said and could not be taken, for people
+    behind: Mapping[int, shapely.Geometry] = field(default_factory=dict)  # px, where surfaces go on unseen, by label
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -140,12 +142,12 @@ def _cut_along(
     found: Labels, meets: Float, regions: list[shapely.Polygon], camera: Camera, raster: Raster
 ) -> list[shapely.Polygon]:
     """The cells, those in some regions cut along image lines too."""
-    if len(meets) == 0:
+    lines = partition.extended(meets, camera.width, camera.height, raster.step)[0][partition.BORDERS :]
+    if len(lines) == 0:  # surfaces may meet outside the photo alone
         return found.cells
-    lines, _ = partition.extended(meets, camera.width, camera.height, raster.step)
     inside = _inside(found.cells, regions)
     area = shapely.union_all([cell for cell, own in zip(found.cells, inside, strict=True) if own])
-    across = shapely.intersection(shapely.multilinestrings(list(lines[4:])), area)
+    across = shapely.intersection(shapely.multilinestrings(list(lines)), area)
     outlines = shapely.boundary(np.array(found.cells, object))
     # All of them once more: a cell has a corner where a line ends on its side.
     return partition.cells_between([*outlines, across])

@@ -18,6 +18,7 @@ from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.kerbs import STEPS, on_kerbs
 from linecad.model.regions.labelling import find_labels
+from linecad.model.regions.lower import parts_behind
 from linecad.model.regions.mapped import MappedDepths, laid_on, level_of_map, with_mapped
 from linecad.model.regions.opened import with_walls_shown
 from linecad.model.regions.overgrown import is_in_the_open
@@ -122,7 +123,8 @@ def find_regions(
     filled = replace(with_hidden(filled, raster), sky=sure_sky(shown.heaven, raster))
     if look.sketch is not None:
         filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, shown.heaven, raster, view))
-    return uncovered(filled, shown.told)
+    filled = uncovered(filled, shown.told)
+    return replace(filled, behind=parts_behind(filled.labels, view))
 
 
 def _road_of_map(ground: Surface, raster: Raster, mapped: MappedDepths | None) -> Surface | None:

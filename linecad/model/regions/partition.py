@@ -18,6 +18,7 @@ BESIDE_MEET = 12.0  # the same beside a line in which two surfaces meet
 PARALLEL = 0.04  # sine of the angle between such lines
 OVERSHOT = 2.0  # samples by which a line may cross another one before it is taken to end there
 GRID = 1e-6  # px
+BORDERS = 4  # of the photo, the first of its lines
 FIXED_POINT = 8  # bits after the point where OpenCV draws polygons
 
 
@@ -28,18 +29,18 @@ def extended(segments: Float, width: int, height: int, step: float, meets: int =
     `step` is the px of one sample; the first `meets` segments are where surfaces meet.
     """
     corners = np.array([[0, 0], [width, 0], [width, height], [0, height]]) - 0.5
-    lines, own = np.empty((MOST_LINES + 4, 2, 2)), np.empty((MOST_LINES + 4, 2, 2))
-    lines[:4] = own[:4] = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
-    reach = np.zeros(MOST_LINES + 4)  # px beside each of `own`, in which a weaker line cuts nothing off
-    rows = np.full(MOST_LINES + 4, -1)
-    count = 4
+    lines, own = np.empty((MOST_LINES + BORDERS, 2, 2)), np.empty((MOST_LINES + BORDERS, 2, 2))
+    lines[:BORDERS] = own[:BORDERS] = np.stack([corners, np.roll(corners, -1, axis=0)], axis=1)
+    reach = np.zeros(MOST_LINES + BORDERS)  # px beside each of `own`, in which a weaker line cuts nothing off
+    rows = np.full(MOST_LINES + BORDERS, -1)
+    count = BORDERS
     for row, segment in enumerate(segments):
         if count == len(lines):
             break
         middle, along = (segment[0] + segment[1]) / 2, segment[1] - segment[0]
         half = float(np.linalg.norm(along)) / 2
         along = along / (2 * half)
-        if row >= meets and _is_beside(own[4:count], reach[4:count], middle, along, half):
+        if row >= meets and _is_beside(own[BORDERS:count], reach[BORDERS:count], middle, along, half):
             continue
         place = _crossings(lines[:count], middle, along)
         after, before = place[place >= half - OVERSHOT * step], place[place <= OVERSHOT * step - half]

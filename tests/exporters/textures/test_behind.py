@@ -64,14 +64,14 @@ def paint(picture, scene, corners, colour):
     cv2.fillPoly(picture, [np.round(ray[:, :2] / ray[:, 2:] * 16).astype(np.int32)], colour, cv2.LINE_AA, 4)
 
 
-def painted(scene, photo):
-    """The pixels of the only patch with its margin, and the patch."""
+def painted(scene, photo, row=0):
+    """The pixels of the patch of a face with its margin, and the patch."""
     model, view = build_model(scene), view_of(scene)
     layout = build_layout(model, view, 4096)
     (page,), _ = paint_pages(model, layout, view, photo)
-    (patch,) = layout.patches
-    assert (patch.left, patch.top) == (MARGIN, MARGIN)
-    return page[: patch.rows + 2 * MARGIN, : patch.columns + 2 * MARGIN], patch
+    patch = layout.patches[row]
+    top, left = patch.top - MARGIN, patch.left - MARGIN
+    return page[top : patch.top + patch.rows + MARGIN, left : patch.left + patch.columns + MARGIN], patch
 
 
 def is_colour(pixels, colour, tolerance=12):
@@ -118,6 +118,39 @@ def test_the_colours_about_a_hidden_part_pass_into_each_other(facade, hedge, pho
 def test_a_face_that_is_wholly_hidden_is_plain(facade, photo):
     pixels, _ = painted(facade([ring(-4, -3, 4, 3)]), photo)
     assert is_colour(pixels, PLAIN, 0).all()
+
+
+def test_a_wall_goes_on_in_its_own_colours_behind_a_nearer_face(facade, hedge, photo):
+    near = hedge * 0.9  # in the photo the same
+    scene = facade([hedge])
+    before = Plane(1, 1, 0.9 * DEPTH, (), (Face(1, near),))
+    pixels, patch = painted(replace(scene, planes=(*scene.planes, before)), photo, 0)
+    behind = distance_from(patch, hedge, pixels.shape[:2]) == 0
+    assert behind.mean() > 0.1
+    assert is_colour(pixels[behind], WALL).mean() > 0.99
+    assert greenness(pixels).max() < 0
+    bare = facade(())
+    plain, _ = painted(replace(bare, planes=(*bare.planes, before)), photo, 0)
+    assert is_colour(plain[behind], PLAIN, 0).mean() > 0.9  # nobody told that it goes on there
+
+
+def test_how_much_of_a_face_is_shown_does_not_count_what_another_hides(facade, hedge, photo):
+    near = Plane(1, 1, 0.9 * DEPTH, (), (Face(1, hedge * 0.9),))
+    counts = []
+    for hidden in ((), (hedge,)):
+        scene = facade(hidden)
+        scene = replace(scene, planes=(*scene.planes, near))
+        model, view = build_model(scene), view_of(scene)
+        counts.append(paint_pages(model, build_layout(model, view, 4096), view, photo)[1])
+    assert counts[1] == pytest.approx(counts[0], rel=0.01)
+    model, view = build_model(facade((hedge,))), view_of(facade((hedge,)))
+    (shown,) = paint_pages(model, build_layout(model, view, 4096), view, photo)[1]
+    assert shown == pytest.approx(counts[0][0], rel=0.01)
+
+
+def test_the_little_that_is_in_plain_view_colours_all_the_rest(facade, photo):
+    pixels, _ = painted(facade([ring(-4, -3, 4, 1.0), ring(-4, 1.0, 3.8, 3)]), photo)
+    assert is_colour(pixels, WALL).mean() > 0.9
 
 
 def test_hidden_parts_may_overlap_and_leave_the_photo(facade, hedge, photo):

@@ -570,4 +570,4 @@ def test_of_equal_faces_the_one_that_the_photo_shows_best_is_known(row, photo):
         for plane in row.planes
     ]
     behind = build_textures(replace(row, planes=tuple(hedged)), photo, 4096)
-    assert behind.shown[panes[0].id] == pytest.approx(textures.shown[panes[0].id] - areas[0])
+    assert behind.shown[panes[0].id] == 0

@@ -1,5 +1,6 @@
 """Faces of regions: of a painted house, and of shapes in the photo that are made by hand."""
 
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -169,6 +170,28 @@ def test_what_hides_a_part_of_a_face_is_told():
     assert (hidden[:, 1] == 10).all()
     assert face.holes == ()
     assert in_photo(face.outline).area == pytest.approx(150 * 150)
+
+
+def test_a_face_goes_on_where_another_hides_it():
+    low = Surface("wall", 1, 5.0, NO_LINES, None)
+    shapes = [(0, shapely.box(50, 50, 200, 150)), (1, shapely.box(80, 150, 160, 180))]
+    found = regions([WALL, low], shapes)
+    found = replace(found, behind={0: shapely.box(80, 150, 160, 170) | shapely.box(300, 160, 320, 165)})
+    faces = find_faces((FRONT,), BACK_EDGE, found, CAMERA, AHEAD)
+    ((_, face), (_, before)) = every(faces)
+    expected = shapely.box(50, 50, 200, 150) | shapely.box(80, 150, 160, 170)  # no face where nothing of it is seen
+    assert in_photo(face.outline).symmetric_difference(expected).area < 1e-3
+    (hidden,) = face.hidden
+    assert in_photo(hidden).symmetric_difference(shapely.box(80, 150, 160, 170)).area < 1e-3
+    assert in_photo(before.outline).symmetric_difference(shapes[1][1]).area < 1e-6
+    assert before.hidden == ()
+
+
+def test_two_faces_are_one_where_what_hides_their_middle_does_not_end_them():
+    left, right = shapely.box(50, 50, 100, 150), shapely.box(140, 50, 200, 150)
+    found = replace(regions([WALL], [(0, left), (0, right)]), behind={0: shapely.box(100, 60, 140, 150)})
+    ((_, face),) = every(find_faces((FRONT,), BACK_EDGE, found, CAMERA, AHEAD))
+    assert in_photo(face.outline).area == pytest.approx(left.area + right.area + 40 * 90)
 
 
 def test_a_region_with_a_hair_is_a_face_without_it():

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from linecad.model.regions.clutter import find_things, outlines, with_hidden
+from linecad.model.regions.clutter import find_things, hiding, outlines, with_hidden
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.raster import take_raster
 
@@ -94,6 +94,25 @@ def test_a_bush_before_a_wall_hides_it_and_changes_no_outline(house, house_regio
     assert shapely.difference(more, bush.buffer(12)).area < 0.05 * bush.area
     areas = [sorted(region.area for _, region in one.labels.regions) for one in (seen, house_regions)]
     assert areas[0] == pytest.approx(areas[1], rel=0.02)
+
+
+@pytest.mark.parametrize(
+    ("plants", "is_lawn"),
+    [
+        pytest.param([(0, 90, 100, 60)], True, id="grass"),
+        pytest.param([(10, 40, 20, 65)], False, id="a bush at the foot of a wall"),
+        pytest.param([(0, 90, 40, 60), (0, 60, 100, 10)], False, id="ivy down to the ground"),
+        pytest.param([(0, 90, 60, 60), (0, 60, 100, 10)], True, id="grass, and ivy above it"),
+    ],
+)
+def test_plants_hide_what_they_grow_before_and_a_lawn_is_the_ground(plants, is_lawn):
+    ground, mask = np.zeros((90, 100), bool), np.zeros((90, 100), bool)
+    ground[60:] = True
+    for left, one, right, other in plants:
+        mask[min(one, other) : max(one, other), left:right] = True
+    hidden = hiding(mask, ground)
+    assert (hidden[:60] == mask[:60]).all()
+    assert (hidden[60:] == (mask[60:] & (not is_lawn))).all()
 
 
 @pytest.mark.parametrize("is_wall", [True, False])

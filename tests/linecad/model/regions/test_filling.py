@@ -96,6 +96,11 @@ def test_what_is_hidden_is_cut_along_the_meets_alone(filled):
     assert areas(found)[CLUTTER] == 0
 
 
+def test_surfaces_that_meet_outside_the_photo_alone_cut_nothing(filled):
+    tree, outside = (300, 250, 360, 500), np.array([[[0.0, 900.0], [959.0, 900.0]]])
+    assert areas(filled((CLUTTER, tree), meets=outside)) == areas(filled((CLUTTER, tree), meets=NO_MEETS))
+
+
 def test_a_tree_before_a_wall_alone_is_filled(filled):
     assert areas(filled((CLUTTER, (300, 250, 360, 350)))) == pytest.approx(areas(filled()))
 
