@@ -58,7 +58,7 @@ class FlatFace:
     # of a further frame those in which it looks widest.
     in_plane: tuple[int, int]
     rings: tuple[Float, ...]  # outline first, then holes; each (V, 3) m, not closed
-    hidden: tuple[Float, ...]  # each (H, 3) m, not closed: parts of it that a thing without a face hides in the photo
+    hidden: tuple[Float, ...]  # each (H, 3) m, not closed: parts of it that something hides in the photo
     opening: int | None  # id of the opening that it is the pane or a reveal of
     component: int  # of the scene, where these are parted; else 0
 

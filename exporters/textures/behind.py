@@ -1,4 +1,4 @@
-"""What a tree, a hedge or a car hides of a face: the face's own colours go on there, with its grain.
+"""What a tree, a car or a low wall hides of a face: the face's own colours go on there, with its grain.
 
 The colours are medians of what is in plain view, the nearer the more it counts. A mean, or what continues the colours
 from the border on, would spread every dark window and every leaf beside the border over all that is hidden.
@@ -33,7 +33,7 @@ _Pixels = NDArray[np.uint8]
 def cover_of(
     face: FlatFace, shape: Shape, behind: Bool, view: View, to_photo: Float, size: tuple[int, int]
 ) -> _Pixels | None:
-    """(rows, columns) of a patch: 255 where a thing without a face hides it in the photo, else 0; None if none does.
+    """(rows, columns) of a patch: 255 where a hidden part of it is, else 0; None if none does.
 
     `behind` (B, C) tells where in its box the face is behind another one, `to_photo` (3, 3) takes column, row and 1 of
     a texel to that box; `size` is columns, rows.

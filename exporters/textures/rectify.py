@@ -1,9 +1,9 @@
 """The photo on the faces: each face as seen from the front, where the photo shows it.
 
 A face is hidden where another one is nearer to the camera. What is hidden so or outside the photo keeps the plain
-colour of faces without a texture: nothing of what stands before a face is painted on it. Where a thing without a face
-hides it, a tree or a car, the face's own colours go on with its grain, and a window looks like an equal one. Along the
-borders of what is seen its colours go on for a few texels, so that no filter mixes them with anything else.
+colour of faces without a texture: nothing of what stands before a face is painted on it. Where the scene tells that it
+goes on, behind a tree, a car or a low wall, its own colours do with its grain, and a window looks like an equal one.
+Along the borders of what is seen its colours go on for a few texels, so that no filter mixes them with anything else.
 """
 
 import math
@@ -36,13 +36,16 @@ def paint_pages(
 ) -> tuple[list[Pixels], list[float]]:
     """The pages of a layout, RGB, from the photo (H, W, 3), and for each face how many pixels of the photo show it.
 
-    `fill`, one of FILLS, is what parts that a thing without a face hides are painted with.
+    `fill`, one of FILLS, is what parts that the scene tells as hidden are painted with.
     """
     pages = [np.full((height, width, 3), PLAIN, np.uint8) for width, height in layout.pages]
     shapes = [shape_of(face, view) for face in model.faces]
     nearest = nearest_of(shapes, view)
     counts = np.bincount(nearest.owner[nearest.inverse_depth > 0], minlength=len(shapes)).tolist()
-    hidden = (_pixels_hidden(face, number, view, nearest) for number, face in enumerate(model.faces))
+    hidden = (
+        _pixels_hidden(face, number, shape, view, nearest)
+        for number, (face, shape) in enumerate(zip(model.faces, shapes, strict=True))
+    )
     shown = [float(count - behind) for count, behind in zip(counts, hidden, strict=True)]
     painted: dict[int, Pixels] = {}
     covers: dict[int, Pixels] = {}
@@ -60,15 +63,18 @@ def paint_pages(
     return pages, shown
 
 
-def _pixels_hidden(face: FlatFace, number: int, view: View, nearest: Nearest) -> int:
+def _pixels_hidden(face: FlatFace, number: int, shape: Shape, view: View, nearest: Nearest) -> int:
     """How many pixels of the photo show what hides face `number`, where no other face is nearer."""
-    rings = [seen_part(ring, view) for ring in face.hidden]
-    shapes = [[seen[:, :2] / seen[:, 2:]] for seen in rings if len(seen)]
-    if not shapes:
+    if not (face.hidden and shape.rings):
         return 0
-    size = nearest.owner.shape
-    is_hidden = np.logical_or.reduce([filled(shape, (0, 0), size) for shape in shapes])
-    return int((is_hidden & (nearest.owner == number) & (nearest.inverse_depth > 0)).sum())
+    left, top, right, bottom = shape.box
+    here = np.s_[top:bottom, left:right]
+    is_hidden = np.zeros((bottom - top, right - left), bool)
+    for ring in face.hidden:
+        seen = seen_part(ring, view)
+        if len(seen):
+            is_hidden |= filled([seen[:, :2] / seen[:, 2:]], (left, top), is_hidden.shape)
+    return int((is_hidden & (nearest.owner[here] == number) & (nearest.inverse_depth[here] > 0)).sum())
 
 
 def hidden_in_photo(shape: Shape, nearest: Nearest) -> Bool:
@@ -116,8 +122,11 @@ def _paint(
     clear = pure if cover is None else pure & (cover == 0)
     without_streaks(painted, clear, streaks(to_photo, size))
     if cover is not None:
+        # Where it goes on behind another face; a pane has no colours of its own behind its wall.
+        unseen = within & ~known & (cover > 0) & (face.opening is None)
+        cover[unseen] = 255
         fill_behind(painted, cover, pure, fill)
-        pure |= within & ~known & (cover > 0)  # where it goes on behind another face
+        pure |= unseen
     reach = MARGIN + blurred + 1 if face.opening is None else max(size)  # the jamb before a pane hides more of the same
     return _continued(painted, pure, reach), cover
 

@@ -20,7 +20,7 @@ from linecad.model.clean.sight import Sight
 from linecad.model.coplanar import join_planes
 from linecad.model.depth_evidence import depths_of, normals_of
 from linecad.model.face_lines import add_lines, follow_map, lines_told, without_repeats
-from linecad.model.faces import find_faces, with_roofs
+from linecad.model.faces import faces_seen_and_going_on, with_roofs
 from linecad.model.finishing import finished
 from linecad.model.frame_crossings import clean_and_cross, inexact_crossings
 from linecad.model.frame_ends import closed_across, ends_that_meet_others
@@ -137,11 +137,11 @@ def build_scene(
     look = replace(_look(view, placed, scales), walls=seen.shown)
     regions = find_regions(planes, lines, view.camera, view.frame.rotation, look, graph.turns)
     place = (view.camera, view.frame.rotation, graph.turns)
-    whole = find_faces(planes, lines, replace(regions, behind={}), *place)  # of what is seen
+    whole, going_on = faces_seen_and_going_on(planes, lines, regions, *place)
     seen = look_at_walls(frame_views(framed, whole, view.frame.rotation), view.camera, view.pixels, seen)
     holes = find_openings(seen, whole, view.camera, view.frame.rotation)
-    drawn = ToldOpenings(view.faces, whole, lines, *place)
-    planes, openings, told = drawn.opened(holes.openings, find_faces(planes, lines, regions, *place))
+    drawn = ToldOpenings(view.faces, whole, lines, *place, going_on)
+    planes, openings, told = drawn.opened(holes.openings)
     of_bodies = None if placed is None else cleaned.row[new_id[found.kept & placed.told]]
     said = lines_told(cleaned.intersections, of_bodies)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)

@@ -41,6 +41,23 @@ class _Part:
     measured: list[Float]  # the same rings before coordinates that differ by rounding became one number
 
 
+def faces_seen_and_going_on(
+    planes: tuple[Plane, ...], lines: Lines, regions: Filled, camera: Camera, rotation: Float, turns: Turns = ()
+) -> tuple[tuple[Plane, ...], tuple[Plane, ...]]:
+    """`find_faces` of what is seen alone, and of that with where it goes on unseen; the planes are the same."""
+    seen = find_faces(planes, lines, replace(regions, behind={}), camera, rotation, turns)
+    return seen, faces_that_go_on(seen, find_faces(planes, lines, regions, camera, rotation, turns))
+
+
+def faces_that_go_on(seen: tuple[Plane, ...], going_on: tuple[Plane, ...]) -> tuple[Plane, ...]:
+    """The planes with faces that go on where others hide them, numbered as those with what is seen alone.
+
+    Where the numbers differ, since a region has no area in space with one of both outlines, what is seen counts.
+    """
+    numbers = [[(plane.id, plane.axis, plane.offset) for plane in each] for each in (seen, going_on)]
+    return going_on if numbers[0] == numbers[1] else seen
+
+
 def find_faces(
     planes: tuple[Plane, ...], lines: Lines, regions: Filled, camera: Camera, rotation: Float, turns: Turns = ()
 ) -> tuple[Plane, ...]:
@@ -62,9 +79,11 @@ def find_faces(
         shown.setdefault(number, []).extend(polygons_of(seen, LEAST_AREA * area))
     for number, seen in shown.items():
         surface = labels.surfaces[number]
-        behind = regions.behind.get(number, shapely.Polygon())
-        hides = shapely.union_all([regions.clutter, behind])
-        for region in _going_on(seen, behind):
+        parts_behind = polygons_of(regions.behind_of(number), LEAST_HIDDEN * area)
+        behind = [_before(part, surface, depth, camera, axes) for part in parts_behind]
+        unseen = shapely.union_all([part for each in behind for part in polygons_of(each, LEAST_HIDDEN * area)])
+        hides = shapely.union_all([regions.clutter, unseen])
+        for region in _going_on(seen, unseen):
             hidden = polygons_of(shapely.intersection(region, hides), LEAST_HIDDEN * area)
             hidden = [piece for part in hidden for piece in without_holes(part)]  # a hidden part is one ring
             parts.append(_lifted(surface, region, hidden, camera, axes))

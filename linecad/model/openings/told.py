@@ -39,21 +39,17 @@ class ToldOpenings:
     """What a person said about the openings of a scene."""
 
     faces: Sequence[FaceEdit]
-    planes: tuple[Plane, ...]  # with the faces that are seen
+    planes: tuple[Plane, ...]  # with the faces that are seen, which openings are cut out of where `cut` is empty
     lines: Lines
     camera: Camera
     rotation: Float  # (3, 3) world to camera
     turns: Turns = ()
+    cut: tuple[Plane, ...] = ()  # the same planes, whose faces may go on unseen: openings are cut out of these
 
-    def opened(
-        self, found: tuple[Opening, ...], planes: tuple[Plane, ...]
-    ) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
-        """The planes with openings cut out of their faces, those in the walls that the photo shows around them, notes.
-
-        The faces of `planes` may go on where they are not seen.
-        """
+    def opened(self, found: tuple[Opening, ...]) -> tuple[tuple[Plane, ...], tuple[Opening, ...], tuple[str, ...]]:
+        """The planes with their openings cut out, those in the walls that the photo shows around them, and notes."""
         openings, notes = self.among(at_home(found, self.planes, self.camera, self.rotation, self.turns))
-        return *with_openings(planes, openings, self.turns), notes
+        return *with_openings(self.cut or self.planes, openings, self.turns), notes
 
     def among(self, found: tuple[Opening, ...]) -> tuple[tuple[Opening, ...], tuple[str, ...]]:
         """The openings found and told, with ids and shapes numbered anew, and notes on what could not be taken.
@@ -124,10 +120,11 @@ class ToldOpenings:
     def _notes(self, placed: list[_Placed]) -> list[str]:
         """What a reader should know of told openings: those that no face has around them are no holes."""
         outside = 0
+        plane_of = {plane.id: plane for plane in self.cut or self.planes}
         for each in placed:
             faces = [
                 shapely.Polygon(project(face.outline, self.camera.matrix, self.rotation)).buffer(0)
-                for face in each.wall.faces
+                for face in plane_of[each.wall.id].faces
             ]
             outside += each.is_told and not any(face.covers(each.shape) for face in faces)
         if not outside:

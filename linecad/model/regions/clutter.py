@@ -30,6 +30,7 @@ FOOT = 4  # samples between a thing and the wall that it reaches up to
 ABOVE = 3  # heights of what is on the ground, up to which a thing is looked for
 ROUNDS = 2  # of the cut about a thing
 HOLE = 0.0005  # of the photo; a smaller gap among leaves is no view of the wall
+LEAST_LAWN = 0.2  # share of all that grows together, on the ground
 MOST_OF_WALL = 0.9  # of the samples of a wall, that its usual colours cover
 WINDOW, ALIKE = 9, 0.8  # samples across, in which that share of what was called clutter has these colours
 LEAST_SIDE, LEAST_OF_WALL = 9, 0.003  # samples; of the photo: a smaller piece may be anything of that colour
@@ -139,12 +140,13 @@ def _whole(colour: NDArray[np.uint8], start: Bool, ground: Bool) -> Bool:
 def hiding(plants: Bool, ground: Bool) -> Bool:
     """Where (H, W) plants hide walls, and the `ground` (H, W) at their foot: a lawn is the ground itself.
 
-    So is what covers most of the ground, whatever grows on it and up the walls.
+    So is what covers most of the ground and lies on it for a good part, whatever grows on it and up the walls.
     """
     count, part = cv2.connectedComponents(plants.astype(np.uint8), connectivity=8)
     on_ground = np.bincount(part[plants & ground], minlength=count)
     all_of_it = np.bincount(part[plants], minlength=count)
-    is_lawn = (2 * on_ground > all_of_it) | (2 * on_ground > ground.sum())
+    covers = (2 * on_ground > ground.sum()) & (on_ground > LEAST_LAWN * all_of_it)
+    is_lawn = (2 * on_ground > all_of_it) | covers
     hidden: Bool = plants & ~(ground & is_lawn[part])
     return hidden
 

@@ -50,6 +50,10 @@ class Filled:
     told: tuple[str, ...] = ()  # what a person said and could not be taken, for people
     behind: Mapping[int, shapely.Geometry] = field(default_factory=dict)  # px, where surfaces go on unseen, by label
 
+    def behind_of(self, number: int) -> shapely.Geometry:
+        """Where the surface of a label goes on unseen, px."""
+        return self.behind.get(number, NOWHERE)
+
     @property
     def notes(self) -> tuple[str, ...]:
         """How sure labels and slopes are, and how far the road lies below the pavement, for people."""

@@ -124,7 +124,8 @@ def find_regions(
     if look.sketch is not None:
         filled = replace(filled, roofs=find_roofs(look.sketch, filled.labels, shown.heaven, raster, view))
     filled = uncovered(filled, shown.told)
-    return replace(filled, behind=parts_behind(filled.labels, view))
+    ending = [area.shows for area in shown.told.areas if isinstance(area.shows, Surface)]
+    return replace(filled, behind=parts_behind(filled.labels, view, ending))
 
 
 def _road_of_map(ground: Surface, raster: Raster, mapped: MappedDepths | None) -> Surface | None:

@@ -4,8 +4,9 @@ One looks over them, so what is seen above them goes on behind them: a wall down
 to the lower edge of the photo. What a higher wall hides is not known.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -35,15 +36,21 @@ class _Edge:
     behind: int  # what is seen above it
 
 
-def parts_behind(labels: Labels, view: View) -> dict[int, shapely.Geometry]:
-    """The parts of the photo, px, in which each surface goes on behind what is seen there, by the number of it."""
+def parts_behind(labels: Labels, view: View, ending: Sequence[Surface] = ()) -> dict[int, shapely.Geometry]:
+    """The parts of the photo, px, in which each surface goes on behind what is seen there, by the number of it.
+
+    Walls that a person told with their edges are `ending` there.
+    """
     sight = _Sight.of(labels, view)
+    told = [number for number, surface in enumerate(labels.surfaces) if any(surface is each for each in ending)]
     grounds = sorted(
         (number for number in sight.regions if number < labels.sky and labels.surfaces[number].kind == "ground"),
         key=lambda number: -labels.surfaces[number].offset,
     )
     found: dict[int, list[shapely.Geometry]] = {}
     for edge in sight.edges() if grounds else ():
+        if edge.behind in told:
+            continue
         under = sight.under(edge.ends)
         if edge.behind in grounds:
             found.setdefault(edge.behind, []).append(sight.hidden(edge.behind, under))
@@ -78,6 +85,11 @@ class _Sight:
         frame = np.array([[-0.5, -0.5], [right, -0.5], [right, bottom], [-0.5, bottom]])
         return _Sight(labels.surfaces, regions, labels.clutter, view, frame)
 
+    @cached_property
+    def outlines(self) -> dict[int, shapely.Geometry]:
+        """The borders of the regions, px."""
+        return {number: shapely.boundary(region) for number, region in self.regions.items()}
+
     def edges(self) -> Iterator[_Edge]:
         """The tops of low walls, where something farther away is seen above them."""
         kinds = {number: self.surfaces[number].kind for number in self.regions if number != self.clutter}
@@ -91,7 +103,7 @@ class _Sight:
 
     def _borders(self, one: int, other: int) -> Iterator[Float]:
         """The borders (V, 2) px between two regions."""
-        border = shapely.intersection(shapely.boundary(self.regions[one]), shapely.boundary(self.regions[other]))
+        border = shapely.intersection(self.outlines[one], self.outlines[other])
         pieces = [part for part in shapely.get_parts(border) if isinstance(part, shapely.LineString) and part.length]
         if pieces:
             merged = shapely.simplify(shapely.line_merge(shapely.MultiLineString(pieces)), STRAIGHT)
@@ -140,8 +152,7 @@ class _Sight:
 
     def shared(self, one: int, other: int) -> float:
         """The length of the border between two regions, px."""
-        border = shapely.intersection(shapely.boundary(self.regions[one]), shapely.boundary(self.regions[other]))
-        return float(border.length)
+        return float(shapely.intersection(self.outlines[one], self.outlines[other]).length)
 
     def hidden(self, number: int, part: Float) -> shapely.Geometry:
         """The part of a convex polygon (V, 2) px in which a surface lies behind what is seen."""

@@ -134,6 +134,15 @@ def test_a_wall_goes_on_in_its_own_colours_behind_a_nearer_face(facade, hedge, p
     assert is_colour(plain[behind], PLAIN, 0).mean() > 0.9  # nobody told that it goes on there
 
 
+@pytest.mark.parametrize("hidden", [(-4, -3, -2, -1), (-4, -3, 0, -2), (-3, -2.5, -1, -1.5)])
+def test_nothing_of_the_nearer_face_is_painted_on_the_wall_behind_it(hidden, facade, hedge, photo):
+    scene = facade([ring(*hidden)])
+    before = Plane(1, 1, 0.9 * DEPTH, (), (Face(1, hedge * 0.9),))
+    pixels, _ = painted(replace(scene, planes=(*scene.planes, before)), photo, 0)
+    assert greenness(pixels).max() < 0
+    assert is_colour(pixels, WALL).mean() > 0.3
+
+
 def test_how_much_of_a_face_is_shown_does_not_count_what_another_hides(facade, hedge, photo):
     near = Plane(1, 1, 0.9 * DEPTH, (), (Face(1, hedge * 0.9),))
     counts = []

@@ -10,13 +10,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from linecad.geometry import central_camera, project
-from linecad.model.faces import FURTHEST, LEAST_AREA, LEAST_HIDDEN, find_faces, without_spikes
+from linecad.model.faces import FURTHEST, LEAST_AREA, LEAST_HIDDEN, faces_that_go_on, find_faces, without_spikes
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.surfaces import Surface
-from linecad.scene import Camera, Lines, Plane
+from linecad.scene import Camera, Face, Lines, Plane
 
 WIDTH, HEIGHT = 400, 300
 CAMERA = Camera(WIDTH, HEIGHT, central_camera(300.0, WIDTH, HEIGHT), "file")
@@ -185,6 +185,31 @@ def test_a_face_goes_on_where_another_hides_it():
     assert in_photo(hidden).symmetric_difference(shapely.box(80, 150, 160, 170)).area < 1e-3
     assert in_photo(before.outline).symmetric_difference(shapes[1][1]).area < 1e-6
     assert before.hidden == ()
+
+
+def test_ground_that_goes_on_unseen_ends_where_all_ground_ends():
+    low = Surface("wall", 1, 5.0, NO_LINES, None)
+    shapes = [(0, shapely.box(50, 200, 200, 299)), (1, shapely.box(50, 149.8, 200, 200))]
+    found = replace(regions([GROUND, low], shapes), behind={0: shapely.box(50, 149.6, 200, 200)})
+    ((_, ground), *_) = [pair for pair in every(find_faces((), BACK_EDGE, found, CAMERA, AHEAD)) if pair[0].axis == 2]
+    assert ground.outline[:, 1].max() == pytest.approx(FURTHEST * 10)
+
+
+def test_what_is_too_small_to_be_told_as_hidden_does_not_go_on():
+    small = np.sqrt(0.9 * LEAST_HIDDEN * AREA)
+    found = regions([WALL], [(0, shapely.box(50, 50, 200, 150))])
+    ((_, face),) = every(find_faces((FRONT,), BACK_EDGE, found, CAMERA, AHEAD))
+    more = replace(found, behind={0: shapely.box(80, 150, 80 + small, 150 + small)})
+    ((_, same),) = every(find_faces((FRONT,), BACK_EDGE, more, CAMERA, AHEAD))
+    assert (same.outline == face.outline).all()
+    assert same.hidden == ()
+
+
+def test_faces_go_on_where_their_planes_are_the_same():
+    seen, other = (Plane(0, 1, 5.0, ()),), (Plane(0, 1, 5.0, (), (Face(0, np.eye(3)),)),)
+    assert faces_that_go_on(seen, other) is other
+    assert faces_that_go_on(seen, (Plane(0, 0, 5.0, ()),)) is seen
+    assert faces_that_go_on(seen, (*other, Plane(1, 2, 1.0, ()))) is seen
 
 
 def test_two_faces_are_one_where_what_hides_their_middle_does_not_end_them():

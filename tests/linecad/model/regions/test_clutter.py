@@ -103,6 +103,7 @@ def test_a_bush_before_a_wall_hides_it_and_changes_no_outline(house, house_regio
         pytest.param([(10, 40, 20, 65)], False, id="a bush at the foot of a wall"),
         pytest.param([(0, 90, 40, 60), (0, 60, 100, 10)], False, id="ivy down to the ground"),
         pytest.param([(0, 90, 60, 60), (0, 60, 100, 10)], True, id="grass, and ivy above it"),
+        pytest.param([(0, 65, 60, 60), (0, 60, 60, 0)], False, id="trees"),
     ],
 )
 def test_plants_hide_what_they_grow_before_and_a_lawn_is_the_ground(plants, is_lawn):

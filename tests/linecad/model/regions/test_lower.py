@@ -1,5 +1,7 @@
 """What goes on behind low walls, by labels made by hand of walls in space; the camera looks down a little."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import shapely
@@ -49,12 +51,12 @@ def below_horizon(sight):
     return shapely.box(-0.5, horizon, WIDTH - 0.5, HEIGHT - 0.5)
 
 
-def labels(walls, sight, feet=None, other=()):
+def labels(walls, sight, feet=None, other=(), ground=None):
     """Walls, the nearest first, then the ground and what is `other`, clutter; the rest is sky."""
     surfaces = [Surface("wall", axis, offset, NOTHING, row) for row, (axis, offset, *_) in enumerate(walls)]
     surfaces.append(Surface("ground", 2, GROUND, NOTHING, None))
     areas = [seen(wall, sight, foot) for wall, foot in zip(walls, feet or [GROUND] * len(walls), strict=True)]
-    areas = [*other, *areas, below_horizon(sight), PHOTO]
+    areas = [*other, *areas, below_horizon(sight) if ground is None else ground, PHOTO]
     numbers = [*[len(surfaces) + 1] * len(other), *range(len(surfaces)), len(surfaces)]
     cells = partition.cells_between([shapely.boundary(area) for area in areas])
     middle = [cell.point_on_surface() for cell in cells]
@@ -93,6 +95,38 @@ def test_what_is_hidden_is_behind_the_low_wall_and_nowhere_else(low, high, top, 
     assume(shape.is_empty or shape.bounds[3] - shape.bounds[1] > 3 * WITHIN)
     assert alike(shapely.union_all([*found.values(), shapely.Polygon()]), shape)
     assert alike(found.get(1, shapely.Polygon()), shape & seen(back, sight))
+
+
+def test_a_wall_that_a_person_told_ends_at_its_edges():
+    sight = view()
+    shown = labels([LOW, BACK], sight)
+    assert parts_behind(shown, sight, [shown.surfaces[1]]) == {}
+    assert set(parts_behind(shown, sight, [shown.surfaces[0]])) == {1, 2}
+
+
+@pytest.mark.parametrize("roll", [0.1, np.pi / 2])
+def test_uprights_may_lean_in_the_photo(roll):
+    sight = view()
+    cosine, sine = np.cos(roll), np.sin(roll)
+    sight = replace(sight, rotation=np.array([[cosine, -sine, 0], [sine, cosine, 0], [0, 0, 1]]) @ sight.rotation)
+    far = project(
+        np.array([[-1e6, 1e6, 0], [1e6, 1e6, 0], [1e4, 1.0, -1e4], [-1e4, 1.0, -1e4]]), CAMERA.matrix, sight.rotation
+    )
+    shown = labels([LOW, BACK], sight, ground=shapely.Polygon(far).convex_hull & PHOTO)
+    found = parts_behind(shown, sight)
+    assert alike(found[1], seen(LOW, sight) & seen(BACK, sight))
+
+
+def test_a_wall_goes_down_to_the_ground_that_it_is_seen_on():
+    sight = view()
+    road = shapely.box(-0.5, 485, WIDTH - 0.5, HEIGHT - 0.5)
+    shown = labels([LOW, BACK], sight, other=[road])
+    sky, clutter = 3, 4
+    label = np.where(shown.label == clutter, 3, np.where(shown.label == sky, 4, shown.label))
+    shown = replace(shown, surfaces=[*shown.surfaces, Surface("ground", 2, 1.2 * GROUND, NOTHING, None)], label=label)
+    found = parts_behind(shown, sight)
+    assert set(found) == {1, 2}
+    assert alike(found[1], seen(LOW, sight) & seen(BACK, sight))
 
 
 def test_ground_that_is_seen_over_a_wall_goes_on_behind_it():
