@@ -24,15 +24,19 @@ RIGHT = 0.05  # log scale
 OFF = (0.06, 1.0)  # log scale, by which what does not hold is off, to either side
 LEAST_WEIGHT = 0.1  # log-odds of one crossing that agrees and one that does not, for lines with hardly any
 # Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -3.6346
+AT_ONCE = -5.3963
 LOG_ODDS: dict[str, float] = {
-    "together": 5.5982,
-    "agreement": 2.6151,
+    "together": 2.3317,
+    "agreement": 3.8145,
+    "pieces": 0.7285,
 }
 
 
-def line_features(setting: Setting, log_depth: Float) -> dict[str, Float]:
-    """What speaks for the place of each line in its piece, at the depths (N,) that were found, each (N,)."""
+def line_features(setting: Setting, log_depth: Float, pieces: Pieces) -> dict[str, Float]:
+    """What speaks for the place of each line in its piece, at the depths (N,) that were found, each (N,).
+
+    Of a photo in which more was found, more of what is stated is true.
+    """
     graph, count = setting.graph, len(log_depth)
     told = graph.informative
     agrees = told & (graph.misfit(log_depth) <= np.maximum(graph.tolerance, LEAST_TOLERANCE))
@@ -48,6 +52,7 @@ def line_features(setting: Setting, log_depth: Float) -> dict[str, Float]:
     return {
         "together": together,
         "agreement": (sums(agrees, graph.weight) + LEAST_WEIGHT) / (sums(told, graph.weight) + 2 * LEAST_WEIGHT),
+        "pieces": np.full(count, np.log1p(pieces.count)),
     }
 
 
@@ -102,7 +107,7 @@ def _medians(values: Float, weight: Float) -> Float:
 
 def probabilities(setting: Setting, log_depth: Float, pieces: Pieces, chance: Float) -> Float:
     """(N,) from 0 to 1 at the depths (N,) that were found, by the `chance` (Q,) of each piece; 0 in no body."""
-    known = line_features(setting, log_depth)
+    known = line_features(setting, log_depth, pieces)
     log_odds = AT_ONCE + sum((LOG_ODDS[name] * value for name, value in known.items()), np.zeros(len(log_depth)))
     own = pieces.piece >= 0
     found = np.zeros(len(log_depth))

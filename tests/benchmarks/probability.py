@@ -6,7 +6,7 @@ project. Three fits: how likely a seam holds, which it does where the true scale
 right in its piece, from the lines that are right within 5 % by the scale of component 0 and the chance of their piece
 by the two other fits. A fold is judged by the others: the photos of a real dataset, or a tenth of the made scenes. Real
 and made photos weigh alike on the whole. What is named after `--unseen` is judged only. `--write` puts the fits to all
-others into linecad/ties.
+others into linecad/ties. With `--lines-alone` the seams and links of the project stay, and maps are not looked at.
 """
 
 import argparse
@@ -109,7 +109,7 @@ def look(photo: Judged, one: Placed, suffix: str) -> Looked | None:
     if not main[line].any():
         return None
     right = np.abs(np.expm1(error - np.median(error[main[line]]))) < RIGHT
-    features = np.column_stack(list(line_features(setting, places.log_depth).values()))
+    features = np.column_stack(list(line_features(setting, places.log_depth, pieces).values()))
     return Looked(
         photo, photo.dataset + suffix, fold_of(photo), seams, links,
         lengths(np.diff(setting.graph.segments.ends, axis=1)[:, 0]) * main,
@@ -248,11 +248,27 @@ def measure(
             write(linecad.ties.probability, "", lines.fit(~lines.is_unseen, RIDGE, held))
 
 
+def measure_lines(by_photo: list[tuple[Judged, Placed]], unseen: set[str], to_write: bool) -> None:
+    """Print how far the probabilities of lines hold by the seams and links of the project, and write their fit."""
+    looked = [each for photo, one in by_photo if (each := look(photo, one, "")) is not None]
+    weights = [np.full(len(each.right), 1 / len(each.right)) for each in looked]
+    lines = rows_of(
+        [(each, each.features, each.right, weight) for each, weight in zip(looked, weights, strict=True)], unseen
+    )
+    held = np.concatenate([
+        chances(each.photo.pieces, each.seams, each.links, each.length)[each.piece] for each in looked
+    ])  # fmt: skip
+    print_lines(lines, held)
+    if to_write:
+        write(linecad.ties.probability, "", lines.fit(~lines.is_unseen, RIDGE, held))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", nargs="+", type=Path)
     parser.add_argument("--unseen", nargs="*", type=Path, default=[], help="datasets that no fit sees")
     parser.add_argument("--workers", type=int, default=2, help="processes")
+    parser.add_argument("--lines-alone", action="store_true", help="the third fit alone, without depth maps")
     parser.add_argument("--write", action="store_true", help="the fits into linecad/ties")
     chosen = parser.parse_args()
     with ProcessPoolExecutor(chosen.workers) as pool:
@@ -264,14 +280,18 @@ def main() -> None:
         print(f"{len(photos)} of {len(jobs)} photos", flush=True)
         plain = [pool.submit(placed, photo, (), TABLE) for photo in photos]
         # Of a real photo only points are known: a map made of these is no network's.
-        made = [photo for photo in photos if photo.is_made]
+        made = [photo for photo in photos if photo.is_made and not chosen.lines_alone]
         mapped = [
             pool.submit(placed, photo, (), TABLE, (width, seed))
             for width in WIDTHS for seed, photo in enumerate(made)
         ]  # fmt: skip
         by_photo = list(zip(photos, [job.result() for job in plain], strict=True))
         by_map = list(zip(made * len(WIDTHS), [job.result() for job in mapped], strict=True))
-    measure(by_photo, [one for one in by_map if one[1].heard], {folder.name for folder in chosen.unseen}, chosen.write)
+    unseen = {folder.name for folder in chosen.unseen}
+    if chosen.lines_alone:
+        measure_lines(by_photo, unseen, chosen.write)
+    else:
+        measure(by_photo, [one for one in by_map if one[1].heard], unseen, chosen.write)
 
 
 if __name__ == "__main__":

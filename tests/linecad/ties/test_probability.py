@@ -36,15 +36,25 @@ def sure(setting, depth=None, chance=(1.0, 1.0)):
 
 
 def test_every_feature_has_log_odds(placed):
-    assert list(line_features(placed, placed.log_depth)) == list(LOG_ODDS)
+    assert list(line_features(placed, placed.log_depth, pieces_of(placed))) == list(LOG_ODDS)
 
 
 def test_a_line_is_as_sure_as_its_piece_and_as_it_is_there(placed):
-    known = line_features(placed, placed.log_depth)
+    known = line_features(placed, placed.log_depth, pieces_of(placed))
     log_odds = AT_ONCE + sum(LOG_ODDS[name] * value for name, value in known.items())
     body = placed.bodies.body
     expected = np.where(body == 0, 0.3, 0.9) / (1 + np.exp(-log_odds))
     np.testing.assert_allclose(sure(placed, chance=(0.3, 0.9))[body >= 0], expected[body >= 0])
+
+
+def test_lines_of_a_photo_with_more_pieces_are_surer(placed):
+    few = pieces_of(placed)
+    many = replace(few, body=np.append(few.body, [1] * 8))  # more of the second wall, whose lines are not looked at
+    known = [line_features(placed, placed.log_depth, pieces) for pieces in (few, many)]
+    assert [set(each["pieces"].tolist()) for each in known] == [{np.log(3.0)}, {np.log(11.0)}]
+    more = probabilities(placed, placed.log_depth, many, np.ones(10))
+    of_body = placed.bodies.body >= 0
+    assert (more[of_body] > sure(placed)[of_body]).all()
 
 
 def test_lines_of_no_body_are_sure_of_nothing(placed):
@@ -66,18 +76,19 @@ def test_lines_that_crossings_contradict_are_less_sure(placed):
     depth = placed.log_depth.copy()
     line = 15  # a course that reaches the second wall
     depth[line] += 0.02  # beyond what a crossing may be off
-    known, before = line_features(placed, depth), line_features(placed, placed.log_depth)
+    pieces = pieces_of(placed)
+    known, before = line_features(placed, depth, pieces), line_features(placed, placed.log_depth, pieces)
     assert known["agreement"][line] < 0.5 < before["agreement"][line]
     assert sure(placed, depth)[line] < sure(placed)[line] - 0.05
     silent = replace(placed, graph=replace(graph, informative=np.zeros(len(graph.edges), bool)))
-    assert line_features(silent, depth)["agreement"][line] == 0.5
+    assert line_features(silent, depth, pieces)["agreement"][line] == 0.5
 
 
 def test_lines_that_leave_their_body_in_the_fits_are_less_sure(placed):
     before = sure(placed)
     placed.fits.depth[:2, 5] += 1.0
     after = sure(placed)
-    assert line_features(placed, placed.log_depth)["together"][5] == 0.5
+    assert line_features(placed, placed.log_depth, pieces_of(placed))["together"][5] == 0.5
     assert after[5] < before[5]
     assert np.delete(after, 5).tolist() == np.delete(before, 5).tolist()
 
@@ -85,7 +96,7 @@ def test_lines_that_leave_their_body_in_the_fits_are_less_sure(placed):
 def test_lines_move_relative_to_the_fit_to_all(placed):
     depth = np.linspace(0.0, 3.0, len(placed.bodies.body))
     fits = replace(placed.fits, depth=np.tile(depth, (len(placed.fits.depth), 1)))
-    together = line_features(replace(placed, log_depth=depth, fits=fits), depth)["together"]
+    together = line_features(replace(placed, log_depth=depth, fits=fits), depth, pieces_of(placed))["together"]
     assert (together[placed.bodies.body >= 0] == 1).all()
 
 
