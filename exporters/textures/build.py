@@ -22,7 +22,7 @@ _QUALITY = 95  # of 100; the photo itself has seldom been stored better
 def build_textures(scene: Scene, photo: NDArray[np.uint8], largest: int, fill: str = OWN) -> Textures:
     """The textures of all faces from the scene's photo (H, W, 3), on pages of at most `largest` texels a side.
 
-    `fill`, one of FILLS, is what is painted where a thing without a face hides a face. Raises OutputError where the
+    `fill`, one of FILLS, is what is painted where the scene tells a face as hidden. Raises OutputError where the
     rings of a face do not bound one piece of plane.
     """
     model, view = build_model(scene), view_of(scene)

@@ -94,7 +94,7 @@ def hidden_in_photo(shape: Shape, nearest: Nearest) -> Bool:
 def _paint(
     face: FlatFace, shape: Shape, patch: Patch, view: View, nearest: Nearest, photo: Pixels, fill: str
 ) -> tuple[Pixels, Pixels | None]:
-    """RGB of a patch with its margin, and where something without a face hides it, 255; None where nothing does."""
+    """RGB of a patch with its margin, and where the scene tells it as hidden, 255; None where it is not."""
     left, top, right, bottom = shape.box
     here = np.s_[top:bottom, left:right]
     behind = hidden_in_photo(shape, nearest)

@@ -23,12 +23,13 @@ SEED = 0
 RIGHT = 0.05  # log scale
 OFF = (0.06, 1.0)  # log scale, by which what does not hold is off, to either side
 LEAST_WEIGHT = 0.1  # log-odds of one crossing that agrees and one that does not, for lines with hardly any
+LEAST_PIECES = 12  # of a photo that are counted; nine of ten that were fitted to have more
 # Logistic regression on lines of known depth, by tests/benchmarks/probability.py (docs/results/ties.md).
-AT_ONCE = -5.3963
+AT_ONCE = -5.8208
 LOG_ODDS: dict[str, float] = {
-    "together": 2.3317,
-    "agreement": 3.8145,
-    "pieces": 0.7285,
+    "together": 2.3900,
+    "agreement": 3.7965,
+    "pieces": 0.8486,
 }
 
 
@@ -52,7 +53,7 @@ def line_features(setting: Setting, log_depth: Float, pieces: Pieces) -> dict[st
     return {
         "together": together,
         "agreement": (sums(agrees, graph.weight) + LEAST_WEIGHT) / (sums(told, graph.weight) + 2 * LEAST_WEIGHT),
-        "pieces": np.full(count, np.log1p(pieces.count)),
+        "pieces": np.full(count, np.log1p(max(pieces.count, LEAST_PIECES))),
     }
 
 

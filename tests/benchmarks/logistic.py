@@ -68,10 +68,10 @@ def area_under_curve(right: Float, probability: Float) -> float:
     return (rank[right > 0].sum() - many * (many + 1) / 2) / (many * few) if many and few else float("nan")
 
 
-def log_loss(right: Float, probability: Float) -> float:
+def log_loss(right: Float, probability: Float, weight: Float | None = None) -> float:
     """Mean, in nats."""
     p = np.clip(probability, LEAST, 1 - LEAST)
-    return float(-np.mean(np.where(right > 0, np.log(p), np.log(1 - p))))
+    return float(-np.average(np.where(right > 0, np.log(p), np.log(1 - p)), weights=weight))
 
 
 def tenths(right: Float, probability: Float, weight: Float | None = None) -> list[tuple[float, float, int] | None]:

@@ -192,8 +192,12 @@ def print_lines(rows: Rows, held: Float) -> None:
         own = rows.fold == fold
         fitted = rows.fit(rows.others(fold), RIDGE, held)
         predicted[own] = fitted.probability(rows.features[own]) * held[own]
-    print("\n| lines | " + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10)) + " | at 0.9: precision | recall |")
-    print("| --- " * 13 + "|")
+    print(
+        "\n| lines | "
+        + " | ".join(f"{tenth / 10:.1f}" for tenth in range(10))
+        + " | at 0.9: precision | recall | log loss |"
+    )
+    print("| --- " * 14 + "|")
     for name in dict.fromkeys(rows.dataset):
         own = rows.dataset == name
         right, weight, p = rows.right[own], rows.weight[own], predicted[own]
@@ -201,7 +205,10 @@ def print_lines(rows: Rows, held: Float) -> None:
         sure = p >= SURE
         share = (weight * right)[sure].sum() / (weight * right).sum()
         precision = np.average(right[sure], weights=weight[sure]) if sure.any() else np.nan
-        print(f"| {name} | " + " | ".join([*cells, f"{precision:.3f}", f"{share:.2f}"]) + " |", flush=True)
+        loss = logistic.log_loss(right, p, weight)
+        print(
+            f"| {name} | " + " | ".join([*cells, f"{precision:.3f}", f"{share:.2f}", f"{loss:.3f}"]) + " |", flush=True
+        )
 
 
 def write(module: ModuleType, prefix: str, fitted: logistic.Logistic) -> None:
@@ -234,33 +241,21 @@ def measure(
         links = rows_of_parts(looked, "links", [each.errors_of_links for each in looked], unseen)
         of_links = print_parts("links", links, RIDGE_OF_LINKS)
         to_all = links.fit(~links.is_unseen, RIDGE_OF_LINKS)
-        weights = [np.full(len(each.right), 1 / len(each.right)) for each in looked]
-        lines = rows_of(
-            [(each, each.features, each.right, weight) for each, weight in zip(looked, weights, strict=True)], unseen
-        )
-        held = np.concatenate([
-            chance_of(each, of_seams.get(each.fold, seams_to_all), of_links.get(each.fold, to_all)) for each in looked
-        ])  # fmt: skip
-        print_lines(lines, held)
         if to_write:
             write(linecad.ties.links, prefix, to_all)
-        if to_write and not prefix:
-            write(linecad.ties.probability, "", lines.fit(~lines.is_unseen, RIDGE, held))
+        held = [
+            chance_of(each, of_seams.get(each.fold, seams_to_all), of_links.get(each.fold, to_all)) for each in looked
+        ]
+        measure_lines(looked, held, unseen, to_write and not prefix)
 
 
-def measure_lines(by_photo: list[tuple[Judged, Placed]], unseen: set[str], to_write: bool) -> None:
-    """Print how far the probabilities of lines hold by the seams and links of the project, and write their fit."""
-    looked = [each for photo, one in by_photo if (each := look(photo, one, "")) is not None]
-    weights = [np.full(len(each.right), 1 / len(each.right)) for each in looked]
-    lines = rows_of(
-        [(each, each.features, each.right, weight) for each, weight in zip(looked, weights, strict=True)], unseen
-    )
-    held = np.concatenate([
-        chances(each.photo.pieces, each.seams, each.links, each.length)[each.piece] for each in looked
-    ])  # fmt: skip
-    print_lines(lines, held)
+def measure_lines(looked: list[Looked], held: list[Float], unseen: set[str], to_write: bool) -> None:
+    """Print how far the probabilities of lines hold, by the chances (P,) of their pieces, and write their fit."""
+    rows = [(each, each.features, each.right, np.full(len(each.right), 1 / len(each.right))) for each in looked]
+    lines, chance = rows_of(rows, unseen), np.concatenate(held)
+    print_lines(lines, chance)
     if to_write:
-        write(linecad.ties.probability, "", lines.fit(~lines.is_unseen, RIDGE, held))
+        write(linecad.ties.probability, "", lines.fit(~lines.is_unseen, RIDGE, chance))
 
 
 def main() -> None:
@@ -289,7 +284,9 @@ def main() -> None:
         by_map = list(zip(made * len(WIDTHS), [job.result() for job in mapped], strict=True))
     unseen = {folder.name for folder in chosen.unseen}
     if chosen.lines_alone:
-        measure_lines(by_photo, unseen, chosen.write)
+        looked = [each for photo, one in by_photo if (each := look(photo, one, "")) is not None]
+        held = [chances(each.photo.pieces, each.seams, each.links, each.length)[each.piece] for each in looked]
+        measure_lines(looked, held, unseen, chosen.write)
     else:
         measure(by_photo, [one for one in by_map if one[1].heard], unseen, chosen.write)
 

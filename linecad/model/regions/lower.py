@@ -49,8 +49,6 @@ def parts_behind(labels: Labels, view: View, ending: Sequence[Surface] = ()) -> 
     )
     found: dict[int, list[shapely.Geometry]] = {}
     for edge in sight.edges() if grounds else ():
-        if edge.behind in told:
-            continue
         under = sight.under(edge.ends)
         if edge.behind in grounds:
             found.setdefault(edge.behind, []).append(sight.hidden(edge.behind, under))
@@ -58,6 +56,8 @@ def parts_behind(labels: Labels, view: View, ending: Sequence[Surface] = ()) -> 
         ground = max(grounds, key=lambda own: (sight.shared(edge.behind, own), sight.shared(edge.wall, own)))
         before_foot = sight.nearness(edge.behind, under) - sight.nearness(ground, under)
         for number, sign in ((edge.behind, 1), (ground, -1)):
+            if number in told:
+                continue
             part = shapely.get_coordinates(positive_part(under, sign * before_foot))[:-1]
             found.setdefault(number, []).append(sight.hidden(number, part))
     return {number: shapely.union_all(parts) for number, parts in found.items()}

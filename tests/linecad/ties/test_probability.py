@@ -9,7 +9,7 @@ from linecad.ties import links, seams
 from linecad.ties.bodies import RigidBodies
 from linecad.ties.links import Link
 from linecad.ties.pieces import Pieces
-from linecad.ties.probability import AT_ONCE, LOG_ODDS, chances, line_features, main_lines, probabilities
+from linecad.ties.probability import AT_ONCE, LEAST_PIECES, LOG_ODDS, chances, line_features, main_lines, probabilities
 from linecad.ties.seams import Seam
 
 NO_BODY = 3  # the first lines of the second wall
@@ -49,12 +49,16 @@ def test_a_line_is_as_sure_as_its_piece_and_as_it_is_there(placed):
 
 def test_lines_of_a_photo_with_more_pieces_are_surer(placed):
     few = pieces_of(placed)
-    many = replace(few, body=np.append(few.body, [1] * 8))  # more of the second wall, whose lines are not looked at
-    known = [line_features(placed, placed.log_depth, pieces) for pieces in (few, many)]
-    assert [set(each["pieces"].tolist()) for each in known] == [{np.log(3.0)}, {np.log(11.0)}]
-    more = probabilities(placed, placed.log_depth, many, np.ones(10))
-    of_body = placed.bodies.body >= 0
-    assert (more[of_body] > sure(placed)[of_body]).all()
+    some, many = (replace(few, body=np.append(few.body, [1] * more)) for more in (LEAST_PIECES - 2, LEAST_PIECES))
+    known = [line_features(placed, placed.log_depth, pieces)["pieces"] for pieces in (few, some, many)]
+    assert [set(each.tolist()) for each in known] == [{np.log1p(LEAST_PIECES + more)} for more in (0, 0, 2)]
+    sure_of = [
+        probabilities(placed, placed.log_depth, pieces, np.ones(pieces.count))[placed.bodies.body >= 0]
+        for pieces in (few, some, many)
+    ]
+    assert (sure_of[0] == sure_of[1]).all()
+    assert (sure_of[2] > sure_of[1]).all()
+    assert sure_of[0].max() > 0.9  # however few there are
 
 
 def test_lines_of_no_body_are_sure_of_nothing(placed):

@@ -104,6 +104,17 @@ def test_it_takes_the_place_of_those_that_it_overlaps_with_their_recess_and_leav
     assert (found[2].recess, found[2].panel) == pytest.approx((0.25, OFFSET + 0.25))
 
 
+def test_openings_are_cut_out_of_faces_that_go_on_unseen():
+    low = Face(12, on_wall(np.array([[-6.0, 0], [6, 0], [6, 4], [-6, 4]]), 1, OFFSET, ()), kind="wall")
+    seen = replace(WALL, faces=(low,))
+    window = Window(WallAnchor(1, None), pixels_of([-1, 1], [-0.6, 1]))
+    opened = [replace(told(window, planes=(seen,)), cut=cut).opened(()) for cut in ((), (WALL,))]
+    assert [len(planes[0].faces[0].holes) for planes, _, _ in opened] == [0, 1]
+    assert [len(notes) for *_, notes in opened] == [1, 0]
+    (plane,) = opened[1][0]
+    assert plane.faces[0].outline[:, 2].min() == -2
+
+
 def test_one_that_was_missed_has_the_recess_of_the_nearest_equal_one_in_its_wall():
     bare = Plane(8, 1, 15.0, ())
     elsewhere = Opening(2, 8, 6, 7, 0, 1, "window", 0.5, 15.5, shape=2)

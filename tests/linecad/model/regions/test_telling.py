@@ -8,6 +8,8 @@ import shapely
 
 from linecad.corrections.edits import Anchor, Region, WallByEdges
 from linecad.directions import UP
+from linecad.model.regions import find
+from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import GroundOfFeet, Surface, find_surfaces, weights_of
 from linecad.model.regions.telling import IN_THE_SKY, ground_height, tell, wall_by_edges
@@ -46,6 +48,24 @@ def test_a_wall_has_the_coordinates_of_its_edges_to_the_last_digit(house):
     assert (found.surface.kind, found.surface.axis, found.surface.offset, found.apart) == ("wall", 1, 8.0, 0.0)
     assert set(found.corners[:, 0].tolist()) == {ends[left, 0, 0], ends[right, 0, 0]}
     assert set(found.corners[:, 2].tolist()) == {ends[low, 0, 2], ends[high, 0, 2]}
+
+
+def test_a_told_wall_does_not_go_on_unseen(house, monkeypatch):
+    asked = []
+
+    def parts_behind(*given):
+        asked.append(given)
+        return {}
+
+    monkeypatch.setattr(find, "parts_behind", parts_behind)
+    edit = WallByEdges(tuple(anchor(house, row) for row in front_edges(house)))
+    for faces in ((), (edit,)):
+        look = Look(house.photo, None, None, faces=faces)
+        find_regions(house.planes, house.lines, house.camera, house.rotation, look)
+    (_, _, nothing), (labels, _, (wall,)) = asked
+    assert nothing == []
+    assert wall.offset == 8.0
+    assert any(surface is wall for surface in labels.surfaces)
 
 
 def test_a_wall_keeps_its_plane_beside_one_without_lines(house):
