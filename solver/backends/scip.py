@@ -128,10 +128,11 @@ class Watch(Eventhdlr):
         self.reporter.note(objective, model.getDualbound(), self.nodes_before + model.getNTotalNodes())
 
 
-def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event) -> Outcome:
+def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event, has_limit: bool = False) -> Outcome:
     """Solve `model` within the limits of `options`, counted from the reporter's beginning; its progress is reported.
 
-    Raises what the progress callback raised, and SolverError when SCIP fails or ends without a meaning.
+    With `has_limit` its objective has to be better than a limit, and that nothing is counts as optimal. Raises what the
+    progress callback raised, and SolverError when SCIP fails or ends without a meaning.
     """
     reporter = watch.reporter
     _set_parameters(model, options, options.seconds - (time.monotonic() - reporter.began))
@@ -155,7 +156,10 @@ def run(model: Model, options: SolveOptions, watch: Watch, stop: threading.Event
         raise SolverError(f"SCIP failed: {failure}; try another seed") from failure
     watch.note(model)
     watch.is_over = True
-    return Outcome(status_of(model.getStatus()), model.getNSols() > 0)
+    name = model.getStatus()
+    if has_limit and name == "infeasible":
+        return Outcome("optimal", has_solution=False)
+    return Outcome(status_of(name), model.getNSols() > 0)
 
 
 @functools.cache

@@ -9,7 +9,7 @@ from linecad.arrays import Float, Int
 from linecad.line_graph import Status
 from solver.backends.scip import Watch, run, version
 from solver.bodies.local_search import climb, improve, margins
-from solver.bodies.program import build
+from solver.bodies.program import FARTHEST, build
 from solver.bodies.ties import ROUNDING, Placement, Ties
 from solver.least_squares import shortest_solution
 from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_gap
@@ -43,7 +43,12 @@ def place(
     status: Status = "optimal"
     if len(ties):
         program = build(ties, count, reference)
-        program.offer(ties, start)
+        # A start beyond what is looked at is none of the program's solutions, but still what they have to beat.
+        is_beyond = bool(np.abs(start).max() > FARTHEST)
+        if is_beyond:
+            program.model.setObjlimit(objective)
+        else:
+            program.offer(ties, start)
         reporter = Reporter(began, objective, float(ties.weight.sum()), on_progress)
         watch = Watch(program.model, reporter)
         limits = replace(
@@ -52,7 +57,7 @@ def place(
             node_limit=options.node_limit or MOST_NODES,
         )
         with catch_interrupt() as stop:
-            outcome = run(program.model, limits, watch, stop)
+            outcome = run(program.model, limits, watch, stop, is_beyond)
         found = _about(ties, program.log_scale(), reference) if outcome.has_solution else start
         if ties.value(found) > objective:
             log_scale, objective = found, ties.value(found)

@@ -8,12 +8,15 @@ import pytest
 from numpy.random import Generator
 
 from linecad.arrays import Bool, Float
+from solver.bodies import program, search
 from solver.bodies.local_search import ELSEWHERE
+from solver.bodies.program import FARTHEST
 from solver.bodies.search import place
 from solver.bodies.ties import Ties, pseudoforest
 from solver.options import Progress, SolveOptions
 
 OPTIONS = SolveOptions()
+BOX = 1000.0  # weight of what keeps bodies within reach
 
 
 def some_ties(rng: Generator, bodies: int, count: int, grouped: bool = True) -> Ties:
@@ -226,6 +229,49 @@ def test_what_no_tie_leads_to_stays() -> None:
     found = place(Ties([[1, 2]], [0.4], [0.02], [1.0], [-1]), 4, 0, OPTIONS)
     assert found.log_scale == pytest.approx([0.0, 0.0, -0.4, 0.0], abs=1e-5)
     assert found.margin[[1, 2, 3]].tolist() == [0, 0, 0]
+
+
+def test_a_start_beyond_what_is_looked_at_ends_the_search_early(monkeypatch: pytest.MonkeyPatch) -> None:
+    rng = np.random.default_rng(0)
+    chain = [[body + 1, body] for body in range(5)]
+    others = some_ties(rng, 6, 40, grouped=False)
+    ties = Ties(
+        [*chain, *others.bodies.tolist()], [0.5] * 5 + others.log_ratio.tolist(), [0.02] * 45,
+        [50.0] * 5 + others.weight.tolist(), [-1] * 45,
+    )  # fmt: skip
+    found = place(ties, 6, 0, OPTIONS)
+    assert found.log_scale[5] == pytest.approx(2.5, abs=0.1)
+    assert found.log_scale[5] > FARTHEST
+    assert found.counted[:5].all()
+    assert (found.status, found.gap) == ("optimal", 0)
+    monkeypatch.setattr(search, "FARTHEST", np.inf)
+    blind = place(ties, 6, 0, OPTIONS)  # SCIP hears of nothing that it has to beat
+    assert blind.objective == found.objective
+    assert found.nodes < blind.nodes / 5
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_what_lies_within_has_to_beat_a_start_beyond(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    for module in (search, program):
+        monkeypatch.setattr(module, "FARTHEST", 0.15)
+    rng = np.random.default_rng(seed)
+    bodies = int(rng.integers(2, 5))
+    ties = some_ties(rng, bodies, int(rng.integers(1, 9)))
+    near = rng.uniform(-0.5, 0.5, bodies)
+    found = place(ties, bodies, 0, OPTIONS, near=near)
+    within = best_value(with_box(ties, bodies, 0.15), bodies) - BOX * (bodies - 1)
+    assert found.status == "optimal"
+    assert within - 1e-6 <= found.objective <= best_value(ties, bodies) + 1e-6
+    assert ties.holds(found.log_scale)[found.counted].all()
+
+
+def with_box(ties: Ties, bodies: int, reach: float) -> Ties:
+    """The ties with one more for each body that keeps it within reach of the reference and outweighs them all."""
+    return Ties(
+        [*ties.bodies.tolist(), *([body, 0] for body in range(1, bodies))],
+        [*ties.log_ratio.tolist(), *[0.0] * (bodies - 1)], [*ties.tolerance.tolist(), *[reach] * (bodies - 1)],
+        [*ties.weight.tolist(), *[BOX] * (bodies - 1)], [*ties.group.tolist(), *[-1] * (bodies - 1)],
+    )  # fmt: skip
 
 
 def test_no_ties_are_an_answer() -> None:
