@@ -14,7 +14,6 @@ from linecad.arrays import Float
 from linecad.directions import MAIN, Turns, across, components, lies_across
 from linecad.geometry import world_rays
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.labelling import STRAIGHT
 from linecad.model.regions.partition import GRID, polygons_of, positive_part, without_holes
 from linecad.model.regions.roofs import Roof
 from linecad.model.regions.surfaces import Surface
@@ -24,6 +23,7 @@ SAME = 1e-7  # of the depth; computed coordinates that differ by less are one
 LEAST_AREA = 0.0015  # of the photo
 FURTHEST = 2.0  # times the depth of the furthest line, where surfaces end that go on to their horizon
 LEAST_CORNERS = 3
+ONE_CORNER = 1e-4  # px, within which corners of parts that are joined are one
 LEAST_HIDDEN = 0.0002  # of the photo; smaller hidden parts are not worth a ring
 
 KINDS: dict[str, FaceKind] = {
@@ -117,7 +117,7 @@ def _going_on(seen: list[shapely.Polygon], behind: shapely.Geometry) -> list[sha
     """The regions of a surface, px, with where it goes on `behind` others; what nothing seen goes on as is none."""
     if behind.is_empty or not seen:
         return seen
-    whole = shapely.simplify(shapely.union_all([*seen, behind], grid_size=GRID), STRAIGHT)
+    whole = shapely.simplify(shapely.union_all([*seen, behind], grid_size=GRID), ONE_CORNER)
     return [part for part in polygons_of(whole) if any(shapely.intersection(part, each).area > 0 for each in seen)]
 
 

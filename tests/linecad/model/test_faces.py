@@ -187,6 +187,15 @@ def test_a_face_goes_on_where_another_hides_it():
     assert before.hidden == ()
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-6, 2e-6, 1e-5])
+def test_corners_that_differ_by_rounding_are_one_where_a_face_goes_on(off):
+    found = regions([WALL], [(0, shapely.box(50, 50, 200, 150))])
+    found = replace(found, behind={0: shapely.box(50 + off, 150, 200 - off, 170)})
+    ((_, face),) = every(find_faces((FRONT,), BACK_EDGE, found, CAMERA, AHEAD))
+    assert in_photo(face.outline).symmetric_difference(shapely.box(50, 50, 200, 170)).area < 0.01
+    assert len(face.outline) == 4
+
+
 def test_ground_that_goes_on_unseen_ends_where_all_ground_ends():
     low = Surface("wall", 1, 5.0, NO_LINES, None)
     shapes = [(0, shapely.box(50, 200, 200, 299)), (1, shapely.box(50, 149.8, 200, 200))]
