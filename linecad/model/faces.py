@@ -46,6 +46,8 @@ def faces_seen_and_going_on(
 ) -> tuple[tuple[Plane, ...], tuple[Plane, ...]]:
     """`find_faces` of what is seen alone, and of that with where it goes on unseen; the planes are the same."""
     seen = find_faces(planes, lines, replace(regions, behind={}), camera, rotation, turns)
+    if not regions.behind:
+        return seen, seen
     return seen, faces_that_go_on(seen, find_faces(planes, lines, regions, camera, rotation, turns))
 
 

@@ -57,19 +57,22 @@ def _strips(labels: Labels, view: View) -> list[tuple[shapely.Polygon, int]]:
         if labels.surfaces[ground].kind != "ground" or labels.surfaces[wall].kind != "wall":
             continue
         meet = image_line(labels.surfaces[wall], labels.surfaces[ground], view)
-        border = shapely.intersection(shapely.boundary(regions[ground]), shapely.boundary(regions[wall]))
-        pieces = [
-            part for part in shapely.get_parts(border) if isinstance(part, shapely.LineString) and part.length > 0
-        ]
-        if not pieces:
-            continue
-        merged = shapely.simplify(shapely.line_merge(shapely.MultiLineString(pieces)), STRAIGHT)
-        for chain in shapely.get_parts(merged):
-            for quad in _between(shapely.get_coordinates(chain), meet, view):
+        for chain in borders_between(shapely.boundary(regions[ground]), shapely.boundary(regions[wall])):
+            for quad in _between(chain, meet, view):
                 for before, after in ((ground, wall), (wall, ground)):
                     strip = shapely.intersection(quad, regions[before])
                     found += [(part, after) for part in partition.polygons_of(strip, LEAST_STRIP)]
     return found
+
+
+def borders_between(one: shapely.Geometry, other: shapely.Geometry) -> list[Float]:
+    """What two outlines of regions, px, share: chains (V, 2) with corners only where they turn."""
+    shared = shapely.get_parts(shapely.intersection(one, other))
+    pieces = [part for part in shared if isinstance(part, shapely.LineString) and part.length > 0]
+    if not pieces:
+        return []
+    merged = shapely.simplify(shapely.line_merge(shapely.MultiLineString(pieces)), STRAIGHT)
+    return [shapely.get_coordinates(chain) for chain in shapely.get_parts(merged)]
 
 
 def image_line(one: Surface, other: Surface, view: View) -> Float:

@@ -14,15 +14,14 @@ import shapely
 from linecad.arrays import Float
 from linecad.directions import UP, components
 from linecad.geometry import vanishing_points, world_rays
-from linecad.model.regions.feet import beyond_photo
-from linecad.model.regions.labelling import STRAIGHT, Labels
+from linecad.model.regions.feet import UPRIGHT, beyond_photo, borders_between
+from linecad.model.regions.labelling import Labels
 from linecad.model.regions.partition import polygons_of, positive_part
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
 
 FARTHER = 1.05  # times the depth of a low wall at its top: what begins there is behind it, and does not stand on it
 TOUCHING = 0.99  # of that depth, from which on it is no nearer than the wall before it
-UPRIGHT = 0.2  # sine to the upright direction, of the sides of a wall
 WITHIN = 1.0  # px under its top, where a wall is looked for
 SHORT_OF_NADIR = 0.999  # of the way to where all uprights meet
 
@@ -95,19 +94,11 @@ class _Sight:
         kinds = {number: self.surfaces[number].kind for number in self.regions if number != self.clutter}
         for wall in (number for number, kind in kinds.items() if kind == "wall"):
             for behind in (number for number, kind in kinds.items() if kind in ("wall", "ground") and number != wall):
-                for border in self._borders(wall, behind):
+                for border in borders_between(self.outlines[wall], self.outlines[behind]):
                     longer = _pieces(beyond_photo(border, self.view.camera, self.view.camera.width))
                     is_top = [self._is_top(ends, wall) for ends in _pieces(border)]
                     if any(is_top) and self._is_behind(behind, _pieces(border)[is_top], wall):
                         yield from (_Edge(ends, wall, behind) for ends in longer[is_top])
-
-    def _borders(self, one: int, other: int) -> Iterator[Float]:
-        """The borders (V, 2) px between two regions."""
-        border = shapely.intersection(self.outlines[one], self.outlines[other])
-        pieces = [part for part in shapely.get_parts(border) if isinstance(part, shapely.LineString) and part.length]
-        if pieces:
-            merged = shapely.simplify(shapely.line_merge(shapely.MultiLineString(pieces)), STRAIGHT)
-            yield from (shapely.get_coordinates(chain) for chain in shapely.get_parts(merged))
 
     def _is_top(self, ends: Float, wall: int) -> bool:
         """Whether an edge (2, 2) px of a wall is its upper one, below the camera."""
