@@ -97,6 +97,12 @@ def partner(axis: Int | int) -> Int:
     return np.where(axis < UP, 1 - axis, np.where(axis == UP, UP, further))
 
 
+def is_first(axis: Int | int) -> Bool:
+    """Whether an axis is the first level one of its frame: the second is a quarter turn to the left of it."""
+    axis = np.asarray(axis)
+    return np.asarray((axis < UP) & (axis == 0) | (axis >= MAIN) & ((axis - MAIN) % 2 == 0))
+
+
 def third(first: Int, second: Int) -> Int:
     """The normal of the plane that lines along two different axes span: in its component they agree."""
     level = np.where(first == UP, second, first)
@@ -105,9 +111,9 @@ def third(first: Int, second: Int) -> Int:
 
 def across(axis: Int) -> Int:
     """(..., 2) the two axes at right angles to an axis whose components place a line along it, in cyclic order."""
-    is_first = (axis < UP) & (axis == 0) | (axis >= MAIN) & ((axis - MAIN) % 2 == 0)
-    one = np.where(axis == UP, 0, np.where(is_first, partner(axis), UP))
-    other = np.where(axis == UP, 1, np.where(is_first, UP, partner(axis)))
+    first = is_first(axis)
+    one = np.where(axis == UP, 0, np.where(first, partner(axis), UP))
+    other = np.where(axis == UP, 1, np.where(first, UP, partner(axis)))
     return np.stack([one, other], axis=-1)
 
 

@@ -2,8 +2,9 @@
 
 DATASET holds towns; with --make it is made first, of the N first towns of SEED that show a sloped plane on more than
 LEAST of the photo. For each town the true sloped planes that are seen so, and of these how many have a slope found
-within 2 degrees, and a face whose depth is within 5 % of theirs in the median, at one scale for the whole photo. Other
-arguments are photos whose slopes are told: of those without roofs there should be none.
+within 2 degrees, and a face whose depth is within 5 % of theirs in the median, at one scale for the whole photo; and of
+all slopes that were found how many cover mostly such a plane, however small. Other arguments are photos whose slopes
+are told: of those without roofs there should be none.
 """
 
 import argparse
@@ -100,8 +101,10 @@ def scale_of(scene: Scene, truth: Truth) -> float:
     return float(np.nanmedian(found / truth.quad_depth(pixels, truth.quad_at(pixels))))
 
 
-def compare(scene: Scene, truth: Truth) -> tuple[list[tuple[float, bool, bool, bool]], int]:
-    """Share of the photo, whether a face shows it, is right in angle, and in place too, of each true roof; all found.
+def compare(scene: Scene, truth: Truth) -> tuple[list[tuple[float, bool, bool, bool]], list[bool]]:
+    """Share of the photo, whether a face shows it, is right in angle, and in place too, of each true roof.
+
+    And of each slope that was found whether most of it is one.
 
     The face of a true roof is the one that covers most of it.
     """
@@ -124,7 +127,21 @@ def compare(scene: Scene, truth: Truth) -> tuple[list[tuple[float, bool, bool, b
         off = float(np.median(np.abs(depth / true - 1)))
         print(f"  share {roof.share:.3f}: angle off {np.degrees(angle):.1f} degrees, depth off {off:.1%}")
         rows.append((roof.share, True, angle < RIGHT_ANGLE, angle < RIGHT_ANGLE and off < RIGHT_DEPTH))
-    return rows, len(sloped)
+    return rows, [_is_true(_in_photo(scene, face), truth) for _, face in sloped]
+
+
+def _is_true(shape: shapely.Polygon, truth: Truth) -> bool:
+    """Whether most pixels of a shape, px, show a sloped plane."""
+    assert truth.frames is not None
+    low, high = np.array(shape.bounds).reshape(2, 2)
+    size = [truth.width - 1, truth.height - 1]
+    grid = np.meshgrid(
+        *(np.arange(*each) for each in zip(np.clip(low, 0, size), np.clip(high, 0, size) + 1, strict=True))
+    )
+    pixels = np.stack(grid, axis=-1).reshape(-1, 2).astype(np.int64)
+    number = truth.ids[tuple(pixels[shapely.contains_xy(shape, *pixels.T)].T[::-1])]
+    slope = np.where(number == NOTHING, 0.0, truth.frames.quad_slope[number])
+    return bool(((slope > FLATTEST) & (slope < STEEPEST)).mean() > SHOWN)
 
 
 def _in_photo(scene: Scene, face: Face) -> shapely.Polygon:
@@ -139,21 +156,23 @@ def main() -> None:
     arguments = parser.parse_args()
     if arguments.make:
         make(arguments.dataset, arguments.make)
-    rows, all_found = [], 0
+    rows, are_true = [], list[bool]()
     for folder in sorted(path.parent for path in arguments.dataset.glob("*/truth.npz")):
         truth = read_truth(folder)
         if truth.frames is None:
             parser.error(f"{folder} is no town; give a dataset of linecad dataset --towns")
         scene = found_scene(folder / "photo.jpg", folder / "camera.json")
-        of_town, count = compare(scene, truth)
-        print(f"{folder.name}: {len(of_town)} true, {count} found, right {sum(row[3] for row in of_town)}", flush=True)
+        of_town, found = compare(scene, truth)
+        print(
+            f"{folder.name}: {len(of_town)} true, {len(found)} found, right {sum(row[3] for row in of_town)}",
+            flush=True,
+        )
         rows += of_town
-        all_found += count
+        are_true += found
     if rows:
         shown, angle, right = (sum(row[place] for row in rows) for place in (1, 2, 3))
-        print(
-            f"of {len(rows)} sloped planes {shown} shown, {angle} at their angle, {right} in place; {all_found} found"
-        )
+        print(f"of {len(rows)} sloped planes {shown} shown, {angle} at their angle, {right} in place")
+        print(f"{len(are_true)} found, of which {sum(are_true)} are sloped")
     for path in arguments.photos:
         scene = found_scene(path, path.with_suffix(".json") if path.with_suffix(".json").exists() else None)
         slopes = [f"{np.degrees(abs(np.pi / 2 - plane.tilt)):.1f}" for plane in scene.planes if plane.tilt]

@@ -5,10 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.directions import UP, components
+from linecad.directions import UP, directions_of
 from linecad.geometry import angles_to, directions_to, lengths, project, vanishing_points
-from linecad.model.regions.profiles import BESIDE, BLURRED, FOOT, Profile, Shown
-from linecad.model.regions.slopes import UNSURE, USUAL, End, Slope, slopes_by
+from linecad.model.regions.bearings import Bearing
+from linecad.model.regions.columns import BESIDE, BLURRED, FOOT
+from linecad.model.regions.profiles import Profile, Shown
+from linecad.model.regions.slopes import UNSURE, USUAL, Edge, End, Slope, slopes_by
 
 LEAST_PIECE = 0.008  # of the photo's width, of a segment on the end of a roof
 AT_RIDGE, AT_EAVE = 0.025, 0.06  # of the photo's width, from the ends of ridge and wall to where such a line meets them
@@ -25,6 +27,7 @@ STEPS = 100  # in which coverage is counted
 AT_BORDER = 3  # columns from the border of the photo, where what it shows goes on
 BEYOND = 0.1  # of the photo's width, by which it does at least
 OUTSIDE = 4  # columns beyond the end of a ridge, where the sky may be seen
+UPPER, FREE = 1 / 3, 0.5  # part of the end of a roof, and share of that beside which the sky is seen
 MOST_BESIDE = 0.02  # of the photo's width, from the end of a ridge to where that of a usual roof would be
 
 
@@ -39,7 +42,7 @@ class RoofEnd:
     is_upright: bool = False  # before the sky, where the end of no usual roof would be: that of a wall
 
 
-def find_end(profile: Profile, raw: Float, shown: Shown, end: int) -> RoofEnd:
+def find_end(profile: Profile, raw: Float, shown: Shown, end: int, bearing: Bearing) -> RoofEnd:
     """The left (0) or the right (1) end of the roof of a profile, by segments `raw` (N, 2, 2) px of any direction."""
     place = np.flatnonzero(profile.is_ridge)[-end]
     wall = (profile.first, profile.last)[end]
@@ -48,10 +51,9 @@ def find_end(profile: Profile, raw: Float, shown: Shown, end: int) -> RoofEnd:
     if foot is not None and top is not None:
         inwards = _along(profile, shown, 1 - end) - _along(profile, shown, end)
         way, likely = float(np.sign(inwards)), _may_be(profile, shown, end, foot)
+        edge = Edge(foot, top, way, bearing, _is_free(profile, shown, (foot, top), end))
         # Where it is no valley, what is beside it stands before it.
-        told = slopes_by(foot, top, way, profile.wall, shown, likely) or slopes_by(
-            foot, top, way, profile.wall, shown, ("verge", "hip")
-        )
+        told = slopes_by(edge, profile.wall, shown, likely) or slopes_by(edge, profile.wall, shown, ("verge", "hip"))
         if told:
             return RoofEnd(foot, top, _up(foot, points), [slope for slope in told if slope.error < UNSURE])
     column = max(place, wall) if end == 0 else min(place, wall)
@@ -70,7 +72,7 @@ def _up(pixel: Float, points: Float) -> Float:
 def _along(profile: Profile, shown: Shown, end: int) -> float:
     """The place along the wall of the left or right end of what is seen of it."""
     ray = shown.rays(profile.eave[(profile.first, profile.last)[end]])
-    return float(profile.wall.offset * ray[profile.wall.along] / ray[profile.wall.axis])
+    return float(profile.wall.along_of(ray))
 
 
 def _line(profile: Profile, raw: Float, shown: Shown, end: int) -> tuple[Float | None, Float | None]:
@@ -79,9 +81,9 @@ def _line(profile: Profile, raw: Float, shown: Shown, end: int) -> tuple[Float |
     place = np.flatnonzero(profile.is_ridge)[-end]
     wall = (profile.first, profile.last)[end]
     eave, ridge = profile.eave[[0, -1]], profile.ridge[[0, -1]]
-    points = vanishing_points(shown.view.camera.matrix, components(shown.view.rotation, shown.view.turns))
+    axes = shown.view.rotation @ np.array([np.eye(3)[UP], profile.wall.normal]).T
     length = lengths(raw[:, 1] - raw[:, 0])
-    sine = angles_to(raw, points[[UP, profile.wall.axis]]).min(axis=0)
+    sine = angles_to(raw, vanishing_points(shown.view.camera.matrix, axes)).min(axis=0)
     along = (eave[1] - eave[0]) / lengths(eave[1] - eave[0])
     turn = np.abs(_cross(along, raw[:, 1] - raw[:, 0])) / np.maximum(length, 1e-9)
     chosen = raw[(length >= LEAST_PIECE * width) & (sine > ALONG) & (turn > LEAST_TURN)]
@@ -165,8 +167,9 @@ def _may_be(profile: Profile, shown: Shown, end: int, foot: Float) -> tuple[End,
         return ("verge", "hip")
     ray, at_foot = shown.rays(np.stack([pixels[len(pixels) // 2], foot]))
     corner = surfaces[beside].offset
-    is_here = abs(wall.offset * at_foot[wall.along] / at_foot[wall.axis] - corner) < AT_CORNER * abs(wall.offset)
-    is_before = abs(corner * ray[wall.axis] / ray[wall.along]) < abs(wall.offset)
+    beyond = directions_of(shown.view.turns)[surfaces[beside].axis]
+    is_here = abs(wall.point(at_foot) @ beyond - corner) < AT_CORNER * abs(wall.offset)
+    is_before = abs(corner * (ray @ wall.normal) / (ray @ beyond)) < abs(wall.offset)
     return ("valley",) if is_here and is_before else ("verge", "hip")
 
 
@@ -176,6 +179,19 @@ def _is_hidden(profile: Profile, shown: Shown, end: int) -> bool:
     if not 0 <= column < len(profile.eave):
         return True
     return not shown.at(shown.sky, profile.eave[column])
+
+
+def _is_free(profile: Profile, shown: Shown, line: tuple[Float, Float], end: int) -> bool:
+    """Whether the sky is seen beside the upper part of the line that ends a roof, foot and top (2,) px.
+
+    Then nothing there cuts the roof off.
+    """
+    outwards = (1 if end else -1) * (profile.eave[-1] - profile.eave[0])
+    outwards = outwards / lengths(outwards) * shown.raster.step
+    pixels = line[0] + np.linspace(1 - UPPER, 1, BLURRED)[:, None] * (line[1] - line[0])
+    is_sky = shown.at(shown.sky, pixels + (BLURRED + BESIDE) * outwards)
+    is_sky |= shown.at(shown.label, pixels + 2 * BESIDE * outwards) == shown.labels.sky
+    return bool(is_sky.mean() > FREE)
 
 
 def _is_upright(profile: Profile, shown: Shown, end: int) -> bool:
@@ -190,9 +206,9 @@ def _is_upright(profile: Profile, shown: Shown, end: int) -> bool:
     if shown.at(shown.sky, between).mean() < 1 / 2:
         return False
     wall, view = profile.wall, shown.view
-    start = wall.point(shown.rays(profile.eave[place]), shown)
+    start = wall.point(shown.rays(profile.eave[place]))
     depth = (profile.high - profile.low) / max(np.tan(USUAL) - profile.high / abs(wall.offset), 1e-9)
-    back = np.sign(wall.offset) * components(np.eye(3), view.turns).T[wall.axis]
+    back = np.sign(wall.offset) * wall.normal
     rise = start + depth * (back + np.tan(USUAL) * np.eye(3)[UP])
     usual = project(rise, view.camera.matrix, view.rotation)
     return bool(lengths(usual - profile.ridge[place]) > MOST_BESIDE * view.camera.width)

@@ -12,12 +12,14 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Float, Int
-from linecad.directions import UP, Turns, components, directions_of
+from linecad.directions import UP, Turns, directions_of
 from linecad.geometry import angles_to, lengths, vanishing_points
 from linecad.model.regions import partition
+from linecad.model.regions.bearings import Bearing, bearing_of
+from linecad.model.regions.columns import FOOT, look_over
 from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.labelling import Labels
-from linecad.model.regions.profiles import FOOT, Profile, Shown, Wall, look_over, walls_of
+from linecad.model.regions.profiles import Profile, Shown, Wall, walls_of
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.roof_ends import RoofEnd, find_end
 from linecad.model.regions.segments import View
@@ -36,9 +38,10 @@ NEARLY = 0.85  # of the most contrast above a wall; lines with so much part it t
 LEAST_BEFORE_SKY = 0.7  # bits, of those of roof and sky: roofs have 0.97 and more, clouds taken for walls 0.46
 MOST_UPRIGHTS = 0.2  # pixels of upright edges a sample of a roof: dormers have some, storeys of a wall more
 MOST_PLANTS = 0.2  # of what is above the eave
-LEAST_RIDGE = 0.7  # of the columns between the ends of a ridge in which it is seen
-LEAST_SEEN = 0.5  # of the columns of a wall, of those in which nothing hides what is above it
+LEAST_SEEN = 0.5  # of the columns below a ridge, of those in which nothing hides what is above the wall
+SAME_STRETCH = 0.5  # of the narrower of two ridges along one wall, above both of which the other is
 LEAST_GUESSED = 0.25  # of the height of the wall below, of what no end tells to be a roof: parapets are less
+LEAST_OF_WALL = 0.5  # of the columns of a wall, above which such a ridge is: part of a wall may be of another colour
 SEEN_AT = np.tan(np.radians(32.0))  # of a slope that a roof must be seen at up to its ridge, for the usual one
 GRAZING = 0.95  # of the tangent of its slope, at which a roof is hardly seen
 LEAST_AREA = 0.0015  # of the photo, as of other faces
@@ -87,7 +90,8 @@ def find_roofs(sketch: Sketch, labels: Labels, heaven: Heaven, raster: Raster, v
     shown = Shown(raster, view, labels, heaven.seed.reshape(raster.shape))
     walls = [wall for wall in walls_of(shown) if wall.is_shown.mean() >= LEAST_WALL]
     profiles = [profile for wall in walls for profile in _profiles(wall, sketch, shown)]
-    found = [_sketched(profile, sketch, shown) for profile in sorted(profiles, key=lambda each: -each.contrast)]
+    profiles.sort(key=lambda each: -each[0].contrast)
+    found = [_sketched(profile, bearing, sketch, shown) for profile, bearing in profiles]
     best: list[_Sketched] = []
     for each in found:
         if each is not None and all(each.overlaps(other) < MOST_SHARED for other in best):
@@ -108,24 +112,39 @@ def notes_on(roofs: Iterable[Roof]) -> tuple[str, ...]:
     return (f"faces: {are} {usual}: the photo shows no end of it that would tell",)
 
 
-def _profiles(wall: Wall, sketch: Sketch, shown: Shown) -> list[Profile]:
-    """What is above the lines of a wall that may be eaves."""
+def _profiles(wall: Wall, sketch: Sketch, shown: Shown) -> list[tuple[Profile, Bearing]]:
+    """What is above the lines of a wall that may be eaves, as these and their ridges run."""
+    lines = _eaves(wall, sketch, shown)
+    looks = [(each, pixel) for pixel in lines for each in look_over(wall, pixel, shown) if _may_be_roof(each)]
+    looks.sort(key=lambda look: -look[0].contrast)
     found = []
-    for pixel in _eaves(wall, sketch, shown):
-        profile = look_over(wall, pixel, shown)
-        if profile is not None and _may_be_roof(profile):
-            found.append(profile)
-    most = max((profile.contrast for profile in found), default=0.0)
-    # Cornices are unlike both: of lines that part nearly as well, the highest is where the roof begins.
-    found = [profile for profile in found if profile.contrast >= NEARLY * most]
-    return sorted(found, key=lambda profile: -profile.low)[:1]
+    while looks:
+        most = looks[0][0]
+        own = [look for look in looks if most.shares(look[0]) > SAME_STRETCH]
+        looks = [look for look in looks if most.shares(look[0]) <= SAME_STRETCH]
+        # Cornices are unlike both: of lines that part nearly as well, the highest is where the roof begins.
+        likely = [look for look in own if look[0].contrast >= NEARLY * most.contrast]
+        found.append(_as_it_runs(*max(likely, key=lambda look: look[0].low), sketch, shown))
+    return found
+
+
+def _as_it_runs(profile: Profile, pixel: Float, sketch: Sketch, shown: Shown) -> tuple[Profile, Bearing]:
+    """A profile above a line of a wall, turned as this and its ridge run, and how surely they run so."""
+    bearing = bearing_of(profile, sketch.raw, shown)
+    if bearing.turn:
+        again = look_over(profile.wall.turned(bearing.turn, pixel, shown), pixel, shown)
+        again = [each for each in again if _may_be_roof(each) and profile.shares(each) > SAME_STRETCH]
+        if again:
+            profile = max(again, key=lambda each: each.is_ridge.sum())
+            bearing = bearing_of(profile, sketch.raw, shown)
+    return profile, bearing
 
 
 def _eaves(wall: Wall, sketch: Sketch, shown: Shown) -> list[Float]:
     """Pixels (2,) of lines of the photo along a wall, above the camera and at its samples, one of each height."""
     view, width = shown.view, shown.view.camera.width
-    points = vanishing_points(view.camera.matrix, components(view.rotation, view.turns))
-    (sine,) = angles_to(sketch.raw, points[wall.along : wall.along + 1])
+    points = vanishing_points(view.camera.matrix, (view.rotation @ wall.direction)[:, None])
+    (sine,) = angles_to(sketch.raw, points)
     segments = np.concatenate([sketch.whole[sketch.axis == wall.along], sketch.raw[sine < LEVEL]])
     length = lengths(segments[:, 1] - segments[:, 0])
     rows = np.flatnonzero(length >= LEAST_LINE * width)
@@ -146,12 +165,9 @@ def _eaves(wall: Wall, sketch: Sketch, shown: Shown) -> list[Float]:
 def _may_be_roof(profile: Profile) -> bool:
     """Whether what is above a line is another thing than the wall, level at the sky, and no more storeys."""
     ends = np.flatnonzero(profile.is_ridge)
-    between = profile.is_open[ends[0] : ends[-1] + 1]
-    is_ridge = (profile.is_ridge & profile.is_open).sum() >= LEAST_RIDGE * between.sum()
-    is_seen = profile.is_open.sum() >= LEAST_SEEN * (profile.last - profile.first + 1)
+    is_seen = profile.is_open.sum() >= LEAST_SEEN * (ends[-1] - ends[0] + 1)
     return bool(
-        is_ridge
-        and is_seen
+        is_seen
         and max(LEAST_RISE, LEAST_SHARE * profile.depth) <= profile.rise <= MOST_RISE * profile.depth
         and profile.contrast >= LEAST_CONTRAST
         and profile.before_sky >= LEAST_BEFORE_SKY
@@ -176,13 +192,15 @@ class _Sketched:
         return float(shapely.intersection(one, another).area / min(one.area, another.area))
 
 
-def _sketched(profile: Profile, sketch: Sketch, shown: Shown) -> _Sketched | None:
-    """The roof of a profile; None where it could not be seen so."""
-    left, right = (find_end(profile, sketch.raw, shown, end) for end in (0, 1))
+def _sketched(profile: Profile, bearing: Bearing, sketch: Sketch, shown: Shown) -> _Sketched | None:
+    """The roof of a profile whose eave has a bearing; None where it could not be seen so."""
+    left, right = (find_end(profile, sketch.raw, shown, end, bearing) for end in (0, 1))
     told = slope_of(left.slopes, right.slopes)
     seen_at = profile.high / abs(profile.wall.offset)
     is_low = profile.high - profile.low < LEAST_GUESSED * (profile.low - profile.wall.foot(shown))
-    if left.is_upright or right.is_upright or (told is None and (seen_at > SEEN_AT or is_low)):
+    is_part = profile.is_ridge.sum() < LEAST_OF_WALL * (profile.last - profile.first + 1)
+    is_unlike = seen_at > SEEN_AT or is_low or is_part or any(profile.goes_on)
+    if left.is_upright or right.is_upright or (told is None and is_unlike):
         return None
     slope = USUAL if told is None else told
     outline = shapely.Polygon(np.array([left.foot, left.top, right.top, right.foot]))
@@ -204,15 +222,16 @@ def _cut_out(own: _Sketched, others: list[_Sketched], before: list[Roof], shown:
     if not kept:
         return []
     slope = own.slope if wall.offset > 0 else np.pi - own.slope
-    carrier = labels.surfaces[_carrier(own.profile, shown)].offset / wall.offset
-    eave = carrier * wall.point(shown.rays(own.profile.eave[own.profile.first]), shown)
+    carrier = labels.surfaces[_carrier(own.profile, shown)]
+    ray = shown.rays(own.profile.eave[own.profile.middle])
+    eave = ray * carrier.offset / (ray @ directions_of(shown.view.turns)[carrier.axis])
     hood = shapely.difference(own.hood, hidden)
     return [Roof(wall.axis, float(slope), eave, shapely.union_all(kept), hood, wall.numbers, own.is_told)]
 
 
 def _carrier(profile: Profile, shown: Shown) -> int:
     """The surface of a wall that is seen right below an eave: a cornice may stand before the rest of the wall."""
-    eave = profile.eave[profile.first : profile.last + 1]
+    eave = profile.eave[slice(*profile.reach)]
     below = shown.at(shown.label, eave + FOOT.start * shown.raster.step * np.array([0.0, 1.0]))
     count = np.bincount(below, minlength=len(shown.labels.surfaces))
     return max(profile.wall.numbers, key=lambda number: int(count[number]))

@@ -5,14 +5,15 @@ the upright plane across the eave, a *hip* between two roofs of one slope at 45 
 *valley* outwards. So P, whose place is known, and the ray of Q tell Q, and the slope.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Literal
 
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.directions import UP, directions_of
+from linecad.directions import UP
+from linecad.model.regions.bearings import Bearing
 from linecad.model.regions.profiles import Shown, Wall
 
 End = Literal["verge", "hip", "valley"]
@@ -20,8 +21,10 @@ End = Literal["verge", "hip", "valley"]
 USUAL, SPREAD = np.radians(45.0), np.radians(9.0)  # of roofs: docs/decisions/0101
 FLATTEST, STEEPEST = np.radians(20.0), np.radians(68.0)
 SHIFT, NORMAL_WIDTH = 1.0, 1280.0  # px at that width by which an end may err in the photo
-ERROR = np.radians(5.0)  # of a slope whose end is seen well: frames err, and two slopes beside a hip differ
-UNSURE = np.radians(8.0)  # error of a slope that tells no more than that there is an end
+ERROR = {"verge": np.radians(1.5), "hip": np.radians(5.0), "valley": np.radians(5.0)}  # of a slope by an end seen well
+SQUARE = np.radians(0.75)  # by which a verge may be turned from the right angle to its eave
+ABUTS = np.radians(4.0)  # the same where something is seen beside it: a wall of another house may cut the roof off
+UNSURE = np.radians(12.0)  # error of a slope that tells no more than that there is an end
 
 
 @dataclass(frozen=True)
@@ -33,31 +36,45 @@ class Slope:
     end: End
 
 
-def slopes_by(foot: Float, top: Float, inwards: float, wall: Wall, shown: Shown, ends: tuple[End, ...]) -> list[Slope]:
-    """The slopes that an end from `foot` to `top` (2,) px tells, one for each thing of `ends` that it may be.
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """The line in the photo that ends a roof, and what is known of it."""
 
-    `inwards` is 1 where the roof lies at larger components along the wall, else -1.
-    """
-    vectors = directions_of(shown.view.turns)
-    along, back = vectors[wall.along], np.sign(wall.offset) * vectors[wall.axis]
-    start = wall.point(shown.rays(foot), shown)
+    foot: Float  # (2,) px, at the eave
+    top: Float  # (2,) px, at the ridge
+    inwards: float  # 1 where the roof lies at larger components along its wall, else -1
+    bearing: Bearing  # of its eave
+    is_free: bool  # the sky is seen beside it: nothing there cuts the roof off
+
+
+def slopes_by(edge: Edge, wall: Wall, shown: Shown, may_be: tuple[End, ...]) -> list[Slope]:
+    """The slopes that the edge of a roof tells, one for each thing that it may be."""
+    run = (edge.top - edge.foot) / np.linalg.norm(edge.top - edge.foot)
     reach = SHIFT * max(shown.view.camera.width / NORMAL_WIDTH, 1.0)
-    run = (top - foot) / np.linalg.norm(top - foot)
-    tops = top + reach * np.array([[0.0], [1.0], [-1.0]]) * np.array([run[1], -run[0]])
-    rays = shown.rays(tops)
-    seen = rays[:, [wall.axis, wall.along, UP]] @ vectors[[wall.axis, wall.along, UP]]
-    found = []
-    for end in ends:
-        normal = along - {"verge": 0.0, "hip": inwards, "valley": -inwards}[end] * back
-        with np.errstate(divide="ignore", invalid="ignore"):
-            depth = (normal @ start) / (seen @ normal)
-        rise = seen * depth[:, None] - start
-        angles = np.arctan2(rise[:, UP], rise @ back)
-        if not (np.isfinite(depth).all() and (depth > 0).all() and FLATTEST < angles[0] < STEEPEST):
-            continue
-        error = np.hypot(np.abs(angles - angles[0]).max(), ERROR)
-        found.append(Slope(float(angles[0]), float(error), end))
+    across = reach * np.array([run[1], -run[0]])
+    found, zero = [], np.zeros(2)
+    for end in may_be:
+        turn = edge.bearing.error
+        if end == "verge":
+            turn = float(np.hypot(turn, SQUARE if edge.is_free else ABUTS))
+        seen = ((zero, 0.0), (across, 0.0), (-across, 0.0), (zero, turn), (zero, -turn))
+        told, *others = (_angle(replace(edge, top=edge.top + off), end, more, wall, shown) for off, more in seen)
+        off = np.abs(np.array(others) - told)
+        if np.isfinite(off).all() and FLATTEST < told < STEEPEST:
+            found.append(Slope(told, float(np.linalg.norm([off[:2].max(), off[2:].max(), ERROR[end]])), end))
     return found
+
+
+def _angle(edge: Edge, end: End, more: float, wall: Wall, shown: Shown) -> float:
+    """The slope, rad, with the eave turned by so much more; not finite where the photo cannot show it."""
+    along = edge.bearing.turned(wall.direction, more)
+    back = np.sign(wall.offset) * edge.bearing.turned(wall.normal, more)
+    normal = along - {"verge": 0.0, "hip": edge.inwards, "valley": -edge.inwards}[end] * back
+    start, seen = wall.point(shown.rays(edge.foot)), shown.rays(edge.top)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        depth = (normal @ start) / (seen @ normal)
+    rise = seen * depth - start
+    return float(np.arctan2(rise[UP], rise @ back)) if depth > 0 else float("nan")
 
 
 def slope_of(left: list[Slope], right: list[Slope]) -> float | None:

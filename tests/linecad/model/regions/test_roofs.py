@@ -13,15 +13,16 @@ from linecad.directions import directions_of
 from linecad.geometry import central_camera, project
 from linecad.model.faces import find_faces, with_roofs
 from linecad.model.regions import partition
+from linecad.model.regions.bearings import Bearing
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.labelling import Labels
-from linecad.model.regions.profiles import Shown, Wall
+from linecad.model.regions.profiles import Shown, Wall, turned_level
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs, notes_on
 from linecad.model.regions.segments import View
-from linecad.model.regions.slopes import ERROR, SPREAD, USUAL, Slope, slope_of, slopes_by
+from linecad.model.regions.slopes import ERROR, SPREAD, USUAL, Edge, Slope, slope_of, slopes_by
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Lines, Plane
 
@@ -30,6 +31,7 @@ CAMERA = Camera(WIDTH, HEIGHT, central_camera(700.0, WIDTH, HEIGHT), "file")
 DISTANCE, EAVE, GROUND, LEFT, RIGHT, RUN = 20.0, 3.0, -2.0, -6.0, 9.0, 5.0  # m
 SEEN = 0.1  # rad, of which the camera looks past the house
 SKY, TILES, PLASTER, PAVING = (200, 220, 245), (110, 50, 40), (205, 195, 170), (90, 90, 95)
+HIP = ERROR["hip"]
 NO_LINES = Lines(
     id=np.zeros(0, int), axis=np.zeros(0, int), segment=np.zeros((0, 2, 2)), ends=np.zeros((0, 2, 3)),
     is_boundary=np.zeros(0, bool), component=np.zeros(0, int), confidence=np.zeros(0, "U9"),
@@ -65,8 +67,11 @@ class Made:
         return find_roofs(made.sketch, made.labels, heaven, raster, made.view)
 
 
-def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER), top=None):
-    """A house whose roof ends in verges or hips, or by the roof's corners `top` (2, 3) at the ridge."""
+def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER), top=None, turn=0.0):
+    """A house whose roof ends in verges or hips, or by the roof's corners `top` (2, 3) at the ridge.
+
+    It is turned by `turn`, rad, from the wall that it is labelled as, about the upright through its middle.
+    """
     rotation, rise = turned(SEEN), RUN * np.tan(np.radians(degrees))
     inwards = RUN if hips else 0.0
     left, right = reach
@@ -74,6 +79,8 @@ def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER
         top = [[left + inwards, DISTANCE + RUN, EAVE + rise], [right - inwards, DISTANCE + RUN, EAVE + rise]]
     corners = np.array([[left, DISTANCE, EAVE], *top, [right, DISTANCE, EAVE]])
     feet = np.array([[right, DISTANCE, GROUND], [left, DISTANCE, GROUND]])
+    middle = np.array([(left + right) / 2, DISTANCE, 0.0])
+    corners, feet = (middle + np.array([turned_level(p, turn) for p in each - middle]) for each in (corners, feet))
     pixels, feet = project(corners, CAMERA.matrix, rotation), project(feet, CAMERA.matrix, rotation)
     frame = shapely.box(-0.5, -0.5, WIDTH - 0.5, HEIGHT - 0.5)
     roof, wall = shapely.Polygon(pixels), shapely.Polygon([pixels[0], pixels[3], *feet])
@@ -106,7 +113,7 @@ def made():
 
 def told(*degrees):
     """The slope that so many ends and what is usual tell together, degrees, where all ends are seen equally well."""
-    weight = np.array([SPREAD**-2, *(len(degrees) * [ERROR**-2])])
+    weight = np.array([SPREAD**-2, *(len(degrees) * [HIP**-2])])
     return weight @ [np.degrees(USUAL), *degrees] / weight.sum()
 
 
@@ -118,7 +125,10 @@ def test_a_roof_has_its_place_and_its_slope(degrees, hips):
     truth = shapely.Polygon(made.pixels)
     assert roof.polygon.intersection(truth).area > 0.95 * roof.polygon.union(truth).area
     assert roof.is_told
-    assert np.degrees(roof.slope) == pytest.approx(told(degrees, degrees), abs=1.0)
+    if hips:
+        assert np.degrees(roof.slope) == pytest.approx(told(degrees, degrees), abs=1.0)
+    else:  # verges tell it better
+        assert np.degrees(roof.slope) == pytest.approx(degrees, abs=1.0)
     assert roof.eave[1:] == pytest.approx([DISTANCE, EAVE], rel=1e-6)
 
 
@@ -131,14 +141,32 @@ def test_each_end_tells_its_slope_exactly(made, degrees, turn, end, inwards):
     top = foot + 4.0 * np.array([along, 1.0, np.tan(np.radians(degrees))])
     pixels = project(np.stack([foot, top]), CAMERA.matrix, rotation)
     shown = Shown(take_raster(NO_LINES, CAMERA, rotation, None), View(CAMERA, rotation, None), made.labels, made.seed)
-    wall = Wall(1, DISTANCE, (0,), np.zeros((1, 1), bool))
-    (slope,) = slopes_by(*pixels, inwards, wall, shown, (end,))
+    wall = Wall(1, DISTANCE, np.array([0.0, 1, 0]), (0,), np.zeros((1, 1), bool))
+    edge = Edge(*pixels, inwards, Bearing(0.0, 0.0), is_free=True)
+    (slope,) = slopes_by(edge, wall, shown, (end,))
     assert np.degrees(slope.angle) == pytest.approx(degrees, abs=1e-6)
+    (other,) = slopes_by(replace(edge, is_free=False), wall, shown, (end,))
+    assert other.angle == slope.angle
+    if end == "verge" and abs(pixels[1, 0] - pixels[0, 0]) > 1:  # a wall that cuts it off may be turned
+        assert other.error > slope.error
+    else:
+        assert other.error >= slope.error
+
+
+@pytest.mark.parametrize("turn", [-6.0, 5.0])
+def test_a_house_is_turned_from_the_frame_that_it_was_given(turn):
+    """By 2 or 3 degrees of slope for each, if the eave did not tell."""
+    made = build(50.0, turn=np.radians(turn))
+    (roof,) = made.found()
+    assert roof.is_told
+    assert np.degrees(roof.slope) == pytest.approx(50.0, abs=1.0)
+    truth = shapely.Polygon(made.pixels)
+    assert roof.polygon.intersection(truth).area > 0.9 * roof.polygon.union(truth).area
 
 
 def test_what_an_end_is_follows_from_the_other_end():
-    left = [Slope(np.radians(30), ERROR, "verge"), Slope(np.radians(50), ERROR, "hip")]
-    right = [Slope(np.radians(31), ERROR, "verge"), Slope(np.radians(62), ERROR, "hip")]
+    left = [Slope(np.radians(30), HIP, "verge"), Slope(np.radians(50), HIP, "hip")]
+    right = [Slope(np.radians(31), HIP, "verge"), Slope(np.radians(62), HIP, "hip")]
     assert np.degrees(slope_of(left, right)) == pytest.approx(told(30, 31))
     assert np.degrees(slope_of(left, [])) == pytest.approx(told(50))
     assert slope_of([], []) is None
@@ -156,6 +184,81 @@ def test_a_roof_whose_ends_the_photo_does_not_show_has_the_usual_slope_and_says_
     assert notes_on([replace(roof, is_told=True)]) == ()
     reach = roof.polygon.bounds
     assert (reach[0], reach[2]) == pytest.approx((-0.5, WIDTH - 0.5))
+
+
+def _with_roofs(made, *roofs):
+    """The photo with other things than its roof above the wall, by corners (4, 3) m and colours, and level lines alone.
+
+    All are labelled as the wall.
+    """
+    photo, house = made.photo.copy(), shapely.Polygon([*made.pixels[[0, 3]], *_feet(made)])
+    cv2.fillPoly(photo, [np.rint(made.pixels).astype(np.int32)], SKY)
+    level = [made.sketch.raw[0]]
+    for corners, colour in roofs:
+        pixels = project(np.array(corners), CAMERA.matrix, made.rotation)
+        cv2.fillPoly(photo, [np.rint(pixels).astype(np.int32)], colour)
+        house = shapely.union_all([house, shapely.Polygon(pixels).buffer(1e-3)])
+        level.append(pixels[1:3])
+    front = np.array([*made.pixels[[0, 3]], *_feet(made)])
+    cv2.fillPoly(photo, [np.rint(front).astype(np.int32)], PLASTER)
+    frame = shapely.box(-0.5, -0.5, WIDTH - 0.5, HEIGHT - 0.5)
+    house = house.intersection(frame)
+    below = made.labels.cells[1].difference(house)
+    cells = [(number, part) for number, cell in enumerate((house, below, frame.difference(house).difference(below)))
+             for part in partition.polygons_of(cell)]  # fmt: skip
+    raster = take_raster(NO_LINES, CAMERA, made.rotation, photo)
+    label, flat = np.array([number for number, _ in cells]), [part for _, part in cells]
+    cell = partition.draw(flat, raster.shape, raster.step)
+    labels = replace(made.labels, cells=flat, label=label, cell=cell)
+    return replace(
+        made, photo=photo, labels=labels, seed=(label == 2)[cell], sketch=replace(made.sketch, raw=np.array(level))
+    )
+
+
+def _feet(made):
+    feet = made.corners[[3, 0]] * [1.0, 1, 0] + [0, 0, GROUND]
+    return project(feet, CAMERA.matrix, made.rotation)
+
+
+def _sloped(left, right, height, run=4.0):
+    """Corners (4, 3) of a roof between two places along the wall, that rises by so much."""
+    return [[left, DISTANCE, EAVE], [left, DISTANCE + run, EAVE + height], [right, DISTANCE + run, EAVE + height],
+            [right, DISTANCE, EAVE]]  # fmt: skip
+
+
+def _upright(left, right, height):
+    return [[left, DISTANCE, EAVE], [left, DISTANCE, EAVE + height], [right, DISTANCE, EAVE + height],
+            [right, DISTANCE, EAVE]]  # fmt: skip
+
+
+def test_houses_of_a_row_have_a_roof_each():
+    made = build(reach=(-9.0, 11.0))
+    low, high = _sloped(-9.0, 1.0, 3.0), _sloped(1.0, 11.0, 4.5)
+    row = _with_roofs(made, (low, TILES), (high, TILES))
+    ends = [project(np.array(each), CAMERA.matrix, made.rotation) for each in (low[:2], high[:1:-1])]
+    row = replace(row, sketch=replace(row.sketch, raw=np.concatenate([row.sketch.raw, ends])))
+    roofs = sorted(row.found(), key=lambda roof: roof.polygon.centroid.x)
+    assert [roof.is_told for roof in roofs] == [True, True]
+    slopes = np.degrees([roof.slope for roof in roofs])
+    assert slopes == pytest.approx(np.degrees(np.arctan([3 / 4, 4.5 / 4])), abs=1.5)
+
+
+@pytest.mark.parametrize(("width", "count"), [(9.0, 0), (14.0, 1)])
+def test_a_small_part_of_a_wall_is_no_roof_unless_an_end_tells(width, count):
+    """What is above the rest of the wall is higher than the photo."""
+    made = build(reach=(-9.0, 11.0))
+    tiles, rest = _sloped(-9.0, -9.0 + width, 4.0), _upright(-9.0 + width, 11.0, 30.0)
+    assert len(_with_roofs(made, (rest, PLASTER), (tiles, TILES)).found()) == count
+
+
+OTHER_TILES = (150, 120, 110)
+
+
+@pytest.mark.parametrize(("share", "colour", "count"), [(0.9, TILES, 0), (0.5, TILES, 1), (0.9, OTHER_TILES, 1)])
+def test_where_the_same_goes_on_nearly_as_high_beside_it_is_no_roof_unless_an_end_tells(share, colour, count):
+    made = build(reach=(-9.0, 11.0))
+    tiles, rest = _sloped(-9.0, 4.0, 4.0), _upright(4.0, 11.0, share * 4.0 * DISTANCE / (DISTANCE + 4.0))
+    assert len(_with_roofs(made, (rest, colour), (tiles, TILES)).found()) == count
 
 
 def test_what_has_the_colour_of_the_wall_is_wall():
