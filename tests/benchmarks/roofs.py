@@ -141,7 +141,7 @@ def _is_true(shape: shapely.Polygon, truth: Truth) -> bool:
     pixels = np.stack(grid, axis=-1).reshape(-1, 2).astype(np.int64)
     number = truth.ids[tuple(pixels[shapely.contains_xy(shape, *pixels.T)].T[::-1])]
     slope = np.where(number == NOTHING, 0.0, truth.frames.quad_slope[number])
-    return bool(((slope > FLATTEST) & (slope < STEEPEST)).mean() > SHOWN)
+    return bool(((slope > FLATTEST) & (slope < STEEPEST)).sum() > SHOWN * len(slope))
 
 
 def _in_photo(scene: Scene, face: Face) -> shapely.Polygon:

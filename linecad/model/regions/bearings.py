@@ -10,14 +10,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from linecad.arrays import Float
-from linecad.geometry import lengths
-from linecad.model.regions.profiles import Profile, Shown, turned_level
+from linecad.geometry import lengths, segment_coordinates
+from linecad.model.regions.profiles import Profile, Shown, about_upright
+from linecad.ties.depth_samples import weighted_median
 
-NORMAL_WIDTH = 1280.0  # px
-NEAR = 4.0  # px at that width, from the middle of a segment to the line that it is of
+NEAR = 4.0  # px at a width of NORMAL_WIDTH, from the middle of a segment to the line that it is of
 ASTRAY = np.sin(np.radians(2.5))  # of it, against that line
 LEAST_PIECE = 0.01  # of the photo's width, of a segment
-SHIFT = 0.25  # px at NORMAL_WIDTH, by which an end of a segment errs across it
+SHIFT = 0.25  # px at that width, by which an end of a segment errs across it
 FURTHEST = np.radians(10.0)  # from the wall's direction to that of its roof
 UNKNOWN = np.radians(3.0)  # error of the wall's direction where no segment tells a better one
 LEAST_ERROR = np.radians(0.3)
@@ -32,7 +32,8 @@ class Bearing:
 
     def turned(self, vector: Float, more: float = 0.0) -> Float:
         """A direction (3,) of the wall, turned as the roof is, and by `more`, rad."""
-        return turned_level(vector, self.turn + more)
+        turned: Float = about_upright(self.turn + more) @ vector
+        return turned
 
 
 def bearing_of(profile: Profile, raw: Float, shown: Shown) -> Bearing:
@@ -40,40 +41,33 @@ def bearing_of(profile: Profile, raw: Float, shown: Shown) -> Bearing:
 
     The weighted median of what they tell; the wall's own, where that agrees or they tell less than it.
     """
-    reach = max(shown.view.camera.width / NORMAL_WIDTH, 1.0)
     columns = np.flatnonzero(profile.is_ridge)[[0, -1]]
-    own = np.concatenate([_on(line[columns], raw, reach, shown) for line in (profile.eave, profile.ridge)])
+    own = np.concatenate([_on(line[columns], raw, shown) for line in (profile.eave, profile.ridge)])
     across = np.diff(own, axis=1)[:, 0, ::-1] * [1.0, -1.0]
-    across *= SHIFT * reach / np.maximum(lengths(across), 1e-9)[:, None]
+    across *= SHIFT * shown.pixel / np.maximum(lengths(across), 1e-9)[:, None]
     turns = _turns(own, profile, shown)
     errors = np.abs(_wrapped(_turns(own + np.stack([across, -across], axis=1), profile, shown) - turns))
     told = (np.abs(turns) < FURTHEST) & (errors < UNKNOWN)
     turns, weight = turns[told], 1 / np.maximum(errors[told], LEAST_ERROR)
     if len(turns) == 0:
         return Bearing(0.0, UNKNOWN)
-    turn = _median(turns, weight)
-    error = float(np.hypot(_median(np.abs(turns - turn), weight), max(1 / np.sqrt((weight**2).sum()), LEAST_ERROR)))
+    turn = weighted_median(turns, weight)
+    error = float(
+        np.hypot(weighted_median(np.abs(turns - turn), weight), max(1 / np.sqrt((weight**2).sum()), LEAST_ERROR))
+    )
     if error > UNKNOWN:
         return Bearing(0.0, UNKNOWN)
     return Bearing(0.0 if abs(turn) < error else turn, error)
 
 
-def _median(values: Float, weight: Float) -> float:
-    """The weighted median of values (N,)."""
-    order = np.argsort(values, kind="stable")
-    share = np.cumsum(weight[order]) / weight.sum()
-    return float(values[order][np.searchsorted(share, 1 / 2)])
-
-
-def _on(line: Float, raw: Float, reach: float, shown: Shown) -> Float:
+def _on(line: Float, raw: Float, shown: Shown) -> Float:
     """Those of the segments that lie on a line (2, 2) px, along most of their length."""
     size = float(lengths(line[1] - line[0]))
-    along = (line[1] - line[0]) / max(size, 1e-9)
-    off = (raw - line[0]) @ np.array([-along[1], along[0]])
-    places = np.sort((raw - line[0]) @ along, axis=1)
+    places, off = segment_coordinates(raw, line)
+    places = np.sort(places, axis=1)
     length = lengths(raw[:, 1] - raw[:, 0])
     inside = np.clip(places, 0, size)
-    on = (np.abs(off.mean(axis=1)) < NEAR * reach) & (np.abs(off[:, 1] - off[:, 0]) < ASTRAY * length)
+    on = (np.abs(off.mean(axis=1)) < NEAR * shown.pixel) & (np.abs(off[:, 1] - off[:, 0]) < ASTRAY * length)
     on &= inside[:, 1] - inside[:, 0] > np.minimum(length, size) / 2
     return np.asarray(raw[on & (length >= LEAST_PIECE * shown.view.camera.width)])
 

@@ -115,11 +115,16 @@ class _Columns:
         """Columns of a line of a wall, and of the ridge above it."""
         return LEAST_WIDTH * self.shown.raster.shape[1] / STEP
 
+    @cached_property
+    def is_above_wall(self) -> Bool:
+        """Below which columns (J,) the wall is seen."""
+        foot = slice(BELOW - FOOT.stop, BELOW - FOOT.start)
+        seen = self.wall.is_shown.ravel()[self.sample[:, foot]] & self.is_inside[:, foot]
+        return np.asarray(seen.mean(axis=1) > 1 / 2)
+
     def runs(self) -> list[tuple[int, int]]:
         """First and last column of each long stretch below which the wall is seen."""
-        foot = slice(BELOW - FOOT.stop, BELOW - FOOT.start)
-        own = (self.wall.is_shown.ravel()[self.sample[:, foot]] & self.is_inside[:, foot]).mean(axis=1) > 1 / 2
-        places = np.flatnonzero(own)
+        places = np.flatnonzero(self.is_above_wall)
         runs = np.split(places, np.flatnonzero(np.diff(places) > GAP) + 1)
         return [(int(run[0]), int(run[-1])) for run in runs if len(run) and len(run) >= self.least]
 
@@ -176,6 +181,7 @@ class _Columns:
             np.where((seen & sky.has_top)[:, None], tops, np.nan), float(np.median(sky.top[told])), self.down(told),
             _contrast(shade, above, below), _contrast(shade, above, beyond),
             (float(upright[above].mean()), float(upright[below].mean())), float(plants[above].mean()),
+            float((told & self.is_above_wall).sum() / self.is_above_wall.sum()),
             (self._goes_on(low, stretch, -1), self._goes_on(low, stretch, 1)),
         )  # fmt: skip
 
@@ -190,7 +196,7 @@ class _Columns:
         near = np.abs(sky.height[places] - stretch.high) < NEARLY_AS_HIGH * (stretch.high - low)
         if len(places) == 0 or (sky.is_open[places] & near).mean() <= 1 / 2:
             return False
-        inside = np.arange(*sorted((end - 2 * BLURRED * way, end - way)))
+        inside = np.clip(end - way * np.arange(1, 2 * BLURRED), stretch.first, stretch.last)
         here, there = (self.sides(own, sky.top)[0] for own in (inside, places))
         return min(len(here), len(there)) < LEAST_TOLD or _contrast(self.shown.raster.shade, here, there) < UNLIKE
 

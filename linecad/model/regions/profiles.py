@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import MAIN, UP, directions_of, is_first, partner
-from linecad.geometry import world_rays
+from linecad.geometry import rotation_about, world_rays
 from linecad.model.regions.labelling import Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 
 RELIEF = 0.03  # log offset within which parallel walls are one below a roof: gutters and dormers stand before the wall
+NORMAL_WIDTH = 1280.0  # px
 NEARLY_NONE = 0.02  # of the samples of a wall
 
 
@@ -29,6 +30,11 @@ class Shown:
     view: View
     labels: Labels
     sky: Bool  # (H, W) for sure
+
+    @property
+    def pixel(self) -> float:
+        """What a length of one pixel in a photo of NORMAL_WIDTH is in this one, px; no less than 1."""
+        return max(self.view.camera.width / NORMAL_WIDTH, 1.0)
 
     @property
     def label(self) -> Int:
@@ -46,11 +52,9 @@ class Shown:
         return np.asarray(values[np.clip(place[..., 1], 0, rows - 1), np.clip(place[..., 0], 0, columns - 1)])
 
 
-def turned_level(vector: Float, angle: float) -> Float:
-    """A world vector (3,), turned about the upright by an angle, rad."""
-    cos, sin = np.cos(angle), np.sin(angle)
-    turned: Float = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]) @ vector
-    return turned
+def about_upright(angle: float) -> Float:
+    """Rotation matrix (3, 3) about the upright, rad, from the first level axis of the world to the second."""
+    return rotation_about(np.array([0.0, 0.0, angle]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,7 +81,7 @@ class Wall:
 
     def turned(self, angle: float, pixel: Float, shown: Shown) -> "Wall":
         """The wall turned by an angle, rad, about the upright through the point of it that a pixel (2,) shows."""
-        normal = turned_level(self.normal, angle)
+        normal = about_upright(angle) @ self.normal
         return replace(self, normal=normal, offset=float(normal @ self.point(shown.rays(pixel))))
 
     def depths(self, rays: Float) -> Float:
@@ -152,6 +156,7 @@ class Profile:
     before_sky: float  # the same of what is above the line and of the sky above that
     uprights: tuple[float, float]  # pixels of upright edges a sample, above and below
     plants: float  # share of what is above
+    of_wall: float  # share of the columns in which the wall is seen below the line, that the ridge is above
     goes_on: tuple[bool, bool]  # left and right, the sky begins nearly at the height of the ridge beside it too
 
     @property

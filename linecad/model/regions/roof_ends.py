@@ -17,8 +17,7 @@ AT_RIDGE, AT_EAVE = 0.025, 0.06  # of the photo's width, from the ends of ridge 
 HIDDEN_EAVE = 0.2  # the same beyond the end of a wall where something else is seen beside it and hides the eave
 AT_CORNER = 0.05  # of a wall's offset, from the foot of a valley to where the next wall meets it
 COVERED = 0.5  # of such a line, by segments
-ON_LINE = 2.0  # px at NORMAL_WIDTH; a segment so near to a line is on it
-NORMAL_WIDTH = 1280.0  # px
+ON_LINE = 2.0  # px at a width of NORMAL_WIDTH; a segment so near to a line is on it
 ASTRAY = np.sin(np.radians(4.0))  # of a segment on it
 LEAST_TURN = np.sin(np.radians(7.0))  # in the photo, between it and the eave
 ALONG = np.sin(np.radians(3.0))  # of a segment, against the axes across the eave: edges of walls are no ends of roofs
@@ -139,7 +138,7 @@ def _covered(line: Float, raw: Float, length: Float, shown: Shown, seen: Int) ->
         return 0.0, np.zeros(len(raw), bool)
     along = (top - foot) / size
     beside = _cross(along, raw - foot)
-    reach = ON_LINE * max(width / NORMAL_WIDTH, 1.0)
+    reach = ON_LINE * shown.pixel
     own = (np.abs(beside) < reach).all(axis=1) & (np.abs(beside[:, 1] - beside[:, 0]) < ASTRAY * length)
     places = np.sort((raw[own] - foot) @ along / size, axis=1)
     own[own] = (places[:, 1] > 0) & (places[:, 0] < 1)

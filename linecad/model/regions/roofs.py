@@ -6,7 +6,7 @@ the slope (`linecad.model.regions.slopes`); where none does, it is the usual one
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -62,7 +62,7 @@ class Sketch:
 class Roof:
     """A sloped plane and the part of the photo that shows it."""
 
-    axis: int  # level direction across the eave
+    axis: int  # level axis of its wall, nearest to the direction across the eave
     slope: float  # rad, of what rises in it from `axis` towards the upright, 0 to pi
     eave: Float  # (3,) a point of it, world
     polygon: shapely.Geometry  # px, what the photo shows of it
@@ -136,7 +136,7 @@ def _as_it_runs(profile: Profile, pixel: Float, sketch: Sketch, shown: Shown) ->
         again = [each for each in again if _may_be_roof(each) and profile.shares(each) > SAME_STRETCH]
         if again:
             profile = max(again, key=lambda each: each.is_ridge.sum())
-            bearing = bearing_of(profile, sketch.raw, shown)
+            bearing = replace(bearing_of(profile, sketch.raw, shown), turn=0.0)
     return profile, bearing
 
 
@@ -163,9 +163,10 @@ def _eaves(wall: Wall, sketch: Sketch, shown: Shown) -> list[Float]:
 
 
 def _may_be_roof(profile: Profile) -> bool:
-    """Whether what is above a line is another thing than the wall, level at the sky, and no more storeys."""
+    """Whether what is above a line is another thing than the wall, and no more storeys."""
     ends = np.flatnonzero(profile.is_ridge)
-    is_seen = profile.is_open.sum() >= LEAST_SEEN * (ends[-1] - ends[0] + 1)
+    above_wall = min(ends[-1], profile.last) - max(ends[0], profile.first) + 1
+    is_seen = profile.is_open.sum() >= LEAST_SEEN * above_wall
     return bool(
         is_seen
         and max(LEAST_RISE, LEAST_SHARE * profile.depth) <= profile.rise <= MOST_RISE * profile.depth
@@ -198,8 +199,7 @@ def _sketched(profile: Profile, bearing: Bearing, sketch: Sketch, shown: Shown) 
     told = slope_of(left.slopes, right.slopes)
     seen_at = profile.high / abs(profile.wall.offset)
     is_low = profile.high - profile.low < LEAST_GUESSED * (profile.low - profile.wall.foot(shown))
-    is_part = profile.is_ridge.sum() < LEAST_OF_WALL * (profile.last - profile.first + 1)
-    is_unlike = seen_at > SEEN_AT or is_low or is_part or any(profile.goes_on)
+    is_unlike = seen_at > SEEN_AT or is_low or profile.of_wall < LEAST_OF_WALL or any(profile.goes_on)
     if left.is_upright or right.is_upright or (told is None and is_unlike):
         return None
     slope = USUAL if told is None else told

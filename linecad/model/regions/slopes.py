@@ -20,7 +20,7 @@ End = Literal["verge", "hip", "valley"]
 
 USUAL, SPREAD = np.radians(45.0), np.radians(9.0)  # of roofs: docs/decisions/0101
 FLATTEST, STEEPEST = np.radians(20.0), np.radians(68.0)
-SHIFT, NORMAL_WIDTH = 1.0, 1280.0  # px at that width by which an end may err in the photo
+SHIFT = 1.0  # px at a width of NORMAL_WIDTH, by which an end may err in the photo
 ERROR = {"verge": np.radians(1.5), "hip": np.radians(5.0), "valley": np.radians(5.0)}  # of a slope by an end seen well
 SQUARE = np.radians(0.75)  # by which a verge may be turned from the right angle to its eave
 ABUTS = np.radians(4.0)  # the same where something is seen beside it: a wall of another house may cut the roof off
@@ -50,8 +50,7 @@ class Edge:
 def slopes_by(edge: Edge, wall: Wall, shown: Shown, may_be: tuple[End, ...]) -> list[Slope]:
     """The slopes that the edge of a roof tells, one for each thing that it may be."""
     run = (edge.top - edge.foot) / np.linalg.norm(edge.top - edge.foot)
-    reach = SHIFT * max(shown.view.camera.width / NORMAL_WIDTH, 1.0)
-    across = reach * np.array([run[1], -run[0]])
+    across = SHIFT * shown.pixel * np.array([run[1], -run[0]])
     found, zero = [], np.zeros(2)
     for end in may_be:
         turn = edge.bearing.error

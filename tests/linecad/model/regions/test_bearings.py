@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from linecad.geometry import central_camera, project
 from linecad.model.regions.bearings import UNKNOWN, Bearing, bearing_of
-from linecad.model.regions.profiles import Shown, Wall, turned_level
+from linecad.model.regions.profiles import Shown, Wall, about_upright
 from linecad.model.regions.segments import View
 from linecad.scene import Camera
 
@@ -28,11 +28,11 @@ def seen(house, camera, back=4.0):
     middle, along = np.array([0.0, DISTANCE, 0.0]), np.array([[-REACH, 0, 0], [REACH, 0, 0]])
     places = [np.array([0, 0, EAVE]), np.array([0, back, RIDGE])]
     rotation = looking(camera)
-    lines = [middle + np.array([turned_level(p + at, house) for p in along]) for at in places]
+    lines = [middle + (along + at) @ about_upright(house).T for at in places]
     segments = np.stack([project(line, CAMERA.matrix, rotation) for line in lines])
     shown = Shown(None, View(CAMERA, rotation, None), None, None)
     drawn = [
-        np.linspace(*project(middle + turned_level(at, house) + along, CAMERA.matrix, rotation), 9) for at in places
+        np.linspace(*project(middle + about_upright(house) @ at + along, CAMERA.matrix, rotation), 9) for at in places
     ]
     profile = SimpleNamespace(wall=WALL, eave=drawn[0], ridge=drawn[1], is_ridge=np.ones(9, bool))
     return profile, segments, shown
@@ -54,6 +54,12 @@ def test_segments_elsewhere_tell_nothing():
     assert (found.turn, found.error) == (0.0, UNKNOWN)
 
 
+def test_segments_that_scatter_tell_nothing():
+    profile, _, shown = seen(0.0, 0.0)
+    found = bearing_of(profile, np.concatenate([seen(house, 0.0)[1] for house in (-0.16, -0.1, 0.0, 0.1, 0.16)]), shown)
+    assert (found.turn, found.error) == (0.0, UNKNOWN)
+
+
 def test_a_single_stray_segment_does_not_turn_it():
     profile, segments, shown = seen(0.06, 0.0)
     short = segments[0, 0] + np.outer([0.3, 0.4], segments[0, 1] - segments[0, 0]) + np.array([[0.0, 1.0], [0.0, -1.0]])
@@ -69,4 +75,4 @@ def test_a_turned_wall_keeps_the_point_about_which_it_is_turned(turn, more, acro
     assert turned.point(shown.rays(pixel)) == pytest.approx(point)
     assert turned.normal @ turned.direction == pytest.approx(0, abs=1e-12)
     assert turned.direction == pytest.approx(Bearing(turn, 0.0).turned(WALL.direction))
-    assert Bearing(turn, 0.0).turned(WALL.normal, more) == pytest.approx(turned_level(WALL.normal, turn + more))
+    assert Bearing(turn, 0.0).turned(WALL.normal, more) == pytest.approx(about_upright(turn + more) @ WALL.normal)
