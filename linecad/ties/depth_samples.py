@@ -130,6 +130,11 @@ def wall_votes(samples: DepthSamples, excess: Float) -> WallVotes:
 
 def weighted_median(values: Float, weight: Float) -> float:
     """The value (N,) at which half of the weight (N,) is reached."""
+    return float(values[median_place(values, weight)])
+
+
+def median_place(values: Float, weight: Float) -> int:
+    """The place of the weighted median of values (N,)."""
     order = np.argsort(values, kind="stable")
     sums = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(sums, sums[-1] / 2)])
+    return int(order[np.searchsorted(sums, sums[-1] / 2)])

@@ -41,7 +41,7 @@ def bearing_of(profile: Profile, raw: Float, shown: Shown) -> Bearing:
 
     The weighted median of what they tell; the wall's own, where that agrees or they tell less than it.
     """
-    columns = np.flatnonzero(profile.is_ridge)[[0, -1]]
+    columns = list(profile.ends)
     own = np.concatenate([_on(line[columns], raw, shown) for line in (profile.eave, profile.ridge)])
     across = np.diff(own, axis=1)[:, 0, ::-1] * [1.0, -1.0]
     across *= SHIFT * shown.pixel / np.maximum(lengths(across), 1e-9)[:, None]
@@ -52,9 +52,8 @@ def bearing_of(profile: Profile, raw: Float, shown: Shown) -> Bearing:
     if len(turns) == 0:
         return Bearing(0.0, UNKNOWN)
     turn = weighted_median(turns, weight)
-    error = float(
-        np.hypot(weighted_median(np.abs(turns - turn), weight), max(1 / np.sqrt((weight**2).sum()), LEAST_ERROR))
-    )
+    scatter, least = weighted_median(np.abs(turns - turn), weight), 1 / np.sqrt((weight**2).sum())
+    error = float(np.hypot(scatter, max(least, LEAST_ERROR)))
     if error > UNKNOWN:
         return Bearing(0.0, UNKNOWN)
     return Bearing(0.0 if abs(turn) < error else turn, error)

@@ -60,7 +60,6 @@ class _SkyLine:
     """Where the sky begins above a line, in J columns."""
 
     top: Int  # (J,) samples above the line
-    has_top: Bool  # (J,) it is seen to begin
     is_open: Bool  # (J,) nothing hides what is between
     height: Float  # (J,) on the wall's plane
     one: Float  # (J,) of one sample more
@@ -136,7 +135,7 @@ class _Columns:
         height = self.wall.heights(self.shown.rays(self.pixels[rows, BELOW + top]))
         one = np.abs(self.wall.heights(self.shown.rays(self.pixels[rows, BELOW + top + 1])) - height)
         is_open = has_top & ~self.is_hidden(top) & np.isfinite(height) & np.isfinite(one)
-        return _SkyLine(top, has_top, is_open, height, one)
+        return _SkyLine(top, is_open, height, one)
 
     def stretches(self, run: tuple[int, int]) -> list["_Stretch"]:
         """Where in a run of columns the sky begins at one height, the widest at each step first."""
@@ -169,16 +168,14 @@ class _Columns:
                 is_ridge[place] = True
                 place += way
         told = stretch.is_ridge
-        above, below, beyond = self.sides(np.flatnonzero(told), sky.top)
+        own = np.flatnonzero(told)
+        above, (below, beyond) = self.above(own), self.beside(own)
         if min(len(above), len(below), len(beyond)) < LEAST_TOLD:
             return None
         shade, upright, plants = self.shown.raster.shade, self.shown.raster.votes[:, UP], self.shown.raster.plants
-        seen = np.zeros(len(outside), bool)
-        seen[run[0] : run[1] + 1] = True
-        tops = self.pixels[np.arange(len(outside)), BELOW + sky.top]
         return Profile(
             self.wall, low, stretch.high, self.eave, ridge, *run, stretch.is_open, is_ridge,
-            np.where((seen & sky.has_top)[:, None], tops, np.nan), float(np.median(sky.top[told])), self.down(told),
+            float(np.median(sky.top[told])), self.down(told),
             _contrast(shade, above, below), _contrast(shade, above, beyond),
             (float(upright[above].mean()), float(upright[below].mean())), float(plants[above].mean()),
             float((told & self.is_above_wall).sum() / self.is_above_wall.sum()),
@@ -197,7 +194,7 @@ class _Columns:
         if len(places) == 0 or (sky.is_open[places] & near).mean() <= 1 / 2:
             return False
         inside = np.clip(end - way * np.arange(1, 2 * BLURRED), stretch.first, stretch.last)
-        here, there = (self.sides(own, sky.top)[0] for own in (inside, places))
+        here, there = self.above(inside), self.above(places)
         return min(len(here), len(there)) < LEAST_TOLD or _contrast(self.shown.raster.shade, here, there) < UNLIKE
 
     def tops(self) -> tuple[Int, Bool]:
@@ -234,17 +231,21 @@ class _Columns:
         above = self.shown.at(self.shown.sky, pixels + (BLURRED + 1) * up)
         return np.asarray(above & ~self.shown.at(self.shown.sky, pixels - BESIDE * up))
 
-    def sides(self, columns: Int, top: Int) -> tuple[Int, Int, Int]:
-        """The samples above the line in some columns, up to the sky, as many of the wall below it, and of the sky."""
-        place = np.arange(REACH)
-        own, height = self.sample[columns], top[columns, None]
-        above = own[:, BELOW:][(place >= BESIDE) & (place <= height - BESIDE)]
+    def above(self, columns: Int) -> Int:
+        """The samples above the line in some columns, up to the sky."""
+        place, height = np.arange(REACH), self.sky_line.top[columns, None]
+        above: Int = self.sample[columns, BELOW:][(place >= BESIDE) & (place <= height - BESIDE)]
+        return above
+
+    def beside(self, columns: Int) -> tuple[Int, Int]:
+        """As many samples of the wall below the line in some columns as are above it, and of the sky above these."""
+        own, height = self.sample[columns], self.sky_line.top[columns, None]
         under = own[:, :BELOW][:, ::-1]
         is_wall = self.wall.is_shown.ravel()[under] & self.is_inside[columns, :BELOW][:, ::-1]
         place = np.arange(BELOW)
         sky = self.is_inside[columns, BELOW:] & (np.arange(REACH) > height + BLURRED)
         beyond = own[:, BELOW:][sky & (np.arange(REACH) <= 2 * height + BLURRED)]
-        return above, under[(place >= 1) & (place <= np.maximum(height, 2 * BESIDE)) & is_wall], beyond
+        return under[(place >= 1) & (place <= np.maximum(height, 2 * BESIDE)) & is_wall], beyond
 
     def down(self, chosen: Bool) -> float:
         """How many samples the wall goes down from the line, in the middle of the chosen columns (J,)."""

@@ -5,6 +5,7 @@ height, in whatever direction the photo looks.
 """
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -36,7 +37,7 @@ class Shown:
         """What a length of one pixel in a photo of NORMAL_WIDTH is in this one, px; no less than 1."""
         return max(self.view.camera.width / NORMAL_WIDTH, 1.0)
 
-    @property
+    @cached_property
     def label(self) -> Int:
         """(H, W)"""
         return self.labels.label[self.labels.cell].reshape(self.raster.shape)
@@ -149,7 +150,6 @@ class Profile:
     last: int
     is_open: Bool  # (J,) of its stretch, nothing hides what is between line and sky
     is_ridge: Bool  # (J,) of its stretch, the sky begins at the height of the ridge
-    top: Float  # (J, 2) px, where the sky begins above the wall; NaN where it is not seen
     rise: float  # samples from the line to the ridge
     depth: float  # samples from the line down to where the wall ends, BELOW at most
     contrast: float  # 0 to 1, of the colours above and below the line
@@ -160,18 +160,18 @@ class Profile:
     goes_on: tuple[bool, bool]  # left and right, the sky begins nearly at the height of the ridge beside it too
 
     @property
-    def reach(self) -> tuple[int, int]:
-        """First column of the ridge, and the one after its last."""
+    def ends(self) -> tuple[int, int]:
+        """First and last column of the ridge."""
         own = np.flatnonzero(self.is_ridge)
-        return int(own[0]), int(own[-1]) + 1
+        return int(own[0]), int(own[-1])
 
     @property
     def middle(self) -> int:
         """The column in the middle of what is seen of the wall below the ridge."""
-        low, high = self.reach
-        return (max(low, self.first) + min(high - 1, self.last)) // 2
+        low, high = self.ends
+        return (max(low, self.first) + min(high, self.last)) // 2
 
     def shares(self, other: "Profile") -> float:
         """Share of the narrower of two ridges, across the photo, that is above or below the other."""
-        (low, high), (start, stop) = (np.sort(each.ridge[each.is_ridge, 0])[[0, -1]] for each in (self, other))
+        (low, high), (start, stop) = (np.sort(each.ridge[list(each.ends), 0]) for each in (self, other))
         return float((min(high, stop) - max(low, start)) / max(min(high - low, stop - start), 1e-9))

@@ -43,7 +43,7 @@ class RoofEnd:
 
 def find_end(profile: Profile, raw: Float, shown: Shown, end: int, bearing: Bearing) -> RoofEnd:
     """The left (0) or the right (1) end of the roof of a profile, by segments `raw` (N, 2, 2) px of any direction."""
-    place = np.flatnonzero(profile.is_ridge)[-end]
+    place = profile.ends[end]
     wall = (profile.first, profile.last)[end]
     foot, top = _line(profile, raw, shown, end)
     points = vanishing_points(shown.view.camera.matrix, shown.view.rotation)
@@ -77,7 +77,7 @@ def _along(profile: Profile, shown: Shown, end: int) -> float:
 def _line(profile: Profile, raw: Float, shown: Shown, end: int) -> tuple[Float | None, Float | None]:
     """Foot and top (2,) px of the line that ends a roof; None where there is none."""
     width = shown.view.camera.width
-    place = np.flatnonzero(profile.is_ridge)[-end]
+    place = profile.ends[end]
     wall = (profile.first, profile.last)[end]
     eave, ridge = profile.eave[[0, -1]], profile.ridge[[0, -1]]
     axes = shown.view.rotation @ np.array([np.eye(3)[UP], profile.wall.normal]).T
@@ -196,7 +196,7 @@ def _is_free(profile: Profile, shown: Shown, line: tuple[Float, Float], end: int
 def _is_upright(profile: Profile, shown: Shown, end: int) -> bool:
     """Whether the sky is seen beside an end of a ridge down to the eave, and a usual roof would not end there."""
     way = 1 if end else -1
-    place = int(np.flatnonzero(profile.is_ridge)[-end])
+    place = profile.ends[end]
     beside: Int = place + way * np.arange(1, OUTSIDE + 1)
     if beside.min() < 0 or beside.max() >= len(profile.eave):
         return False

@@ -164,8 +164,8 @@ def _eaves(wall: Wall, sketch: Sketch, shown: Shown) -> list[Float]:
 
 def _may_be_roof(profile: Profile) -> bool:
     """Whether what is above a line is another thing than the wall, and no more storeys."""
-    ends = np.flatnonzero(profile.is_ridge)
-    above_wall = min(ends[-1], profile.last) - max(ends[0], profile.first) + 1
+    first, last = profile.ends
+    above_wall = min(last, profile.last) - max(first, profile.first) + 1
     is_seen = profile.is_open.sum() >= LEAST_SEEN * above_wall
     return bool(
         is_seen
@@ -231,7 +231,8 @@ def _cut_out(own: _Sketched, others: list[_Sketched], before: list[Roof], shown:
 
 def _carrier(profile: Profile, shown: Shown) -> int:
     """The surface of a wall that is seen right below an eave: a cornice may stand before the rest of the wall."""
-    eave = profile.eave[slice(*profile.reach)]
+    first, last = profile.ends
+    eave = profile.eave[first : last + 1]
     below = shown.at(shown.label, eave + FOOT.start * shown.raster.step * np.array([0.0, 1.0]))
     count = np.bincount(below, minlength=len(shown.labels.surfaces))
     return max(profile.wall.numbers, key=lambda number: int(count[number]))

@@ -15,6 +15,7 @@ from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import RELIEF, GroundOfFeet, Surface, apart, weights_of, with_ground
 from linecad.model.regions.told import Told
 from linecad.scene import Lines, Plane
+from linecad.ties.depth_samples import median_place, weighted_median
 
 ON_GROUND = 0.9  # share of a level line that told ground must cover in the photo, for the line to lie on it
 IN_THE_SKY = "what you called ground lies above the horizon, where no ground can be seen; draw around what is below it"
@@ -86,17 +87,10 @@ def ground_height(ground: shapely.Geometry, lines: Lines, feet: GroundOfFeet | N
     low = -lines.ends[:, :, UP].min(axis=1)
     on_it = np.flatnonzero((lines.axis != UP) & (share >= ON_GROUND) & (low > 0))
     if len(on_it):
-        return float(low[on_it[_middle(low[on_it], weights_of(lines)[on_it])]])
+        return weighted_median(low[on_it], weights_of(lines)[on_it])
     if feet is not None:
         return feet.height
     return float(low.max()) if low.max(initial=0.0) > 0 else None
-
-
-def _middle(values: Float, weights: Float) -> int:
-    """The place of the weighted median of values (N,)."""
-    order = np.argsort(values, kind="stable")
-    weight = np.cumsum(weights[order])
-    return int(order[np.searchsorted(weight, weight[-1] / 2)])
 
 
 def wall_by_edges(
@@ -114,7 +108,7 @@ def wall_by_edges(
     if not len(there):
         return "a wall by four edges is left out: none of its edges is in the model; join one to other lines"
     offsets = components(lines.ends[there, 0], view.turns)[:, normal]
-    best = _middle(offsets, weights_of(lines)[there])
+    best = median_place(offsets, weights_of(lines)[there])
     surface = _surface(normal, float(offsets[best]), there, int(lines.id[there[best]]), planes)
     alike = [each for each in surfaces if (each.kind, each.axis) == ("wall", normal)]
     alike = [each for each in alike if apart(each.offset, surface.offset) < RELIEF]

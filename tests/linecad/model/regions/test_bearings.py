@@ -34,7 +34,7 @@ def seen(house, camera, back=4.0):
     drawn = [
         np.linspace(*project(middle + about_upright(house) @ at + along, CAMERA.matrix, rotation), 9) for at in places
     ]
-    profile = SimpleNamespace(wall=WALL, eave=drawn[0], ridge=drawn[1], is_ridge=np.ones(9, bool))
+    profile = SimpleNamespace(wall=WALL, eave=drawn[0], ridge=drawn[1], ends=(0, 8))
     return profile, segments, shown
 
 
