@@ -13,8 +13,9 @@ from linecad.geometry import world_rays
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.kerbs import ROW, find_kerbs, on_kerbs
+from linecad.model.regions.kerbs import find_kerbs, on_kerbs
 from linecad.model.regions.labelling import Labels
+from linecad.model.regions.lanes import ROW
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
@@ -133,6 +134,48 @@ def test_a_faint_kerb_in_a_grainy_photo_is_found():
     (found,) = find_kerbs(labels, raster, noisy)
     assert found.drop == pytest.approx(np.log1p(0.08), abs=STEP)
     assert found.upper == pytest.approx(np.log(2.0), abs=STEP)
+
+
+NEARLY_ASPHALT, NEARLY_SLABS = (97, 97, 102), (171, 169, 163)
+
+
+@pytest.mark.parametrize(
+    "colours",
+    [(ASPHALT, NEARLY_ASPHALT, SLABS), (ASPHALT, NEARLY_SLABS, SLABS)],
+    ids=["lower", "upper"],
+)
+@pytest.mark.parametrize("side", [-1, 1])
+def test_one_edge_of_a_kerb_may_be_faint(colours, side):
+    (found,) = find_kerbs(*street([side * 2.0], colours=colours))
+    assert (found.along, found.side) == (1, side)
+    assert found.drop == pytest.approx(np.log1p(0.08), abs=STEP)
+    assert found.upper == pytest.approx(np.log(2.0), abs=STEP)
+
+
+@pytest.mark.parametrize(
+    ("distance", "drop", "colours"),
+    [
+        (2.0, 0.08, (SLABS, NEARLY_SLABS, ASPHALT)),  # darker behind: a shadow at the foot of a wall
+        (2.0, 0.08, ((20, 20, 22), (27, 27, 29), (235, 235, 230))),  # a railing before what is sunlit
+        (9.0, 0.08, (ASPHALT, NEARLY_ASPHALT, SLABS)),  # far away
+        (2.0, 0.03, (ASPHALT, NEARLY_ASPHALT, SLABS)),  # too low
+        (2.0, 0.25, (ASPHALT, NEARLY_ASPHALT, SLABS)),  # too high
+        (2.0, 0.08, (LAWN, (66, 126, 46), SLABS)),
+    ],
+    ids=["darker", "railing", "far", "flush", "high", "lawn"],
+)
+def test_what_has_one_faint_edge_may_be_no_kerb(distance, drop, colours):
+    assert find_kerbs(*street([-distance], drop, colours, yaw=0.8 if distance > 8 else 0.0)) == []
+
+
+def test_a_faint_edge_counts_less_than_a_kerb_with_two_clear_ones():
+    """A step of 12 % that is clear on one side of a street, one of 7 % with a faint edge on the other."""
+    labels, raster, view = street([-2.0], 0.12)
+    other = painted(view, [2.0], 0.07, (ASPHALT, NEARLY_ASPHALT, SLABS))
+    rays = world_rays(np.stack(np.meshgrid(np.arange(960.0), np.arange(640.0)), axis=2), CAMERA.matrix, view.rotation)
+    photo = np.where((rays[..., 0] > 0)[..., None], other, view.photo)
+    (found,) = find_kerbs(labels, raster, replace(view, photo=photo))
+    assert (found.side, found.drop) == (-1.0, pytest.approx(np.log1p(0.12), abs=STEP))
 
 
 def test_what_parts_one_road_for_a_while_is_no_kerb():
