@@ -12,6 +12,7 @@ from exporters.textures.layout import cut_ring
 from linecad.arrays import Float
 
 EDGE_ON = 1e-6  # of the normal that points to the viewer: a face with less is seen from its edge
+_TINY = 1e-150  # m, of which the square is nothing
 _SHORTEST = 1e-9  # of the diagonal of the box: what is shorter is a point
 
 Box = tuple[float, float, float, float]
@@ -47,7 +48,8 @@ class Shown:
     @cached_property
     def polygon(self) -> shapely.Geometry:
         """What it covers in the drawing."""
-        polygon = shapely.Polygon(self.rings[0][:, :2], [ring[:, :2] for ring in self.rings[1:]])
+        outline, *holes = (_without_tiny(ring[:, :2]) for ring in self.rings)
+        polygon = shapely.Polygon(outline, holes)
         return polygon if polygon.is_valid else shapely.make_valid(polygon)  # the section may cut it to touching pieces
 
     def heights(self, points: Float) -> Float:
@@ -136,13 +138,19 @@ def _hidden(line: Float, part: tuple[float, float], shown: Shown, touching: floa
     if begin >= end:
         return []
     along = flat[1] - flat[0]
-    covered = shapely.intersection(shapely.LineString(flat[0] + np.array([[begin], [end]]) * along), shown.polygon)
+    ends = _without_tiny(flat[0] + np.array([[begin], [end]]) * along)
+    covered = shapely.intersection(shapely.LineString(ends), shown.polygon)
     intervals = []
     for piece in shapely.get_parts(covered):
         if piece.geom_type == "LineString" and not piece.is_empty:
             at = (shapely.get_coordinates(piece) - flat[0]) @ along / (along @ along)
             intervals.append((float(at.min()), float(at.max())))
     return intervals
+
+
+def _without_tiny(points: Float) -> Float:
+    """The points (V, 2), with 0 for coordinates so small that what is crossed beside them gets lost."""
+    return np.where(np.abs(points) < _TINY, 0.0, points)
 
 
 def _left(begin: float, end: float, hidden: list[tuple[float, float]]) -> list[tuple[float, float]]:

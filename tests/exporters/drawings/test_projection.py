@@ -76,6 +76,13 @@ def test_a_line_that_hardly_rises_is_drawn_whole():
         assert np.array_equal(part[:, :2], [[0, 0], [0, 1]])
 
 
+def test_a_face_whose_corner_is_hardly_off_the_axis_hides_what_is_behind_it():
+    for corner in (2.2250738585e-313, -1e-308, 0.0):
+        shown = shown_faces([rectangle(-1.0, corner, 2.0, 1.0, 2.5625, slope=0.7)], facing(0.0), 3.5)
+        ((_, part),) = visible_parts(np.array([[[0.0, 1.0, 0.0], [0.0, -0.125, 0.0]]]), shown, BOX, 3.5, 0.01)
+        assert np.allclose(part[:, :2], [[0, 0], [0, -0.125]], atol=1e-12)
+
+
 def test_a_face_that_is_seen_from_its_edge_hides_nothing():
     face = rectangle(0, 0, 1, 1, 1)
     assert shown_faces([face], facing(np.pi / 2), 10.0) == []
