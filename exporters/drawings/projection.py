@@ -12,7 +12,7 @@ from exporters.textures.layout import cut_ring
 from linecad.arrays import Float
 
 EDGE_ON = 1e-6  # of the normal that points to the viewer: a face with less is seen from its edge
-_TINY = 1e-150  # m, of which the square is nothing
+_TINY = 1e-150  # m; from 1e-307 on shapely loses crossings
 _SHORTEST = 1e-9  # of the diagonal of the box: what is shorter is a point
 
 Box = tuple[float, float, float, float]

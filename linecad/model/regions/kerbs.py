@@ -30,9 +30,10 @@ from linecad.scene import Plane
 
 FACE = 15  # samples; what is no ground and narrower, between ground, may be a kerb's face
 STEPS = (0.048, 0.14)  # log height of a kerb's face
-CLEAR = 0.2  # of the photo's width, a clear edge whose other edge is seen on average only
+CLEAR = 0.2  # of the photo's width, that a clear edge shows at least where a kerb's other edge is faint
 FAINT, CLEARER = 1.5, 3.0  # CIE L*a*b*, least difference across that one; and times the usual one of its rows
-NEAR = 8.0  # heights of the camera beside it, to which such an edge is looked for; farther away shadows look the same
+NET = 0.5  # share of the difference across a faint edge, by which face and ground differ: beside a line they do not
+NEAR = 8.0  # heights of the camera; such an edge is looked for up to there, since shadows farther away look the same
 SHOWN = 0.4  # share of a clear edge's columns that a row shows at least
 USUAL, VARYING = 0.075, 0.35  # usual log height, 12 cm at 1.6 m, and by how much its log varies
 LONG, SHORT = 0.08, 0.04  # of the photo's width, that both edges show at least; opposite one of the same height
@@ -40,8 +41,8 @@ SAME_STEP = 0.01  # log height within which both sides of a street have one kerb
 OPEN = 0.45  # share of the view of it in which what lies behind is as unlike the road as elsewhere
 AS_UNLIKE = (0.6, 1.6)  # of the usual difference of road and pavement, what is as unlike
 UNLIKE = 6.0  # CIE L*a*b*, least difference between road and pavement
-UNLIKE_ALONE = (12.0, 45.0)  # the same where one edge is faint; walls and railings before what is sunlit differ more
-PLAIN = 0.6  # share of the contrast at its edges that road or face may have in itself at most
+UNLIKE_ALONE = (12.0, 45.0)  # the same where one edge is faint; a railing differs more from what is sunlit behind it
+PLAIN = 0.6  # share of the contrast at a clear edge that road or face may have in itself at most
 GREY = 12.0  # CIE a* and b*, most of a road's colour; lawns, floors of wood and tables are no roads. Shadows are blue
 ROAD, PAVEMENT = 24, 12  # rows of plain road before a kerb and of ground behind it
 SAME_ROAD = 0.015  # log height between the road by its kerb and a level plane of lines that is it
@@ -55,7 +56,7 @@ class Kerb:
     side: float  # of the camera, 1 or -1 along the partner of that axis
     upper: float  # log distance of its upper edge beside the camera, in heights of the camera above the pavement
     drop: float  # log of the camera's height above the road over that above the pavement
-    length: float  # of both its edges in the photo, as a share of its width
+    length: float  # of its clear edges in the photo, where both are seen, as a share of its width
 
     @property
     def weight(self) -> float:
@@ -132,21 +133,22 @@ def find_kerbs(labels: Labels, raster: Raster, view: View) -> list[Kerb]:
     closed = cv2.morphologyEx(on_ground, cv2.MORPH_CLOSE, np.ones((FACE, 1), np.uint8))
     is_ground = (closed.ravel() > 0) & ~raster.plants
     lanes = find_lanes(is_ground, raster, view)
-    every = [(lane, *key) for key, own in lanes.items() for lane in own]
-    found = [kerb for each in every for kerb in _kerbs(*each, LONG)]
+    edges = {key: [(lane, find_edges(lane, LONG)) for lane in own] for key, own in lanes.items()}
+    found = [kerb for key, own in edges.items() for each in own for kerb in _kerbs(*each, *key, LONG)]
     if not found:
-        found = [kerb for each in every for kerb in _half_seen_kerbs(*each)]
+        found = [kerb for key, own in edges.items() for each in own for kerb in _half_seen_kerbs(*each, *key)]
     if not found:
         return []
     best = max(found, key=lambda kerb: kerb.weight)
-    opposite = [kerb for lane in lanes[best.along, -best.side] for kerb in _kerbs(lane, best.along, -best.side, SHORT)]
+    there = best.along, -best.side
+    shorter = [kerb for lane in lanes[there] for kerb in _kerbs(lane, find_edges(lane, SHORT), *there, SHORT)]
+    opposite = shorter + [kerb for kerb in found if (kerb.along, kerb.side) == there]
     opposite = [kerb for kerb in opposite if abs(kerb.drop - best.drop) <= SAME_STEP]
     return [best, *sorted(opposite, key=lambda kerb: -kerb.weight)[:1]]
 
 
-def _kerbs(lane: Lane, along: int, side: float, least: float) -> list[Kerb]:
-    """All bands of a lane that may be the face of a kerb, `least` of the photo's width long or more."""
-    edges = find_edges(lane, least)
+def _kerbs(lane: Lane, edges: list[Edge], along: int, side: float, least: float) -> list[Kerb]:
+    """All bands between edges of a lane that may be the face of a kerb, `least` of the photo's width long or more."""
     found = []
     for lower in edges:
         for upper in edges:
@@ -154,30 +156,34 @@ def _kerbs(lane: Lane, along: int, side: float, least: float) -> list[Kerb]:
             if STEPS[0] <= drop <= STEPS[1]:
                 length = _length_of_kerb(lane, lower, upper)
                 if length >= least:
-                    # An edge lies between its row and the one before.
-                    at = float(np.log(NEAREST) + (upper.row - 0.5) * ROW)
-                    found.append(Kerb(along, side, at, drop, length))
+                    found.append(_kerb(along, side, (lower.row, upper.row), length))
     return found
 
 
-def _half_seen_kerbs(lane: Lane, along: int, side: float) -> list[Kerb]:
-    """All bands of a lane with one clear edge that may be the face of a kerb; the other edge is seen on average."""
+def _kerb(along: int, side: float, rows: tuple[int, int], length: float) -> Kerb:
+    """One between two rows of a lane, the first ones behind its lower and its upper edge."""
+    lower, upper = rows
+    # An edge lies between its row and the one before.
+    return Kerb(along, side, float(np.log(NEAREST) + (upper - 0.5) * ROW), (upper - lower) * ROW, length)
+
+
+def _half_seen_kerbs(lane: Lane, edges: list[Edge], along: int, side: float) -> list[Kerb]:
+    """All bands of a lane with one clear edge that may be the face of a kerb; the other shows in the usual colours."""
     found = []
-    for edge in find_edges(lane, CLEAR):
-        other = _faint_edge(lane, edge)
-        if other is not None and max(edge.row, other) * ROW <= np.log(NEAR / NEAREST):
-            lower, upper = min(edge.row, other), max(edge.row, other)
-            if _is_half_seen(lane, lower, upper, edge):
-                length = float(lane.length[edge.row][edge.columns].sum())
-                at = float(np.log(NEAREST) + (upper - 0.5) * ROW)
-                found.append(Kerb(along, side, at, (upper - lower) * ROW, length))
+    for edge in edges:
+        length = float(lane.length[edge.row][edge.columns].sum())
+        if length >= CLEAR and edge.row * ROW <= np.log(NEAR / NEAREST):
+            faint = _faint_edge(lane, edge)
+            if faint is not None and _is_half_seen(lane, edge, *faint):
+                rows = min(edge.row, faint[0]), max(edge.row, faint[0])
+                found.append(_kerb(along, side, rows, length))
     return found
 
 
-def _faint_edge(lane: Lane, edge: Edge) -> int | None:
-    """The row of the clearest other edge of a kerb's face by the colours along all of an edge; None for none.
+def _faint_edge(lane: Lane, edge: Edge) -> tuple[int, float] | None:
+    """The row of the clearest other edge of a kerb's face by the usual colours along all of an edge; None for none.
 
-    A shadow has one edge, and so has the border of two kinds of paving.
+    And the difference of colours across it. Beside a shadow's edge, or that of two kinds of paving, there is none.
     """
     least, most = (round(step / ROW) for step in STEPS)
     rows = np.arange(edge.row - most - 3 * SIDE, edge.row + most + 3 * SIDE + 1)
@@ -185,21 +191,20 @@ def _faint_edge(lane: Lane, edge: Edge) -> int | None:
     step = np.full(len(rows), np.nan)
     for at in range(SIDE, len(rows) - SIDE):
         step[at] = np.linalg.norm(colour[at : at + SIDE].mean(axis=0) - colour[at - SIDE : at].mean(axis=0))
+    around = [step[max(0, at - SIDE) : at + SIDE + 1] for at in range(len(rows))]
     away = np.abs(rows - edge.row)
     with np.errstate(invalid="ignore"):
-        peak = np.array(
-            [step[at] >= np.nanmax(step[max(0, at - SIDE) : at + SIDE + 1], initial=0) for at in range(len(rows))]
-        )
-        peak &= (away >= least) & (away <= most) & (step >= FAINT)
+        peak = (step >= [np.nanmax(part, initial=0) for part in around]) & (step >= FAINT)
+        peak &= (away >= least) & (away <= most)
     if not peak.any():
         return None
     at = int(np.flatnonzero(peak)[step[peak].argmax()])
     usual = float(np.nanmedian(step[away > SIDE + 1]))
-    return int(rows[at]) if step[at] >= CLEARER * usual else None
+    return (int(rows[at]), float(step[at])) if step[at] >= CLEARER * usual else None
 
 
 def _along(lane: Lane, rows: Int, columns: Bool) -> Float:
-    """The usual colour (M, 3) of rows (M,) of a lane along columns (C,); NaN where little of a row is shown."""
+    """The median colour (M, 3) of rows (M,) of a lane along columns (C,); NaN where little of a row is shown."""
     colour = np.full((len(rows), 3), np.nan)
     for number, row in enumerate(rows.tolist()):
         if 0 <= row < len(lane.shown):
@@ -209,17 +214,23 @@ def _along(lane: Lane, rows: Int, columns: Bool) -> Float:
     return colour
 
 
-def _is_half_seen(lane: Lane, lower: int, upper: int, edge: Edge) -> bool:
-    """Whether a plain, grey road ends between two rows, and what lies behind is lighter, along enough of the view."""
-    road = _along(lane, np.arange(lower - ROAD, lower - 1), edge.columns)
-    pavement = _along(lane, np.arange(upper + 2, upper + PAVEMENT), edge.columns)
-    if np.isnan(road).any() or np.isnan(pavement).any():
+def _is_half_seen(lane: Lane, edge: Edge, other: int, step: float) -> bool:
+    """Whether a plain, grey road ends at an edge and a faint one, with a face between them, along enough of the view.
+
+    The pavement is lighter, and the face unlike both, not only at the faint edge, across which colours differ by
+    `step`: there may be a line.
+    """
+    lower, upper = min(edge.row, other), max(edge.row, other)
+    parts = ((lower - ROAD, lower - 1), (lower + 3, upper - 2), (upper + 2, upper + PAVEMENT))
+    road, face, pavement = (_along(lane, np.arange(*part), edge.columns) for part in parts)
+    if any(np.isnan(part).any() for part in (road, face, pavement)):
         return False
-    before, behind = np.median(road, axis=0), np.median(pavement, axis=0)
+    before, between, behind = (np.median(part, axis=0) for part in (road, face, pavement))
     unlike = float(np.linalg.norm(behind - before))
+    net = min(float(np.linalg.norm(between - before)), float(np.linalg.norm(behind - between)))
     is_plain = _spread(road) <= PLAIN * unlike
     is_grey = abs(before[1]) < GREY and before[2] < GREY
-    is_told = UNLIKE_ALONE[0] <= unlike <= UNLIKE_ALONE[1] and behind[0] > before[0]
+    is_told = UNLIKE_ALONE[0] <= unlike <= UNLIKE_ALONE[1] and behind[0] > before[0] and net >= max(FAINT, NET * step)
     return bool(is_plain and is_grey and is_told and _share_as_unlike(lane, lower, upper, edge.columns) >= OPEN)
 
 
@@ -247,8 +258,10 @@ def _share_as_unlike(lane: Lane, lower: int, upper: int, usual: Bool) -> float:
     """Share of the view of two rows, by length, in which road and pavement differ as in `usual` columns (C,)."""
     near, far = slice(max(0, lower - 2 * SIDE), lower - 1), slice(upper + 2, upper + 2 * SIDE + 1)
     (before, road), (behind, pavement) = mean_of(lane, near), mean_of(lane, far)
-    across = pavement - road
-    middle = np.median(across[usual], axis=0)
+    across, known = pavement - road, usual & before & behind
+    if not known.any():
+        return 0.0
+    middle = np.median(across[known], axis=0)
     share = across @ middle / max(float(middle @ middle), EDGE**2)
     length = np.where(lane.shown[lower] & lane.shown[upper], lane.length[lower], 0.0)
     return float(length[before & behind & (share > AS_UNLIKE[0]) & (share < AS_UNLIKE[1])].sum() / length.sum())

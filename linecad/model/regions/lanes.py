@@ -122,7 +122,7 @@ def _lanes_of(places: dict[tuple[int, float], list[_Places]], photo: NDArray[np.
 
 def find_edges(lane: Lane, least: float) -> list[Edge]:
     """The rows of a lane at which the colour changes along `least` of the photo's width, the longest first."""
-    across, seen = _differences(lane)
+    across, seen = differences_of(lane)
     contrast = np.linalg.norm(across, axis=2)
     peak = (contrast > EDGE) & (contrast >= cv2.dilate(contrast, np.ones((2 * SIDE - 1, 1))))
     near = (cv2.dilate(peak.astype(np.uint8), np.ones((3, 1), np.uint8)) > 0) & seen
@@ -144,7 +144,7 @@ def find_edges(lane: Lane, least: float) -> list[Edge]:
     return found
 
 
-def _differences(lane: Lane) -> tuple[NDArray[np.float32], Bool]:
+def differences_of(lane: Lane) -> tuple[NDArray[np.float32], Bool]:
     """By how much (R, C, 3) the SIDE rows from each on differ from those before it, and where (R, C) all are shown."""
     colour = np.where(lane.shown[..., None], lane.colour, 0)
     sums = np.concatenate([np.zeros((1, *colour.shape[1:]), np.float32), np.cumsum(colour, axis=0)])
