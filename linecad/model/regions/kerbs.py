@@ -168,7 +168,7 @@ def _kerb(along: int, side: float, rows: tuple[int, int], length: float) -> Kerb
 
 
 def _half_seen_kerbs(lane: Lane, edges: list[Edge], along: int, side: float) -> list[Kerb]:
-    """All bands of a lane with one clear edge that may be the face of a kerb; the other shows in the usual colours."""
+    """All bands of a lane with one clear edge that may be the face of a kerb; the other shows in median colours."""
     found = []
     for edge in edges:
         length = float(lane.length[edge.row][edge.columns].sum())
@@ -181,9 +181,9 @@ def _half_seen_kerbs(lane: Lane, edges: list[Edge], along: int, side: float) -> 
 
 
 def _faint_edge(lane: Lane, edge: Edge) -> tuple[int, float] | None:
-    """The row of the clearest other edge of a kerb's face by the usual colours along all of an edge; None for none.
+    """The row of a kerb's other edge, clearest in the median colours along an edge, and the difference across it.
 
-    And the difference of colours across it. Beside a shadow's edge, or that of two kinds of paving, there is none.
+    None where there is none, as beside the edge of a shadow, or of two kinds of paving.
     """
     least, most = (round(step / ROW) for step in STEPS)
     rows = np.arange(edge.row - most - 3 * SIDE, edge.row + most + 3 * SIDE + 1)
