@@ -221,37 +221,45 @@ def _is_half_seen(lane: Lane, edge: Edge, other: int, step: float) -> bool:
     `step`: there may be a line.
     """
     lower, upper = min(edge.row, other), max(edge.row, other)
-    parts = ((lower - ROAD, lower - 1), (lower + 3, upper - 2), (upper + 2, upper + PAVEMENT))
-    road, face, pavement = (_along(lane, np.arange(*part), edge.columns) for part in parts)
+    road, face, pavement = (_along(lane, np.arange(*rows), edge.columns) for rows in _parts(lower, upper))
     if any(np.isnan(part).any() for part in (road, face, pavement)):
         return False
     before, between, behind = (np.median(part, axis=0) for part in (road, face, pavement))
     unlike = float(np.linalg.norm(behind - before))
     net = min(float(np.linalg.norm(between - before)), float(np.linalg.norm(behind - between)))
     is_plain = _spread(road) <= PLAIN * unlike
-    is_grey = abs(before[1]) < GREY and before[2] < GREY
     is_told = UNLIKE_ALONE[0] <= unlike <= UNLIKE_ALONE[1] and behind[0] > before[0] and net >= max(FAINT, NET * step)
-    return bool(is_plain and is_grey and is_told and _share_as_unlike(lane, lower, upper, edge.columns) >= OPEN)
+    return bool(
+        is_plain and _is_grey(before) and is_told and _share_as_unlike(lane, lower, upper, edge.columns) >= OPEN
+    )
 
 
 def _length_of_kerb(lane: Lane, lower: Edge, upper: Edge) -> float:
     """The length, as a share of the photo's width, of the band between two edges if it is a kerb's face, else 0."""
-    first, last = max(0, lower.row - ROAD), upper.row + PAVEMENT
+    last = upper.row + PAVEMENT
     if last > len(lane.shown):
         return 0.0
     both = lower.columns & upper.columns & lane.shown[upper.row : last].all(axis=0)
     length = float(lane.length[lower.row][both].sum())
     if length == 0 or _share_as_unlike(lane, lower.row, upper.row, both) < OPEN:
         return 0.0
-    road = np.median(lane.colour[first : lower.row - 1, both], axis=1)
-    face = np.median(lane.colour[lower.row + 3 : upper.row - 2, both], axis=1)
-    pavement = np.median(lane.colour[upper.row + 2 : last, both], axis=1)
+    parts = _parts(lower.row, upper.row)
+    road, face, pavement = (np.median(lane.colour[max(0, first) : end, both], axis=1) for first, end in parts)
     middle = [np.median(part, axis=0) for part in (road, face, pavement)]
     at_lower, at_upper = (float(np.linalg.norm(middle[number + 1] - middle[number])) for number in range(2))
     is_plain = _spread(road) <= PLAIN * at_lower and _spread(face) <= PLAIN * min(at_lower, at_upper)
     is_told = min(at_lower, at_upper) >= EDGE and np.linalg.norm(middle[2] - middle[0]) >= UNLIKE
-    is_grey = abs(middle[0][1]) < GREY and middle[0][2] < GREY
-    return length if is_plain and is_told and is_grey else 0.0
+    return length if is_plain and is_told and _is_grey(middle[0]) else 0.0
+
+
+def _parts(lower: int, upper: int) -> tuple[tuple[int, int], ...]:
+    """From which row on and up to which the road is, the face and the pavement, of a kerb between two rows."""
+    return (lower - ROAD, lower - 1), (lower + 3, upper - 2), (upper + 2, upper + PAVEMENT)
+
+
+def _is_grey(colour: Float) -> bool:
+    """Whether a road may have a colour (3,)."""
+    return bool(abs(colour[1]) < GREY and colour[2] < GREY)
 
 
 def _share_as_unlike(lane: Lane, lower: int, upper: int, usual: Bool) -> float:

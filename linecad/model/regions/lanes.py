@@ -16,6 +16,7 @@ from linecad.directions import UP, directions_of, partner
 from linecad.geometry import lengths
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
+from linecad.ties.depth_samples import weighted_median
 
 NEAREST, FURTHEST = 0.5, 12.0  # of what is looked at beside the camera, in heights of the camera
 ROW = 0.005  # log of the distance beside the camera
@@ -136,7 +137,8 @@ def find_edges(lane: Lane, least: float) -> list[Edge]:
         row = row - 1 + int(exact[row - 1 : row + 2].argmax())
         if any(abs(row - edge.row) < SIDE for edge in found):
             continue
-        usual = _median(across[row][near[row]], lane.length[row][near[row]])
+        colours, weight = across[row][near[row]], lane.length[row][near[row]]
+        usual = np.array([weighted_median(channel, weight) for channel in colours.T])
         size = float(usual @ usual)
         columns = near[row] & (across[row] @ usual > SAME_WAY * size)
         if size >= EDGE**2 and lane.length[row][columns].sum() >= least:
@@ -164,13 +166,3 @@ def mean_of(lane: Lane, rows: slice) -> tuple[Bool, NDArray[Any]]:
     shown = lane.shown[rows]
     count = shown.sum(axis=0)
     return count > 0, (lane.colour[rows] * shown[..., None]).sum(axis=0) / np.maximum(count, 1)[:, None]
-
-
-def _median(values: NDArray[np.float32], weight: Float) -> Float:
-    """The weighted median (3,) of colours (M, 3)."""
-    found = np.zeros(3)
-    for channel in range(3):
-        order = np.argsort(values[:, channel], kind="stable")
-        sums = np.cumsum(weight[order])
-        found[channel] = values[order[int(np.searchsorted(sums, sums[-1] / 2))], channel]
-    return found

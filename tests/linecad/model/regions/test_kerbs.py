@@ -189,11 +189,10 @@ def test_what_hides_half_of_a_pavement_hides_no_kerb(hidden):
     labels, raster, view = street([-2.0], colours=(ASPHALT, NEARLY_SLABS, SLABS))
     before = shapely.intersection(beyond(view, 2.02), shapely.box(-0.5, -0.5, hidden - 0.5, 639.5))
     cells = [cell for old in labels.cells for cell in (old.difference(before), old.intersection(before)) if cell.area]
-    label = [labels.clutter if before.contains(cell.point_on_surface()) else None for cell in cells]
-    below = labels.cells[int(np.flatnonzero(labels.label == 0)[0])]
+    (below,) = (old for old, number in zip(labels.cells, labels.label, strict=True) if number == 0)
+    middle = [cell.point_on_surface() for cell in cells]
     label = [
-        number if number is not None else 0 if below.contains(cell.point_on_surface()) else labels.sky
-        for number, cell in zip(label, cells, strict=True)
+        labels.clutter if before.contains(place) else 0 if below.contains(place) else labels.sky for place in middle
     ]
     cell = partition.draw(cells, raster.shape, raster.step)
     (found,) = find_kerbs(replace(labels, cells=cells, label=np.array(label), cell=cell), raster, view)
