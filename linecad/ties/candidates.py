@@ -98,6 +98,7 @@ class Pair:
             "connected": connected,
             "plane of it": max(implied, default=0.0),
             "plane beside": max(more, default=0.0),
+            "overlap": max((_overlap(plane) * min(plane.shares) for plane in at_once), default=0.0),
         }
         return self._candidate("bundle", bundle.log_ratio, own)
 
@@ -112,6 +113,7 @@ class Pair:
             "most lines": float(np.log(max(plane.lines))),
             "rank": float(plane.rank),
             "horizontal": float(plane.normal == 2),
+            "overlap": _overlap(plane),
             "supported": supported,
             "connected": connected,
         }
@@ -197,6 +199,11 @@ def _log_odds(probability: float) -> float:
     """Bounded, as no feature may run away."""
     odds = probability / max(1.0 - probability, 1e-9)
     return float(np.clip(np.log(max(odds, 1e-9)), -MOST_LOG_ODDS, MOST_LOG_ODDS))
+
+
+def _overlap(plane: SharedPlane) -> float:
+    """How much of two main planes is one above the other: of lesser ones it tells nothing."""
+    return plane.overlap if plane.rank == 0 else 0.0
 
 
 def _is_new(log_ratio: float, taken: list[float]) -> bool:

@@ -7,7 +7,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from linecad.arrays import Float, Int
-from linecad.directions import count_of, lies_across
+from linecad.directions import UP, count_of, lies_across, partner
+from linecad.geometry import world_rays
 from linecad.ties.setting import Setting, densest_groups, sample
 
 WIDTH = 0.008  # log offset within which lines lie in one plane
@@ -15,6 +16,7 @@ MOST = 4  # planes of a body on one side of the camera, by length of their lines
 LONGEST = 400.0  # px of a line that count
 LEAST_LINES = 2
 WORST_RANK = 2  # of both planes together
+NEARLY_ALL = (2, 98)  # percentiles of a plane's points along it, between which it reaches
 INDUCED = 0.003  # log ratio, and INDUCED_CONNECTED of the fits: a plane that the fit itself made one tells nothing
 INDUCED_CONNECTED = 0.2
 
@@ -42,6 +44,7 @@ class SharedPlane:
     shares: tuple[float, float]
     lines: tuple[int, int]
     rank: int  # of both together
+    overlap: float  # of the shorter one's reach along the wall, that the other has too; 0 for level planes
 
 
 def find_planes_of_bodies(setting: Setting) -> list[list[BodyPlane]]:
@@ -81,17 +84,40 @@ def find_shared_planes(setting: Setting) -> list[SharedPlane]:
     planes = [(body, plane) for body, own in enumerate(find_planes_of_bodies(setting)) for plane in own]
     points = [sample(setting.graph.segments.ends[plane.lines] * setting.scale) for _, plane in planes]
     trees = [cKDTree(places) for places in points]
+    reach = [_reach_along(setting, plane) for _, plane in planes]
     found = []
     for (number, (first, one)), (place, (second, other)) in combinations(enumerate(planes), 2):
         if first == second or (one.normal, one.side) != (other.normal, other.side):
             continue
         if one.rank + other.rank <= WORST_RANK:
             distance = float(trees[number].query(points[place])[0].min())
-            found.append(_shared((first, second), one, other, distance))
+            overlap = _overlap(reach[number], reach[place])
+            found.append(_shared((first, second), one, other, distance, overlap))
     return found
 
 
-def _shared(bodies: tuple[int, int], one: BodyPlane, other: BodyPlane, distance: float) -> SharedPlane:
+def _reach_along(setting: Setting, plane: BodyPlane) -> tuple[float, float]:
+    """From where to where an upright plane's lines reach along it, at distance 1; nothing for a level plane."""
+    if plane.normal == UP:
+        return np.inf, -np.inf
+    sight = setting.sight
+    rays = world_rays(sample(setting.graph.segments.ends[plane.lines]), sight.matrix, sight.rotation)
+    before = rays[rays[:, plane.normal] * plane.side > 0]
+    if not len(before):
+        return np.inf, -np.inf
+    along = before[:, int(partner(plane.normal))] / np.abs(before[:, plane.normal])
+    low, high = np.percentile(along, NEARLY_ALL)
+    return float(low), float(high)
+
+
+def _overlap(one: tuple[float, float], other: tuple[float, float]) -> float:
+    """Share of the shorter of two intervals that lies in the other."""
+    shorter = min(one[1] - one[0], other[1] - other[0])
+    both = min(one[1], other[1]) - max(one[0], other[0])
+    return float(np.clip(both / shorter, 0.0, 1.0)) if shorter > 0 else 0.0
+
+
+def _shared(bodies: tuple[int, int], one: BodyPlane, other: BodyPlane, distance: float, overlap: float) -> SharedPlane:
     return SharedPlane(
         bodies,
         other.log_offset - one.log_offset,
@@ -100,6 +126,7 @@ def _shared(bodies: tuple[int, int], one: BodyPlane, other: BodyPlane, distance:
         (one.share, other.share),
         (len(one.lines), len(other.lines)),
         one.rank + other.rank,
+        overlap,
     )
 
 

@@ -1,7 +1,8 @@
 """The table of `linecad.ties.weights`: log-odds that a candidate is right, for each unit of a feature.
 
 Logistic regression with a small ridge, by tests/benchmarks/ties.py (docs/results/ties.md). Do not edit by hand. The
-ground was fitted last, by its `--refit` (docs/decisions/0129), and one of its features after that (0135).
+ground was fitted last, by its `--refit` (docs/decisions/0129), and one of its features after that (0135), as were the
+overlaps of planes and bundles (0152).
 """
 
 from linecad.ties.candidates import Kind
@@ -38,6 +39,7 @@ LOG_ODDS: dict[Kind, dict[str, float]] = {
         "connected": -1.9727,
         "plane of it": 1.1802,
         "plane beside": 3.6841,
+        "overlap": 1.8246,
     },
     "plane": {
         "near": -0.3609,
@@ -59,6 +61,7 @@ LOG_ODDS: dict[Kind, dict[str, float]] = {
         "most lines": -0.0088,
         "rank": 0.0671,
         "horizontal": 0.0684,
+        "overlap": 1.0045,
         "supported": 3.6474,
         "connected": -0.5566,
     },

@@ -108,6 +108,16 @@ def test_walls_that_nothing_joins_are_tied_by_their_plane(row, build_setting):
     assert plane.log_ratio == pytest.approx(-0.5)
 
 
+@pytest.mark.parametrize(("rank", "overlap"), [(0, 0.75), (1, 0.0)])
+def test_how_far_walls_stand_one_above_the_other_tells_of_main_planes(row, build_setting, monkeypatch, rank, overlap):
+    known = SharedPlane((0, 1), -0.5, 1, 10.0, (0.5, 0.25), (5, 5), rank, 0.75)
+    monkeypatch.setattr(linecad.ties.candidates, "find_shared_planes", lambda _: [known])
+    (plane,) = of_kind(candidates_of(build_setting(row(0), moved=(0.3, -0.2))), "plane")
+    assert plane.features["overlap"] == overlap
+    (bundle,) = of_kind(candidates_of(build_setting(row(2), moved=(0.3, -0.2))), "bundle")
+    assert bundle.features["overlap"] == pytest.approx(0.25 * overlap)  # as far as it is the bodies' plane
+
+
 @pytest.mark.parametrize(("by", "planes"), [(0.9 * INDUCED, 0), (1.1 * INDUCED, 1)])
 def test_a_plane_that_the_fit_made_is_no_candidate(row, build_setting, by, planes):
     setting = build_setting(row(0), moved=(by,))
@@ -201,7 +211,7 @@ def test_the_planes_at_the_ratio_of_a_bundle_count_by_their_larger_share(row, bu
         (2, 0.0, (0.1, 0.1)),
         (0, 0.02, (1, 1)),
     ]
-    planes = [SharedPlane((0, 1), ratio, normal, 1.0, share, (5, 5), 0) for normal, ratio, share in shares]
+    planes = [SharedPlane((0, 1), ratio, normal, 1.0, share, (5, 5), 0, 0.0) for normal, ratio, share in shares]
     monkeypatch.setattr(linecad.ties.candidates, "find_shared_planes", lambda _: planes)
     (bundle,) = of_kind(candidates_of(setting), "bundle")
     assert (bundle.features["plane of it"], bundle.features["plane beside"]) == (0.5, 0.3)

@@ -26,7 +26,7 @@ def walls(build_wall, *places):
 
 
 def shared_of(bodies=(0, 1), log_ratio=0.0):
-    return SharedPlane(bodies, log_ratio, 1, 10.0, (0.5, 0.5), (5, 5), 0)
+    return SharedPlane(bodies, log_ratio, 1, 10.0, (0.5, 0.5), (5, 5), 0, 0.0)
 
 
 @pytest.mark.parametrize("swapped", [False, True])
@@ -39,6 +39,41 @@ def test_facades_of_one_row_share_a_plane(build_town, build_row, build_setting, 
     assert found.shares == (1.0, 1.0)
     assert found.lines == (24, 24)
     assert found.distance == pytest.approx(2.0 * 3000 / 10, rel=0.01)  # from -1.2 to 0.8 at 10
+
+
+LOW, HIGH = np.linspace(-2.6, -0.6, 5), np.linspace(0.5, 2.5, 5)
+
+
+@pytest.mark.parametrize(
+    ("across", "overlap"),
+    [
+        (np.linspace(-4.0, -1.0, 6), 1.0),  # over all of the lower wall
+        (np.linspace(-3.0, -2.0, 6), 1.0),  # shorter than it, and within
+        (np.linspace(-2.5, 0.5, 6), 0.5),
+        (np.linspace(-0.8, 2.2, 6), 0.0),  # beside it
+    ],
+)
+def test_walls_one_above_the_other_overlap(build_town, build_wall, build_setting, across, overlap):
+    seen = build_town(build_wall(1, 9.0, ACROSS, LOW), build_wall(1, 9.0, across, HIGH))
+    for moved in ((), (0.3, -0.2)):
+        (found,) = (shared for shared in find_shared_planes(build_setting(seen, moved=moved)) if shared.normal == 1)
+        assert found.overlap == pytest.approx(overlap, abs=0.02)
+
+
+@pytest.mark.parametrize("place", [-3.0, 3.0])
+def test_walls_to_the_side_overlap_by_how_far_away_their_parts_are(build_town, build_wall, build_setting, place):
+    seen = build_town(
+        build_wall(0, place, np.linspace(8.0, 12.0, 6), LOW), build_wall(0, place, np.linspace(10.0, 14.0, 6), HIGH)
+    )
+    (found,) = (shared for shared in find_shared_planes(build_setting(seen)) if shared.normal == 0)
+    assert found.overlap == pytest.approx(0.5, abs=0.02)
+
+
+def test_level_planes_do_not_overlap(build_town, build_setting):
+    steps = [[(0, (x, y, -2.0), (x + 2, y, -2.0)) for y in (8.0, 9.0)] + [(1, (x, 8.0, -2.0), (x, 9.0, -2.0))]
+             for x in (-2.5, 0.5)]  # fmt: skip
+    (found,) = (shared for shared in find_shared_planes(build_setting(build_town(*steps))) if shared.normal == 2)
+    assert found.overlap == 0.0
 
 
 def test_the_ratio_of_walls_at_two_depths_puts_them_into_one_plane(build_town, build_row, build_setting):
