@@ -56,7 +56,7 @@ class Known:
         return next((surface.offset for surface in self.surfaces if surface.kind == "ground"), -np.inf)
 
     def box(self, number: int) -> Float:
-        """Low and high components (2, K) of the lines of a surface, or of what a depth map shows of it."""
+        """Low and high components (2, K) of the lines of a surface, or of what else tells of it."""
         known = self.surfaces[number].box
         if known is not None:
             return known.copy()

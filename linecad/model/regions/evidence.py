@@ -36,7 +36,7 @@ WALLED_COST = 0.5  # of ground and ceiling behind a wall
 ROOM_COST = 3.0  # the same below a ceiling, behind all walls there or the last of a side: walls close a room
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
-MAPPED_COST = 0.8  # of a wall without lines, which a depth map shows or its foot
+MAPPED_COST = 0.8  # of a wall where no line is near, which a depth map shows or its foot
 CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
 GREEN_COST = 0.5  # of a wall; what is green grows
 FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
@@ -110,9 +110,10 @@ def is_green(raster: Raster) -> Bool:
 
 
 def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
-    """Cost (S,) of one surface by its lines, and by those that are behind it; of one without lines, by its box."""
-    if surface.box is not None and len(surface.lines) == 0:
-        return MAPPED_COST + cost_outside(surface, raster, depth)
+    """Cost (S,) of one surface by its lines, and by those that are behind it, or by its box where that costs less."""
+    within = None if surface.box is None else MAPPED_COST + cost_outside(surface, raster, depth)
+    if within is not None and len(surface.lines) == 0:
+        return within
     is_own = np.zeros(len(lines), bool)
     is_own[surface.lines] = True
     own = is_own[raster.line]
@@ -133,7 +134,7 @@ def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) 
         cost[beside] += THROUGH_COST * (off <= SEEN_THROUGH) + BESIDE_COST * np.exp(-off / REACH) * (off < near[beside])
     if surface.kind not in ("ground", "ceiling"):
         cost += _outside(raster, lines, surface, depth)
-    return cost
+    return cost if within is None else np.minimum(cost, within)
 
 
 def _is_grazing(raster: Raster, surface: Surface) -> bool:

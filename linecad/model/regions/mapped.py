@@ -229,7 +229,8 @@ def level_of_map(raster: Raster) -> float | None:
 
 def is_of_map_at(surface: Surface, place: Surface) -> bool:
     """Whether a surface is a wall without lines, such as a map shows, where another one is, within SAME_LEVEL."""
-    return surface.box is not None and surface.axis == place.axis and apart(surface.offset, place.offset) < SAME_LEVEL
+    is_without = surface.box is not None and len(surface.lines) == 0
+    return is_without and surface.axis == place.axis and apart(surface.offset, place.offset) < SAME_LEVEL
 
 
 def cost_outside(surface: Surface, raster: Raster, depth: Float) -> Float:

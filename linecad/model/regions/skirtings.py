@@ -1,10 +1,12 @@
-"""Plain walls of a room, of which nothing shows but where they meet the floor.
+"""Plain walls of a room, of which little shows but where they meet the floor.
 
 A wall without a picture or a door has no line of its own: floor and ceiling went on behind it, and the photo of the
-wall was painted on the floor. But its skirting is a line on the floor, and nothing lies farther off on that side.
+wall was painted on the floor. But its skirting is a line on the floor, and nothing lies farther off on that side. Where
+the wall has lines at one end only, as of a door frame, the rest of it is told by its skirting.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -36,40 +38,68 @@ class _Room:
     weight: Float  # (N,) the same, less where their place is unsure
     on_floor: Bool  # (N,)
 
-    def skirting(self, along: int, side: float) -> Surface | None:
-        """The wall over the farthest skirting along an axis on one side; None where there is none, or another wall."""
+    def last_wall(self, normal: int, side: float) -> int | None:
+        """Which of the surfaces is the farthest wall on one side."""
+        there = [number for number, each in enumerate(self.surfaces)
+                 if each.kind == "wall" and each.axis == normal and side * each.offset > 0]  # fmt: skip
+        return max(there, key=lambda number: abs(self.surfaces[number].offset), default=None)
+
+    def plain_wall(self, along: int, side: float) -> Surface | None:
+        """A wall without lines over the farthest skirting along an axis on one side; None where there is none."""
         normal = int(partner(along))
-        walls = [each for each in self.surfaces if each.kind == "wall" and each.axis in (along, normal)]
-        is_walled = any(each.axis == normal and side * each.offset > 0 for each in walls)
-        if is_walled or not walls:  # a frame without walls may be that of a table
-            return None
+        if not any(each.kind == "wall" and each.axis in (along, normal) for each in self.surfaces):
+            return None  # a frame without walls may be that of a table
         group = self._last(np.flatnonzero((self.axis == along) & self.on_floor), side, normal)
-        if group is None:
-            return None
+        box = None if group is None else self._box(group, side, along)
+        return None if box is None else Surface("wall", normal, float(box[0, normal]), np.zeros(0, np.int64), None, box)
+
+    def over_skirting(self, wall: Surface, along: int, side: float) -> Surface:
+        """A wall as far as its skirting reaches, up to the ceiling: what is plain there is seen of it too."""
+        group = self._at(np.flatnonzero((self.axis == along) & self.on_floor), wall.offset, wall.axis)
+        box = None if group is None else self._box(group, side, along)
+        if box is None:
+            return wall
+        reach = [self.ends[wall.lines][:, :, along].ravel(), box[:, along]]
+        reach += [] if wall.box is None else [wall.box[:, along]]
+        box[:, along], box[:, wall.axis] = _range(np.concatenate(reach)), wall.offset
+        return replace(wall, box=box)
+
+    def _box(self, group: Int, side: float, along: int) -> Float | None:
+        """Low and high components (2, K) of the wall over a skirting of these lines; None where that is of no wall."""
+        normal = int(partner(along))
         longest = group[int(self.length[group].argmax())]
         offset, reach = float(self.ends[longest, 0, normal]), self.ends[group, :, along]
         farther = (side * self.ends[:, :, normal]).max(axis=1) > BEYOND * abs(offset)
         if abs(offset) < -NEAREST * self.floor or self.weight[farther].sum() > MOST_BEYOND * self.weight.sum():
             return None
-        low, high = float(reach.min()), float(reach.max())
+        low, high = _range(reach)
         if max(abs(low), abs(high)) > abs(offset):  # it runs towards the camera, beside which a photo shows no foot
             low, high = min(low, 0.0), max(high, 0.0)
         box = np.full((2, self.ends.shape[2]), offset)
         box[:, UP], box[:, along] = (self.floor, self.ceiling), (low, high)
-        return Surface("wall", normal, offset, np.zeros(0, np.int64), None, box)
+        return box
 
     def _last(self, rows: Int, side: float, normal: int) -> Int | None:
         """Those of some lines that are farthest off on a side and at one place, and long enough together."""
-        offset = dict(zip(rows.tolist(), self.ends[rows, 0, normal].tolist(), strict=True))
-        for row in sorted(offset, key=lambda each: -side * offset[each]):
-            group = np.array([each for each in offset if apart(offset[each], offset[row]) < RELIEF], np.int64)
-            if side * offset[row] > 0 and self.length[group].sum() >= LEAST_LENGTH:
+        offset = self.ends[rows, 0, normal]
+        for place in sorted(offset[side * offset > 0].tolist(), key=abs, reverse=True):
+            group = self._at(rows, place, normal)
+            if group is not None:
                 return group
         return None
 
+    def _at(self, rows: Int, place: float, normal: int) -> Int | None:
+        """Those of some lines that are at one place, None where they are not long enough together."""
+        own = rows[[apart(offset, place) < RELIEF for offset in self.ends[rows, 0, normal].tolist()]]
+        return own if self.length[own].sum() >= LEAST_LENGTH else None
+
+
+def _range(values: Float) -> tuple[float, float]:
+    return float(values.min()), float(values.max())
+
 
 def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns: Turns) -> list[Surface]:
-    """The surfaces of a room, and behind them a plain wall on each side that has none but a skirting.
+    """The surfaces of a room, walls as far as their skirtings reach; behind them plain ones that have no other line.
 
     `turns` are those of further frames. What has no floor or no ceiling is no room, and gets none.
     """
@@ -82,5 +112,11 @@ def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns:
     weight = weights_of(lines) / camera.width
     room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, length, weight, on_floor)
     axes = [axis for axis in range(ends.shape[2]) if axis != UP]
-    found = [room.skirting(along, side) for along in axes for side in (1.0, -1.0)]
-    return [*surfaces, *filter(None, found)]
+    found, new = list(surfaces), []
+    for along, side in product(axes, (1.0, -1.0)):
+        number = room.last_wall(int(partner(along)), side)
+        if number is None:
+            new.append(room.plain_wall(along, side))
+        else:
+            found[number] = room.over_skirting(surfaces[number], along, side)
+    return [*found, *filter(None, new)]

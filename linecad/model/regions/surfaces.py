@@ -37,7 +37,7 @@ class Surface:
     offset: float
     lines: Int  # (M,) rows of the scene's lines
     plane: int | None  # id of the plane that stands for it; None for one without lines of its own
-    box: Float | None = None  # (2, K) low and high components of a wall without lines
+    box: Float | None = None  # (2, K) low and high components of a wall, where more than its lines tells them
     price: float = 1.0  # of having it, in that of one whose place no other surface tells
 
 

@@ -103,6 +103,19 @@ def test_a_wall_costs_more_away_from_its_lines(house, raster):
     assert costs[sample(700, 120)] > costs[sample(700, 190)] > costs[on_line].max()
 
 
+def test_a_wall_costs_no_more_in_its_box_than_one_without_lines(house, raster):
+    rows = [row for row in range(len(house.lines)) if (house.lines.ends[row, :, 1] == 8).all()][:3]
+    ends = house.lines.ends[house.lines.axis != 1]
+    box = np.array([ends.min(axis=(0, 1)), ends.max(axis=(0, 1))])
+    box[:, 1] = 8.0
+    wide = replace(wall(8.0, rows), box=box)
+    costs = [sample_costs(raster, house.lines, [each], NO_HEAVEN, np.inf)[:, 0]
+             for each in (wide, wall(8.0, rows), replace(wide, lines=NO_LINES))]  # fmt: skip
+    assert costs[0] == pytest.approx(np.minimum(costs[1], costs[2]))
+    assert ((costs[0] < costs[1]) & (costs[1] < NEVER)).any()
+    assert (costs[0] < costs[2]).any()
+
+
 @pytest.mark.parametrize(("beside", "grazes"), [(0.02, True), (0.6, False)])
 def test_a_wall_that_the_camera_looks_along_is_none(house, to_lines, beside, grazes):
     edges = [(1, np.array([[beside, 3.0, height], [beside, 9.0, height]])) for height in (-0.5, 0.3, 0.9)]

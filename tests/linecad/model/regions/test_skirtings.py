@@ -94,6 +94,43 @@ def test_a_side_with_a_wall_needs_none():
     assert found.offset == -2.0
 
 
+@given(st.sampled_from([0, 1]), st.sampled_from([-1.0, 1.0]), st.floats(3.0, 8.0), st.floats(0.0, 0.9))
+def test_a_wall_with_few_lines_goes_on_along_its_skirting(along, side, offset, off):
+    """As far as its own lines reach, too, and up to the ceiling."""
+    frame = (along, side * offset, 0.5, 1.5, 2.5, 20.0)  # of a door
+    lines = level((along, side * offset * np.exp(off * RELIEF), -1.5, -1.0, 2.0, LONG), frame)
+    known = Surface("wall", 1 - along, side * offset, np.array([1]), 7)
+    before = [wall(along, 20.0), known, wall(1 - along, 0.5 * side * offset), FLOOR, CEILING]
+    found = with_skirtings(before, lines, CAMERA, ())
+    assert len(found) == len(before)
+    assert [one for one, other in zip(found, before, strict=True) if one is not other] == [found[1]]
+    assert (found[1].offset, found[1].plane, found[1].lines.tolist()) == (side * offset, 7, [1])
+    assert found[1].box[:, along] == pytest.approx([-1.0, 2.5])
+    assert found[1].box[:, 1 - along] == pytest.approx([side * offset] * 2)
+    assert found[1].box[:, 2] == pytest.approx([-1.5, 1.2])
+
+
+def test_what_a_depth_map_shows_of_a_wall_stays():
+    of_map = Surface("wall", 1, 3.0, NONE, None, np.array([[5.0, 3.0, -1.0], [7.0, 3.0, 1.0]]))
+    found = with_skirtings([of_map, FLOOR, CEILING], level((0, 3.0, -1.5, 1.0, 2.0, LONG)), CAMERA, ())
+    assert found[0].box.T.tolist() == [[1.0, 7.0], [3.0, 3.0], [-1.5, 1.2]]
+
+
+@pytest.mark.parametrize(
+    ("skirting", "beyond"),
+    [
+        ((0, 3.0 * np.exp(1.1 * RELIEF), -1.5, 1.0, 4.0, LONG), None),
+        ((0, 3.0, -1.5, 1.0, 4.0, 0.9 * LEAST_LENGTH * CAMERA.width), None),
+        ((0, 3.0, -1.3, 1.0, 4.0, LONG), None),
+        ((0, 3.0, -1.5, 1.0, 4.0, LONG), (1, 9.0, 0.5, 1.0, 9.0, 50.0)),
+    ],
+    ids=["elsewhere", "short", "above the floor", "lines behind"],
+)
+def test_a_wall_without_a_skirting_stays_as_it_is(skirting, beyond):
+    before = [wall(1, 3.0), FLOOR, CEILING]
+    assert with_skirtings(before, level(*filter(None, (skirting, beyond))), CAMERA, ()) == before
+
+
 def test_a_turned_frame_has_skirtings_if_it_has_walls():
     turns = (0.3,)
     lines = level((3, 2.0, -1.5, 1.0, 4.0, LONG), turns=turns)
