@@ -46,6 +46,8 @@ SEEN_AT = np.tan(np.radians(32.0))  # of a slope that a roof must be seen at up 
 GRAZING = 0.95  # of the tangent of its slope, at which a roof is hardly seen
 LEAST_AREA = 0.0015  # of the photo, as of other faces
 MOST_SHARED = 0.1  # of the smaller of two roofs
+PAST = 0.25  # of a roof's height, below and above the eave, of an upright that goes on above it
+BESIDE = (-3, 3)  # samples beside such an upright, where its wall is
 HOOD = 2.0  # times the photo's height, up to where nothing above an eave is its wall
 
 
@@ -98,7 +100,7 @@ def find_roofs(sketch: Sketch, labels: Labels, heaven: Heaven, raster: Raster, v
             best.append(each)
     roofs: list[Roof] = []
     for each in best:
-        roofs += _cut_out(each, [other for other in best if other is not each], roofs, shown)
+        roofs += _cut_out(each, [other for other in best if other is not each], roofs, sketch, shown)
     return tuple(roofs)
 
 
@@ -209,11 +211,14 @@ def _sketched(profile: Profile, bearing: Bearing, sketch: Sketch, shown: Shown) 
     return _Sketched(profile, slope, told is not None, outline, _hood(left, right, outline, shown))
 
 
-def _cut_out(own: _Sketched, others: list[_Sketched], before: list[Roof], shown: Shown) -> list[Roof]:
+def _cut_out(own: _Sketched, others: list[_Sketched], before: list[Roof], sketch: Sketch, shown: Shown) -> list[Roof]:
     """The roof without what stands before it: other walls up to their eaves; none where too little is left."""
     wall, labels, camera = own.profile.wall, shown.labels, shown.view.camera
+    carrier = _carrier(own.profile, shown)
+    rising = _rising(own.profile, sketch, shown) - {carrier}
+    numbers = tuple(number for number in wall.numbers if number not in rising)
     hidden = shapely.union_all(
-        [region for number, region in labels.regions if number < labels.sky and number not in wall.numbers]
+        [region for number, region in labels.regions if number < labels.sky and number not in numbers]
     )
     hidden = shapely.difference(hidden, shapely.union_all([other.hood for other in others]))
     taken = shapely.union_all([hidden, *(roof.polygon for roof in before)])
@@ -222,11 +227,10 @@ def _cut_out(own: _Sketched, others: list[_Sketched], before: list[Roof], shown:
     if not kept:
         return []
     slope = own.slope if wall.offset > 0 else np.pi - own.slope
-    carrier = labels.surfaces[_carrier(own.profile, shown)]
-    ray = shown.rays(own.profile.eave[own.profile.middle])
-    eave = ray * carrier.offset / (ray @ directions_of(shown.view.turns)[carrier.axis])
+    below, ray = labels.surfaces[carrier], shown.rays(own.profile.eave[own.profile.middle])
+    eave = ray * below.offset / (ray @ directions_of(shown.view.turns)[below.axis])
     hood = shapely.difference(own.hood, hidden)
-    return [Roof(wall.axis, float(slope), eave, shapely.union_all(kept), hood, wall.numbers, own.is_told)]
+    return [Roof(wall.axis, float(slope), eave, shapely.union_all(kept), hood, numbers, own.is_told)]
 
 
 def _carrier(profile: Profile, shown: Shown) -> int:
@@ -236,6 +240,21 @@ def _carrier(profile: Profile, shown: Shown) -> int:
     below = shown.at(shown.label, eave + FOOT.start * shown.raster.step * np.array([0.0, 1.0]))
     count = np.bincount(below, minlength=len(shown.labels.surfaces))
     return max(profile.wall.numbers, key=lambda number: int(count[number]))
+
+
+def _rising(profile: Profile, sketch: Sketch, shown: Shown) -> set[int]:
+    """The surfaces of a wall of which an upright goes on above the eave: a tower a little before it, or a gable."""
+    wall, uprights = profile.wall, sketch.whole[sketch.axis == UP]
+    rays = shown.rays(uprights)
+    heights = wall.heights(rays)
+    past = PAST * (profile.high - profile.low)
+    crosses = (heights.min(axis=1) < profile.low - past) & (heights.max(axis=1) > profile.low + past)
+    crosses &= wall.is_ahead(rays).all(axis=1)
+    uprights, heights = uprights[crosses], heights[crosses]
+    share = (profile.low - heights[:, 0]) / (heights[:, 1] - heights[:, 0])
+    at = uprights[:, 0] + share[:, None] * (uprights[:, 1] - uprights[:, 0])
+    beside = at[:, None] + np.array(BESIDE)[:, None] * shown.raster.step * np.array([1.0, 0.0])
+    return {number for number in wall.numbers if shown.at(shown.label == number, beside).any()}
 
 
 def _frame(shown: Shown) -> shapely.Polygon:

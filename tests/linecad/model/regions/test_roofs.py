@@ -214,6 +214,49 @@ def test_a_roof_is_seen_above_what_hides_most_of_its_wall(right):
     assert np.degrees(roof.slope) == pytest.approx(50.0, abs=1.0)
 
 
+def _with_tower(made, left, right, upright):
+    """A house with a tower on its wall, 2 % before it and as high as its ridge, and an upright of that, (2,) heights.
+
+    The tower reaches from one place along the wall to another, m; its upright is its right edge.
+    """
+    top = float(made.corners[1, 2])
+    corners = [[left, DISTANCE, top], [right, DISTANCE, top], [right, DISTANCE, GROUND], [left, DISTANCE, GROUND]]
+    tower = shapely.Polygon(project(np.array(corners), CAMERA.matrix, made.rotation))
+    cells = [(0, 0), (1, 1), (2, 3)]  # labels without and with one more surface
+    shapes = [(new, part) for old, new in cells
+              for cell in np.array(made.labels.cells, object)[made.labels.label == old]
+              for part in partition.polygons_of(cell.difference(tower), 1.0)] + [(2, tower)]  # fmt: skip
+    flat, label = [part for _, part in shapes], np.array([number for number, _ in shapes])
+    photo = made.photo.copy()
+    cv2.fillPoly(photo, [np.rint(shapely.get_coordinates(tower.exterior)).astype(np.int32)], PLASTER)
+    raster = take_raster(NO_LINES, CAMERA, made.rotation, photo)
+    before = Surface("wall", 1, 0.98 * DISTANCE, np.zeros(0, np.int64), 1)
+    surfaces = [*made.labels.surfaces, before]
+    cell = partition.draw(flat, raster.shape, raster.step)
+    labels = replace(made.labels, surfaces=surfaces, cells=flat, label=label, cell=cell)
+    edge = project(np.array([[[right, DISTANCE, height] for height in upright]]), CAMERA.matrix, made.rotation)
+    sketch = replace(made.sketch, whole=np.concatenate([made.sketch.whole, edge]), axis=np.array([0, 2]))
+    return tower, replace(made, photo=photo, labels=labels, seed=(label == 3)[cell], sketch=sketch)
+
+
+@pytest.mark.parametrize(
+    ("upright", "walls"),
+    [
+        ((GROUND, EAVE + 1.8), (0,)),
+        ((EAVE + 1.8, GROUND), (0,)),
+        ((GROUND, EAVE + 0.5), (0, 2)),  # not far above the eave
+        ((EAVE - 0.5, EAVE + 1.8), (0, 2)),  # nor below
+    ],
+)
+def test_a_tower_a_little_before_a_wall_goes_on_above_its_eave(upright, walls):
+    tower, made = _with_tower(build(50.0), -1.0, 1.0, upright)
+    roofs = made.found()
+    assert len(roofs) == 2  # on both sides of the tower
+    assert {roof.walls for roof in roofs} == {walls}
+    for roof in roofs:
+        assert shapely.intersection(roof.polygon, tower).area < 0.01 * tower.area
+
+
 def test_what_an_end_is_follows_from_the_other_end():
     left = [Slope(np.radians(30), HIP, "verge"), Slope(np.radians(50), HIP, "hip")]
     right = [Slope(np.radians(31), HIP, "verge"), Slope(np.radians(62), HIP, "hip")]
