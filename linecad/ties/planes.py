@@ -16,6 +16,7 @@ MOST = 4  # planes of a body on one side of the camera, by length of their lines
 LONGEST = 400.0  # px of a line that count
 LEAST_LINES = 2
 WORST_RANK = 2  # of both planes together
+NOWHERE = (np.inf, -np.inf)
 NEARLY_ALL = (2, 98)  # percentiles of a plane's points along it, between which it reaches
 INDUCED = 0.003  # log ratio, and INDUCED_CONNECTED of the fits: a plane that the fit itself made one tells nothing
 INDUCED_CONNECTED = 0.2
@@ -44,7 +45,7 @@ class SharedPlane:
     shares: tuple[float, float]
     lines: tuple[int, int]
     rank: int  # of both together
-    overlap: float  # of the shorter one's reach along the wall, that the other has too; 0 for level planes
+    overlap: float  # of the shorter one's reach along the wall, that the other has too; 0 if a plane is level or low
 
 
 def find_planes_of_bodies(setting: Setting) -> list[list[BodyPlane]]:
@@ -97,14 +98,18 @@ def find_shared_planes(setting: Setting) -> list[SharedPlane]:
 
 
 def _reach_along(setting: Setting, plane: BodyPlane) -> tuple[float, float]:
-    """From where to where an upright plane's lines reach along it, at distance 1; nothing for a level plane."""
+    """From where to where an upright plane's lines reach along it, at distance 1.
+
+    Nothing for a level plane, and for one that is all lower than the camera: such a wall stands before the one that is
+    seen above it, as a fence does, more often than below it.
+    """
     if plane.normal == UP:
-        return np.inf, -np.inf
+        return NOWHERE
     sight = setting.sight
     rays = world_rays(sample(setting.graph.segments.ends[plane.lines]), sight.matrix, sight.rotation)
     before = rays[rays[:, plane.normal] * plane.side > 0]
-    if not len(before):
-        return np.inf, -np.inf
+    if not len(before) or np.percentile(before[:, UP], NEARLY_ALL[1]) < 0:
+        return NOWHERE
     along = before[:, int(partner(plane.normal))] / np.abs(before[:, plane.normal])
     low, high = np.percentile(along, NEARLY_ALL)
     return float(low), float(high)

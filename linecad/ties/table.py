@@ -61,7 +61,7 @@ LOG_ODDS: dict[Kind, dict[str, float]] = {
         "most lines": -0.0088,
         "rank": 0.0671,
         "horizontal": 0.0684,
-        "overlap": 1.0045,
+        "overlap": 1.3814,
         "supported": 3.6474,
         "connected": -0.5566,
     },

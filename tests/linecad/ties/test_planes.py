@@ -41,7 +41,7 @@ def test_facades_of_one_row_share_a_plane(build_town, build_row, build_setting, 
     assert found.distance == pytest.approx(2.0 * 3000 / 10, rel=0.01)  # from -1.2 to 0.8 at 10
 
 
-LOW, HIGH = np.linspace(-2.6, -0.6, 5), np.linspace(0.5, 2.5, 5)
+LOW, HIGH = np.linspace(-2.6, 0.4, 5), np.linspace(0.7, 2.7, 5)
 
 
 @pytest.mark.parametrize(
@@ -58,6 +58,17 @@ def test_walls_one_above_the_other_overlap(build_town, build_wall, build_setting
     for moved in ((), (0.3, -0.2)):
         (found,) = (shared for shared in find_shared_planes(build_setting(seen, moved=moved)) if shared.normal == 1)
         assert found.overlap == pytest.approx(overlap, abs=0.02)
+
+
+@pytest.mark.parametrize(("top", "overlap"), [(-0.1, 0.0), (0.1, 1.0)])
+@pytest.mark.parametrize("body", [(0, 1), (1, 0)])
+def test_a_wall_lower_than_the_camera_may_stand_before_another(
+    build_town, build_wall, build_setting, top, overlap, body
+):
+    seen = build_town(build_wall(1, 9.0, ACROSS, np.linspace(-2.6, top, 5)), build_wall(1, 9.0, ACROSS, HIGH))
+    setting = build_setting(seen, body=np.array(body)[seen.part])
+    (found,) = (shared for shared in find_shared_planes(setting) if shared.normal == 1)
+    assert found.overlap == overlap
 
 
 @pytest.mark.parametrize("place", [-3.0, 3.0])
