@@ -36,7 +36,7 @@ WALLED_COST = 0.5  # of ground and ceiling behind a wall
 ROOM_COST = 3.0  # the same below a ceiling, behind all walls there or the last of a side: walls close a room
 LEVEL_COST, COVERED_COST = 0.75, 0.35  # of ground and ceiling; the second where lines stand beyond
 COVERED = 8  # samples on lines
-MAPPED_COST = 0.8  # of a wall where no line is near, which a depth map shows or its foot
+MAPPED_COST = 0.8  # of a wall within its box, which a depth map tells, its foot or its skirting
 CLUTTER_COST, SMOOTH_COST = 1.2, 0.4
 GREEN_COST = 0.5  # of a wall; what is green grows
 FULL_OF_EDGES = 0.25  # share of edges around a sample, from which on it is not smooth
@@ -110,7 +110,7 @@ def is_green(raster: Raster) -> Bool:
 
 
 def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) -> Float:
-    """Cost (S,) of one surface by its lines, and by those that are behind it, or by its box where that costs less."""
+    """Cost (S,) of one surface by its lines, and by those that are behind it; in its box no more than without lines."""
     within = None if surface.box is None else MAPPED_COST + cost_outside(surface, raster, depth)
     if within is not None and len(surface.lines) == 0:
         return within
@@ -134,11 +134,13 @@ def _surface_cost(raster: Raster, lines: Lines, surface: Surface, depth: Float) 
         cost[beside] += THROUGH_COST * (off <= SEEN_THROUGH) + BESIDE_COST * np.exp(-off / REACH) * (off < near[beside])
     if surface.kind not in ("ground", "ceiling"):
         cost += _outside(raster, lines, surface, depth)
-    return cost if within is None else np.minimum(cost, within)
+    return cost if within is None else np.where(within > MAPPED_COST, cost, np.minimum(cost, within))
 
 
 def _is_grazing(raster: Raster, surface: Surface) -> bool:
     """Whether a wall is seen so flatly that its place is chance, by half of its lines."""
+    if surface.box is not None:  # something else tells its place
+        return False
     across = np.abs(raster.line_rays[np.isin(raster.line, surface.lines), surface.axis])
     return surface.axis != UP and len(across) > 0 and bool(np.median(across) < GRAZING)
 

@@ -47,7 +47,7 @@ GRAZING = 0.95  # of the tangent of its slope, at which a roof is hardly seen
 LEAST_AREA = 0.0015  # of the photo, as of other faces
 MOST_SHARED = 0.1  # of the smaller of two roofs
 PAST = 0.25  # of a roof's height, below and above the eave, of an upright that goes on above it
-BESIDE = (-3, 3)  # samples beside such an upright, where its wall is
+BESIDE = (-6, 6)  # samples beside such an upright, on one of which its wall is: borders of labels are no nearer to it
 HOOD = 2.0  # times the photo's height, up to where nothing above an eave is its wall
 
 
@@ -243,18 +243,25 @@ def _carrier(profile: Profile, shown: Shown) -> int:
 
 
 def _rising(profile: Profile, sketch: Sketch, shown: Shown) -> set[int]:
-    """The surfaces of a wall of which an upright goes on above the eave: a tower a little before it, or a gable."""
+    """The surfaces of a wall of which an upright edge goes on above the eave: of a tower a little before it, a gable.
+
+    A lamp or a window before one is no edge of it: the surface is on both sides of that.
+    """
     wall, uprights = profile.wall, sketch.whole[sketch.axis == UP]
     rays = shown.rays(uprights)
     heights = wall.heights(rays)
     past = PAST * (profile.high - profile.low)
     crosses = (heights.min(axis=1) < profile.low - past) & (heights.max(axis=1) > profile.low + past)
     crosses &= wall.is_ahead(rays).all(axis=1)
-    uprights, heights = uprights[crosses], heights[crosses]
-    share = (profile.low - heights[:, 0]) / (heights[:, 1] - heights[:, 0])
+    uprights, rays, heights = uprights[crosses], rays[crosses], heights[crosses]
+    above = wall.offset * rays[..., UP] - profile.low * (rays @ wall.normal)  # linear in pixels, 0 at the eave
+    share = above[:, 0] / (above[:, 0] - above[:, 1])
     at = uprights[:, 0] + share[:, None] * (uprights[:, 1] - uprights[:, 0])
-    beside = at[:, None] + np.array(BESIDE)[:, None] * shown.raster.step * np.array([1.0, 0.0])
-    return {number for number in wall.numbers if shown.at(shown.label == number, beside).any()}
+    top = np.take_along_axis(uprights, heights.argmax(axis=1)[:, None, None], 1)[:, 0]
+    places = np.stack([at, (at + top) / 2], axis=1)
+    beside = places[:, :, None] + np.array(BESIDE)[:, None] * shown.raster.step * np.array([1.0, 0.0])
+    labels = shown.at(shown.label, beside)  # (N, 2 places, 2 sides)
+    return {number for number in wall.numbers if ((labels == number).sum(axis=2) == 1).all(axis=1).any()}
 
 
 def _frame(shown: Shown) -> shapely.Polygon:

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 
 from linecad.arrays import Bool, Float, Int
-from linecad.directions import UP, Turns, components, partner
+from linecad.directions import UP, Turns, components, directions_of, partner
 from linecad.geometry import lengths
 from linecad.model.regions.surfaces import RELIEF, Surface, apart, weights_of
 from linecad.scene import Camera, Lines
@@ -22,6 +22,7 @@ LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together
 AT_FLOOR = 0.04
 NEAREST = 0.2  # of the camera's height; a line on the floor that is nearer beside the camera has no wall above it
 BEYOND = 1.03  # times its distance; a line that reaches farther on that side lies behind it
+NEARLY_ALL = (2, 98)  # percentiles of the ends of a wall's own lines, between which it reaches
 MOST_BEYOND = 0.02  # of all lines, by length and how sure they are, may do so: a pane shows what is behind
 
 
@@ -32,6 +33,7 @@ class _Room:
     surfaces: list[Surface]
     floor: float  # offset
     ceiling: float
+    turns: Turns
     axis: Int  # (N,) of its lines
     ends: Float  # (N, 2, K) components of their ends
     length: Float  # (N,) of the photo's width
@@ -59,10 +61,10 @@ class _Room:
         box = None if group is None else self._box(group, side, along)
         if box is None:
             return wall
-        reach = [self.ends[wall.lines][:, :, along].ravel(), box[:, along]]
+        own = self.ends[wall.lines][:, :, along].ravel()
+        reach = [box[:, along], np.percentile(own, NEARLY_ALL) if len(own) else own]
         reach += [] if wall.box is None else [wall.box[:, along]]
-        box[:, along], box[:, wall.axis] = _range(np.concatenate(reach)), wall.offset
-        return replace(wall, box=box)
+        return replace(wall, box=self._corners(along, _range(np.concatenate(reach)), wall.offset))
 
     def _box(self, group: Int, side: float, along: int) -> Float | None:
         """Low and high components (2, K) of the wall over a skirting of these lines; None where that is of no wall."""
@@ -75,9 +77,14 @@ class _Room:
         low, high = _range(reach)
         if max(abs(low), abs(high)) > abs(offset):  # it runs towards the camera, beside which a photo shows no foot
             low, high = min(low, 0.0), max(high, 0.0)
-        box = np.full((2, self.ends.shape[2]), offset)
-        box[:, UP], box[:, along] = (self.floor, self.ceiling), (low, high)
-        return box
+        return self._corners(along, (low, high), offset)
+
+    def _corners(self, along: int, reach: tuple[float, float], offset: float) -> Float:
+        """Low and high components (2, K) of a wall from floor to ceiling."""
+        axes = directions_of(self.turns)
+        foot = np.outer(reach, axes[along]) + offset * axes[int(partner(along))]
+        corners = components(foot[:, None] + np.outer((self.floor, self.ceiling), axes[UP]), self.turns)
+        return np.stack([corners.min(axis=(0, 1)), corners.max(axis=(0, 1))])
 
     def _last(self, rows: Int, side: float, normal: int) -> Int | None:
         """Those of some lines that are farthest off on a side and at one place, and long enough together."""
@@ -110,7 +117,8 @@ def with_skirtings(surfaces: list[Surface], lines: Lines, camera: Camera, turns:
     on_floor = np.array([apart(height, level["ground"]) < AT_FLOOR for height in ends[:, 0, UP].tolist()], bool)
     length = lengths(np.diff(lines.segment, axis=1)[:, 0]) / camera.width
     weight = weights_of(lines) / camera.width
-    room = _Room(surfaces, level["ground"], level["ceiling"], np.asarray(lines.axis), ends, length, weight, on_floor)
+    axis = np.asarray(lines.axis)
+    room = _Room(surfaces, level["ground"], level["ceiling"], turns, axis, ends, length, weight, on_floor)
     axes = [axis for axis in range(ends.shape[2]) if axis != UP]
     found, new = list(surfaces), []
     for along, side in product(axes, (1.0, -1.0)):

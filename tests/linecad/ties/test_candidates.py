@@ -205,16 +205,17 @@ def test_features_of_a_bundle(row, build_setting, monkeypatch):
 def test_the_planes_at_the_ratio_of_a_bundle_count_by_their_larger_share(row, build_setting, monkeypatch):
     setting = build_setting(row(2))
     shares = [
-        (1, 0.0, (0.2, 0.9)),
-        (1, 0.01, (0.5, 0.6)),
-        (0, 0.0, (0.4, 0.3)),
-        (2, 0.0, (0.1, 0.1)),
-        (0, 0.02, (1, 1)),
+        (1, 0.0, (0.2, 0.9), 0.9),
+        (1, 0.01, (0.5, 0.6), 0.8),
+        (0, 0.0, (0.4, 0.3), 0.0),
+        (2, 0.0, (0.1, 0.1), 0.0),
+        (0, 0.02, (1, 1), 1.0),
     ]
-    planes = [SharedPlane((0, 1), ratio, normal, 1.0, share, (5, 5), 0, 0.0) for normal, ratio, share in shares]
+    planes = [SharedPlane((0, 1), ratio, normal, 1.0, share, (5, 5), 0, over) for normal, ratio, share, over in shares]
     monkeypatch.setattr(linecad.ties.candidates, "find_shared_planes", lambda _: planes)
     (bundle,) = of_kind(candidates_of(setting), "bundle")
     assert (bundle.features["plane of it"], bundle.features["plane beside"]) == (0.5, 0.3)
+    assert bundle.features["overlap"] == 0.4  # 0.8 of 0.5; not of the plane at another ratio
 
 
 @pytest.mark.parametrize(("by", "apart"), [(0.4, 0.4), (-0.4, 0.4), (1.7, FARTHEST)])

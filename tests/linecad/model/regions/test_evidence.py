@@ -111,9 +111,11 @@ def test_a_wall_costs_no_more_in_its_box_than_one_without_lines(house, raster):
     wide = replace(wall(8.0, rows), box=box)
     costs = [sample_costs(raster, house.lines, [each], NO_HEAVEN, np.inf)[:, 0]
              for each in (wide, wall(8.0, rows), replace(wide, lines=NO_LINES))]  # fmt: skip
-    assert costs[0] == pytest.approx(np.minimum(costs[1], costs[2]))
-    assert ((costs[0] < costs[1]) & (costs[1] < NEVER)).any()
-    assert (costs[0] < costs[2]).any()
+    is_within = costs[2] <= costs[2].min() + GREEN_COST
+    assert costs[0][is_within] == pytest.approx(np.minimum(costs[1], costs[2])[is_within])
+    assert (costs[0] < costs[1])[is_within].any()
+    assert (costs[0] < costs[2])[is_within].any()
+    assert costs[0][~is_within] == pytest.approx(costs[1][~is_within])
 
 
 @pytest.mark.parametrize(("beside", "grazes"), [(0.02, True), (0.6, False)])
@@ -121,8 +123,12 @@ def test_a_wall_that_the_camera_looks_along_is_none(house, to_lines, beside, gra
     edges = [(1, np.array([[beside, 3.0, height], [beside, 9.0, height]])) for height in (-0.5, 0.3, 0.9)]
     lines, _ = to_lines(edges, house.camera, house.rotation)
     raster = take_raster(lines, house.camera, house.rotation, house.photo)
-    costs = sample_costs(raster, lines, [Surface("wall", 0, beside, np.arange(3), 0)], NO_HEAVEN, np.inf)[:, 0]
+    known = Surface("wall", 0, beside, np.arange(3), 0)
+    costs = sample_costs(raster, lines, [known], NO_HEAVEN, np.inf)[:, 0]
     assert (costs[raster.rays[:, 0] > 0].min() >= NEVER) == grazes
+    # But where its skirting tells its place.
+    told = replace(known, box=np.array([[beside, 1.0, -2.0], [beside, 9.0, 2.0]]))
+    assert sample_costs(raster, lines, [told], NO_HEAVEN, np.inf)[:, 0].min() < NEVER
 
 
 def test_a_level_surface_may_be_seen_flatly(house, to_lines):

@@ -17,6 +17,7 @@ from linecad.model.regions.mapped import (
     SOLID_COST,
     MappedDepths,
     costs_by_map,
+    is_of_map_at,
     laid_on,
     with_mapped,
 )
@@ -184,3 +185,14 @@ def test_where_the_map_has_nothing_it_says_nothing():
     depth = (5.0 / raster.rays[:, 1])[:, None]
     assert not costs_by_map(raster, surfaces, depth, 20.0).any()
     assert with_mapped(surfaces, raster) == surfaces
+
+
+def test_a_wall_that_has_lines_is_none_that_a_map_alone_shows():
+    box = np.array([[3.0, -1.0, -1.0], [3.0, 1.0, 1.0]])
+    of_map = Surface("wall", 0, 3.0, NO_LINES, None, box)
+    place = Surface("kerb", 0, 3.01, NO_LINES, None)
+    assert is_of_map_at(of_map, place)
+    assert not is_of_map_at(replace(of_map, lines=np.array([4])), place)
+    assert not is_of_map_at(replace(of_map, box=None), place)
+    assert not is_of_map_at(of_map, replace(place, offset=4.0))
+    assert not is_of_map_at(of_map, replace(place, axis=1))

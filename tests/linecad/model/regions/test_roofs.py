@@ -67,12 +67,14 @@ class Made:
         return find_roofs(made.sketch, made.labels, heaven, raster, made.view)
 
 
-def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER), top=None, turn=0.0):
+def build(degrees=40.0, hips=False, reach=(LEFT, RIGHT), colours=(TILES, PLASTER), top=None, turn=0.0, pitch=0.0):
     """A house whose roof ends in verges or hips, or by the roof's corners `top` (2, 3) at the ridge.
 
-    It is turned by `turn`, rad, from the wall that it is labelled as, about the upright through its middle.
+    It is turned by `turn`, rad, from the wall that it is labelled as, about the upright through its middle. The camera
+    looks up by `pitch`, rad.
     """
-    rotation, rise = turned(SEEN), RUN * np.tan(np.radians(degrees))
+    c, s = np.cos(pitch), np.sin(pitch)
+    rotation, rise = np.array([[1, 0, 0], [0, c, s], [0, -s, c]]) @ turned(SEEN), RUN * np.tan(np.radians(degrees))
     inwards = RUN if hips else 0.0
     left, right = reach
     if top is None:
@@ -220,7 +222,8 @@ def _with_tower(made, left, right, upright):
     The tower reaches from one place along the wall to another, m; its upright is its right edge.
     """
     top = float(made.corners[1, 2])
-    corners = [[left, DISTANCE, top], [right, DISTANCE, top], [right, DISTANCE, GROUND], [left, DISTANCE, GROUND]]
+    low = EAVE - 0.6  # below that something else hides it
+    corners = [[left, DISTANCE, top], [right, DISTANCE, top], [right, DISTANCE, low], [left, DISTANCE, low]]
     tower = shapely.Polygon(project(np.array(corners), CAMERA.matrix, made.rotation))
     cells = [(0, 0), (1, 1), (2, 3)]  # labels without and with one more surface
     shapes = [(new, part) for old, new in cells
@@ -248,13 +251,33 @@ def _with_tower(made, left, right, upright):
         ((EAVE - 0.5, EAVE + 1.8), (0, 2)),  # nor below
     ],
 )
-def test_a_tower_a_little_before_a_wall_goes_on_above_its_eave(upright, walls):
-    tower, made = _with_tower(build(50.0), -1.0, 1.0, upright)
+@pytest.mark.parametrize("pitch", [0.0, 10.0])
+def test_a_tower_a_little_before_a_wall_goes_on_above_its_eave(upright, walls, pitch):
+    tower, made = _with_tower(build(50.0, pitch=np.radians(pitch)), -1.0, 1.0, upright)
     roofs = made.found()
     assert len(roofs) == 2  # on both sides of the tower
     assert {roof.walls for roof in roofs} == {walls}
     for roof in roofs:
         assert shapely.intersection(roof.polygon, tower).area < 0.01 * tower.area
+
+
+@pytest.mark.parametrize(("at", "walls"), [(4.0, (0,)), (6.0, (0, 2))])
+def test_a_lamp_before_a_part_of_a_wall_is_no_edge_of_it(at, walls):
+    """The wall is in two parts, one 2 % before the other, with one roof; its upright is where they meet, or before."""
+    made = build(50.0)
+    part = shapely.box(project(np.array([[4.0, DISTANCE, 0.0]]), CAMERA.matrix, made.rotation)[0, 0], 0, WIDTH, HEIGHT)
+    cells = [(0, made.labels.cells[0].difference(part)), (2, made.labels.cells[0].intersection(part))]
+    others = zip(made.labels.label.tolist(), made.labels.cells, strict=True)
+    cells += [(number if number < 2 else 3, cell) for number, cell in others if number > 0]
+    raster = take_raster(NO_LINES, CAMERA, made.rotation, made.photo)
+    flat, label = [cell for _, cell in cells], np.array([number for number, _ in cells])
+    surfaces = [*made.labels.surfaces, Surface("wall", 1, 0.98 * DISTANCE, np.zeros(0, np.int64), 1)]
+    cell = partition.draw(flat, raster.shape, raster.step)
+    labels = replace(made.labels, surfaces=surfaces, cells=flat, label=label, cell=cell)
+    upright = project(np.array([[[at, DISTANCE, GROUND], [at, DISTANCE, EAVE + 4]]]), CAMERA.matrix, made.rotation)
+    sketch = replace(made.sketch, whole=np.concatenate([made.sketch.whole, upright]), axis=np.array([0, 2]))
+    (roof,) = made.found(labels=labels, sketch=sketch)
+    assert roof.walls == walls
 
 
 def test_what_an_end_is_follows_from_the_other_end():
