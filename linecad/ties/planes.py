@@ -105,14 +105,19 @@ def _reach_along(setting: Setting, plane: BodyPlane) -> tuple[float, float]:
     """
     if plane.normal == UP:
         return NOWHERE
-    sight = setting.sight
-    rays = world_rays(sample(setting.graph.segments.ends[plane.lines]), sight.matrix, sight.rotation)
-    before = rays[rays[:, plane.normal] * plane.side > 0]
+    before = rays_before(setting, plane, sample(setting.graph.segments.ends[plane.lines]))
     if not len(before) or np.percentile(before[:, UP], NEARLY_ALL[1]) < 0:
         return NOWHERE
     along = before[:, int(partner(plane.normal))] / np.abs(before[:, plane.normal])
     low, high = np.percentile(along, NEARLY_ALL)
     return float(low), float(high)
+
+
+def rays_before(setting: Setting, plane: BodyPlane, pixels: Float) -> Float:
+    """(M, K) world rays of those pixels (P, 2) that meet a plane before the camera."""
+    rays = world_rays(pixels, setting.sight.matrix, setting.sight.rotation)
+    before: Float = rays[rays[:, plane.normal] * plane.side > 0]
+    return before
 
 
 def _overlap(one: tuple[float, float], other: tuple[float, float]) -> float:

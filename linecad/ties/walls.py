@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from linecad.arrays import Bool, Float
 from linecad.directions import UP, partner
 from linecad.geometry import world_rays
-from linecad.ties.planes import BodyPlane, find_planes_of_bodies
+from linecad.ties.planes import BodyPlane, find_planes_of_bodies, rays_before
 from linecad.ties.setting import Setting
 
 ROWS, COLUMNS = 216, 64
@@ -67,14 +67,13 @@ class Strip:
 
 def find_walls(setting: Setting) -> list[Wall]:
     """The upright walls of all bodies."""
-    sight, found = setting.sight, []
+    found = []
     for body, planes in enumerate(find_planes_of_bodies(setting)):
         for plane in planes:
             if plane.normal == 2 or len(plane.lines) < LEAST_LINES:
                 continue
             offset = plane.side * float(np.exp(plane.log_offset))
-            rays = world_rays(setting.graph.segments.ends[plane.lines].reshape(-1, 2), sight.matrix, sight.rotation)
-            before = rays[rays[:, plane.normal] * offset > 0]
+            before = rays_before(setting, plane, setting.graph.segments.ends[plane.lines].reshape(-1, 2))
             at = before[:, int(partner(plane.normal))] * offset / before[:, plane.normal]
             if len(at) > LEAST_LINES:
                 found.append(Wall(body, plane, offset, (float(at.min()), float(at.max()))))

@@ -14,7 +14,7 @@ from linecad.model.regions.heaven import SMOOTH, Heaven
 from linecad.model.regions.mapped import cost_outside, costs_by_map
 from linecad.model.regions.opened import costs_by_openings
 from linecad.model.regions.raster import SHADES, Raster
-from linecad.model.regions.surfaces import Surface
+from linecad.model.regions.surfaces import Surface, box_of
 from linecad.scene import Lines
 
 SKY, CLUTTER = -2, -1  # columns of costs
@@ -185,15 +185,12 @@ def _behind_walls(raster: Raster, lines: Lines, surfaces: list[Surface], depth: 
     `depth` (S, K) is that of each surface.
     """
     some, every = np.zeros(raster.size, bool), np.ones(raster.size, bool)
-    reach = depth[:, level] / BEHIND
+    reach, ends = depth[:, level] / BEHIND, components(lines.ends, raster.turns)
     for number, surface in enumerate(surfaces):
         if surface.kind != "wall":
             continue
         along = int(partner(surface.axis))
-        if surface.box is None:
-            low, high = np.percentile(components(lines.ends[surface.lines], raster.turns)[:, :, along], [2, 98])
-        else:
-            low, high = surface.box[:, along]
+        low, high = box_of(surface, ends)[:, along]
         before = depth[:, number]
         at = raster.rays[:, along] * np.where(np.isfinite(before), before, 0.0)
         is_there, is_before = np.isfinite(before) & (at > low) & (at < high), before < reach

@@ -12,7 +12,7 @@ from linecad.arrays import Float, Int
 from linecad.directions import MAIN, Turns, components, directions_of, partner
 from linecad.geometry import angles_to, directions_to, project, unit_normals, vanishing_points
 from linecad.model.regions.raster import COLUMNS, Picture, Raster
-from linecad.model.regions.surfaces import Surface
+from linecad.model.regions.surfaces import Surface, box_of
 from linecad.scene import Camera, Lines
 
 LEAST_LENGTH = 0.02  # of the photo's width, of a line of the scene
@@ -112,7 +112,7 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
     walls = [index for index, surface in enumerate(surfaces) if surface.kind == "wall"][:MOST_WALLS]
     levels = [index for index, surface in enumerate(surfaces) if surface.kind in ("ground", "ceiling")]
     ends = components(lines.ends, view.turns)
-    boxes = {index: _box(surfaces[index], ends) for index in walls}
+    boxes = {index: box_of(surfaces[index], ends) for index in walls}
     found: list[tuple[Float, tuple[int, int]]] = []
     for index in walls:
         low, high = boxes[index]
@@ -143,12 +143,6 @@ def find_meets(lines: Lines, surfaces: list[Surface], view: View) -> Meets:
         np.array([pixels for pixels, _ in shown]).reshape(-1, 2, 2),
         np.array([pair for _, pair in shown], np.int64).reshape(-1, 2),
     )
-
-
-def _box(wall: Surface, ends: Float) -> Float:
-    """Low and high components (2, K) of a wall, by the components (N, 2, K) of the ends of all lines."""
-    own = ends[wall.lines].reshape(-1, ends.shape[2])
-    return np.asarray(np.percentile(own, [2, 98], axis=0)) if wall.box is None else wall.box
 
 
 def _in_world(normal: int, offset: float, along: int, reach: Float, height: Float, turns: Turns) -> Float:

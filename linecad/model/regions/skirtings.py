@@ -13,7 +13,7 @@ import numpy as np
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import UP, Turns, components, directions_of, partner
 from linecad.geometry import lengths
-from linecad.model.regions.surfaces import RELIEF, Surface, apart, weights_of
+from linecad.model.regions.surfaces import RELIEF, Surface, apart, box_of, weights_of
 from linecad.scene import Camera, Lines
 
 LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together
@@ -22,7 +22,6 @@ LEAST_LENGTH = 0.1  # of the photo's width, of the lines of a skirting together
 AT_FLOOR = 0.04
 NEAREST = 0.2  # of the camera's height; a line on the floor that is nearer beside the camera has no wall above it
 BEYOND = 1.03  # times its distance; a line that reaches farther on that side lies behind it
-NEARLY_ALL = (2, 98)  # percentiles of the ends of a wall's own lines, between which it reaches
 MOST_BEYOND = 0.02  # of all lines, by length and how sure they are, may do so: a pane shows what is behind
 
 
@@ -61,10 +60,8 @@ class _Room:
         box = None if group is None else self._box(group, side, along)
         if box is None:
             return wall
-        own = self.ends[wall.lines][:, :, along].ravel()
-        reach = [box[:, along], np.percentile(own, NEARLY_ALL) if len(own) else own]
-        reach += [] if wall.box is None else [wall.box[:, along]]
-        return replace(wall, box=self._corners(along, _range(np.concatenate(reach)), wall.offset))
+        reach = np.concatenate([box[:, along], box_of(wall, self.ends)[:, along]])
+        return replace(wall, box=self._corners(along, _range(reach), wall.offset))
 
     def _box(self, group: Int, side: float, along: int) -> Float | None:
         """Low and high components (2, K) of the wall over a skirting of these lines; None where that is of no wall."""

@@ -142,6 +142,13 @@ def with_ground(surfaces: list[Surface], height: float) -> list[Surface]:
     return _with_level(surfaces, "ground", -height, GROUND_STEP)
 
 
+def box_of(wall: Surface, ends: Float) -> Float:
+    """Low and high components (2, K) of a wall with lines or a box, by those (N, 2, K) of the ends of all lines."""
+    if wall.box is not None:
+        return wall.box
+    return np.asarray(np.percentile(ends[wall.lines].reshape(-1, ends.shape[2]), [2, 98], axis=0))
+
+
 def apart(one: float, other: float) -> float:
     """How far two offsets differ in their logarithms; infinite on two sides of the camera."""
     return float(abs(np.log(one / other))) if one * other > 0 else float("inf")

@@ -119,7 +119,7 @@ def test_one_line_of_a_wall_that_ends_elsewhere_does_not_make_it_longer():
 
 def test_the_box_of_a_wall_of_another_frame_holds_for_all_directions():
     turns = (0.5,)
-    known = Surface("wall", 4, 2.0, NONE, 7)
+    known = Surface("wall", 4, 2.0, np.array([0]), 7)
     lines = level((3, 2.0, -1.5, 1.0, 4.0, LONG), turns=turns)
     (found, *_) = with_skirtings([known, FLOOR, CEILING], lines, CAMERA, turns)
     assert found.box[:, 4] == pytest.approx([2.0, 2.0])
