@@ -38,8 +38,9 @@ COLOUR_STEP = 12.0  # CIE L*a*b*, by which the rest of it falls to 1 / e
 SURFACE = 0.006  # cost of one more surface, in samples of all
 DOUBTFUL = 3.0  # times that; surfaces that win more are kept without a question
 FEWEST_WINS = 6  # surfaces asked in one turn
-RUNS = (0.02, 0.04, 0.06, 0.08, 0.10)  # of the photo's width; lines of which no longer piece is a border are left out
-CORNER = 0.0012  # cost of one more corner of an outline, in samples of all
+# Of the photo's width: lines are left out of which no longer piece is a border.
+RUNS = (0.02, 0.04, 0.06, 0.08, 0.10, 0.14, 0.20)
+CORNER = 0.0025  # cost of one more corner of an outline, in samples of all
 LEAST_SHOWN = 0.5  # share of where a side may be, that must show it
 ON_BORDER = 1e-3  # px
 STRAIGHT = 1e-6  # px; a corner nearer to the straight outline is none

@@ -2,10 +2,12 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 import shapely
 
+from linecad.geometry import project
 from linecad.model.regions.cuts import Borders, energy
 from linecad.model.regions.heaven import look_up
 from linecad.model.regions.labelling import CORNER, UNIT, Labels, find_labels, united
@@ -74,6 +76,20 @@ def test_walls_meet_the_sky_without_a_step(found):
         turn = np.sign(before[:, 0] * along[:, 1] - before[:, 1] * along[:, 0])
         short = np.linalg.norm(along, axis=1) < 0.05 * shapely.length(region) / 2
         assert not ((turn * np.roll(turn, -1) < 0) & short & (region.area > 1)).any()
+
+
+@pytest.mark.parametrize(("right", "is_cut_off"), [(3.4, False), (3.8, True)])
+def test_a_long_step_is_cut_off_only_where_it_is_worth_its_corners(make_house, right, is_cut_off):
+    """The sky seems to reach into the front, down to a line: 14 and 17 % of the photo's width, 2 % high."""
+    line = np.array([[2.0, 8, 1.45], [right, 8, 1.45]])
+    house = make_house(edges_too=[(0, line)])
+    corners = np.concatenate([line, line[::-1] + np.array([0, 0, 0.18])])
+    outline = project(corners, house.camera.matrix, house.rotation)
+    photo = house.photo.copy()
+    cv2.fillPoly(photo, [np.rint(outline).astype(np.int32)], (120, 170, 235))
+    found = labels_of(replace(house, photo=photo))
+    x, y = outline.mean(axis=0).astype(int) // 2
+    assert (shown(found, house)[y, x] == 3) == is_cut_off
 
 
 def test_regions_cover_the_photo_once(found):
