@@ -9,6 +9,7 @@ import sys
 import time
 import urllib.request
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -218,6 +219,50 @@ class Screen:
 
     def button(self, name: str):
         return self.page.get_by_role("button", name=name)
+
+    @contextmanager
+    def holding(self, path: str) -> Iterator[Callable[[], int]]:
+        """What the page asks for at a path waits until the block ends; gives how many wait.
+
+        Playwright's own routes now and then lose another request that is on its way when a route ends.
+        """
+        self.run(
+            """(path) => {
+              const ask = window.fetch;
+              const held = [];
+              window.fetch = (url, options) =>
+                url.includes(path) ? new Promise((go) => held.push(() => go(ask(url, options)))) : ask(url, options);
+              window.held = {
+                count: () => held.length,
+                end: () => {
+                  window.fetch = ask;
+                  for (const go of held) go();
+                },
+              };
+            }""",
+            path,
+        )
+        try:
+            yield lambda: self.run("window.held.count()")
+        finally:
+            self.run("window.held.end()")
+
+    @contextmanager
+    def answering(self, path: str, answer) -> Iterator[None]:
+        """The page gets this answer, as JSON, to what it asks for at a path."""
+        self.run(
+            """([path, answer]) => {
+              const ask = window.fetch;
+              window.fetch = (url, options) =>
+                url.includes(path) ? Promise.resolve(Response.json(answer)) : ask(url, options);
+              window.answered = () => { window.fetch = ask; };
+            }""",
+            [path, answer],
+        )
+        try:
+            yield
+        finally:
+            self.run("window.answered()")
 
     def painted(self, canvas: str) -> int:
         """How many px of a canvas hold lines or marks; faces are fainter."""

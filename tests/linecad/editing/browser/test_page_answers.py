@@ -70,13 +70,11 @@ def test_a_search_is_over_when_its_model_is_here(screen):
     """The page never shows an old model as the result of a search that has ended."""
     screen.wait("linecad.store.solve.state === 'idle'")
     before = screen.served.ask("progress")["solve"]["solved_version"]
-    states = []
-    screen.page.route("**/api/state*", lambda route: states.append(route))
-    screen.button("Solve again").click()
-    while not states:
-        screen.page.wait_for_timeout(20)
-    assert screen.served.ask("progress")["solve"]["state"] == "idle"
-    assert screen.run("linecad.store.solve.state") == "running"
-    screen.page.unroute("**/api/state*")  # which also lets go of what was kept
+    with screen.holding("/api/state") as held:
+        screen.button("Solve again").click()
+        while not held():
+            screen.page.wait_for_timeout(20)
+        assert screen.served.ask("progress")["solve"]["state"] == "idle"
+        assert screen.run("linecad.store.solve.state") == "running"
     screen.wait("linecad.store.solve.state === 'idle'")
     assert screen.state["solve"]["solved_version"] > before

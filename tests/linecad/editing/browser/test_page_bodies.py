@@ -1,6 +1,5 @@
 """Bodies on the page: selected in both views, and what a person says of them by real clicks, drags and keys."""
 
-import json
 import re
 
 import numpy as np
@@ -291,13 +290,7 @@ def test_keys_alone_move_a_body(told):
 
 def test_a_body_is_moved_before_its_other_places_are_known(told):
     """Arrows and Enter did nothing until they were, and nothing told so."""
-    held = []
-
-    def hold(route):
-        held.append(route)
-
-    told.page.route("**/api/places/*", hold)
-    try:
+    with told.holding("/places/") as held:
         told.press("b")
         told.press("Shift+PageDown")
         told.press("Shift+PageDown")
@@ -307,9 +300,7 @@ def test_a_body_is_moved_before_its_other_places_are_known(told):
         wait_for_effect(told)
         told.press("Enter")
         assert facts(told) == ["place"]
-        assert held
-    finally:
-        told.page.unroute("**/api/places/*", hold)  # which lets go on what is held
+        assert held() > 0
 
 
 def test_a_drag_in_the_model_is_one_fact_and_leaves_the_photo_as_it_is(told):
@@ -478,11 +469,8 @@ def parted(told):
     own = [line for line in told.state["lines"] if line["body"] == NEAR and line["ends"]]
     own.sort(key=lambda line: np.mean(line["ends"], axis=0)[2])
     lines = [line["id"] for line in own[: len(own) // 2]]
-    answer = json.dumps([{"lines": lines, "probability": 0.3}])
-    pattern = f"**/api/parts/{NEAR}"
-    told.page.route(pattern, lambda route: route.fulfill(body=answer, content_type="application/json"))
-    yield told, lines
-    told.page.unroute(pattern)
+    with told.answering(f"/parts/{NEAR}", [{"lines": lines, "probability": 0.3}]):
+        yield told, lines
 
 
 def middle_depths(state, numbers):
