@@ -8,7 +8,7 @@ import numpy as np
 from linecad.arrays import Float
 from linecad.corrections.edits import FaceEdit
 from linecad.depth.normals import Normals
-from linecad.directions import Turns
+from linecad.directions import UP, Turns
 from linecad.model.openings.shown import WallShown
 from linecad.model.regions.as_told import uncovered, with_told
 from linecad.model.regions.blank_walls import with_blank_walls
@@ -17,7 +17,7 @@ from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.kerbs import STEPS, on_kerbs
-from linecad.model.regions.labelling import find_labels
+from linecad.model.regions.labelling import Labels, find_labels, price_of
 from linecad.model.regions.lower import parts_behind
 from linecad.model.regions.mapped import MappedDepths, laid_on, level_of_map, with_mapped
 from linecad.model.regions.opened import with_walls_shown
@@ -29,17 +29,22 @@ from linecad.model.regions.skirtings import with_skirtings
 from linecad.model.regions.skyline import sure_sky
 from linecad.model.regions.surfaces import (
     FIRM_FEET,
+    Ground,
     GroundOfFeet,
     Surface,
     find_surfaces,
     ground_of_feet,
+    is_contested,
     level_of_ends,
+    likely_grounds,
 )
 from linecad.model.regions.telling import tell
 from linecad.model.regions.told import Before, Told
 from linecad.scene import Camera, Lines, Plane
 
 EXACT = 0.03  # log depth, widest errors of parts of bodies by a map that tells a road from a pavement
+SEEN = 0.01  # of the photo, that shows the ground at least where it is seen
+PER_PHOTO = 240.0  # log-odds for a ground by which the labels cost less, where each sample of the photo costs 1 less
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,11 +70,27 @@ class _Sight:
     look: Look
     raster: Raster
     view: View
+    heaven: Heaven
     feet: GroundOfFeet | None
+    ceiling: float | None  # its height above the camera, where there is one
 
-    def show(self, surfaces: list[Surface], heaven: Heaven, firm: Surface | None) -> "_Shown":
+    def with_ground(self, ground: Ground | None) -> "_Standing":
+        """What every part of the photo shows where the ground is at a height."""
+        lines, look, raster, view = self.lines, self.look, self.raster, self.view
+        surfaces = find_surfaces(self.planes, lines, view.camera, ground, self.ceiling)
+        trodden = ground_of_feet(surfaces, ground)
+        firm = trodden if self.feet and self.feet.log_odds >= FIRM_FEET else None
+        surfaces = with_mapped(surfaces, raster, firm)
+        # After the map's: its walls may go on farther, and its floor is where feet stand.
+        if self.heaven.is_ceiling:
+            surfaces = with_skirtings(surfaces, lines, view.camera, view.turns)
+        elif look.sketch is not None:
+            surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, self.heaven, view)
+        return _Standing(ground, surfaces, trodden, firm, self.show(surfaces, firm))
+
+    def show(self, surfaces: list[Surface], firm: Surface | None) -> "_Shown":
         """What every part of the photo shows of some surfaces."""
-        lines, raster, view = self.lines, self.raster, self.view
+        lines, raster, view, heaven = self.lines, self.raster, self.view, self.heaven
         found = find_labels(lines, surfaces, raster, heaven, view, firm)
         told, surfaces = tell(self.look.faces, self.planes, lines, surfaces, view, self.feet)
         if told.areas:
@@ -79,7 +100,8 @@ class _Sight:
         meets = find_meets(lines, found.surfaces, view).ends
         length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
         filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view, told.shapes("clutter"))
-        return _Shown(with_told(on_ground(filled, raster, view), told), surfaces, told, heaven)
+        filled = with_told(on_ground(filled, raster, view), told)
+        return _Shown(filled, surfaces, told, heaven, price_of(found, raster), *_shares_of_ground(found))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,6 +112,25 @@ class _Shown:
     surfaces: list[Surface]  # with those that a person told of
     told: Told
     heaven: Heaven  # as a person has it
+    price: float  # of the labels, as a share of the samples
+    share: float  # of the photo that shows ground
+    of_level: float  # of the photo that shows the level below the camera that it shows most of
+
+
+@dataclass(frozen=True, eq=False)
+class _Standing:
+    """What every part of a photo shows where the ground is at a height, and of which surfaces."""
+
+    ground: Ground | None
+    surfaces: list[Surface]  # before a person tells of others
+    trodden: Surface | None  # the ground among them, if feet of walls put it there
+    firm: Surface | None  # the same where these feet are firm
+    shown: _Shown
+
+    @property
+    def log_odds(self) -> float:
+        """What lines, feet and labels say of this ground."""
+        return (self.ground.log_odds if self.ground else 0.0) - PER_PHOTO * self.shown.price
 
 
 def find_regions(
@@ -101,24 +142,17 @@ def find_regions(
     raster = with_walls_shown(raster, look.walls, look.faces)
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
-    surfaces = find_surfaces(planes, lines, camera, feet, _ceiling(look, lines) if heaven.is_ceiling else None)
-    trodden = ground_of_feet(surfaces, lines, feet)
-    firm = trodden if feet and feet.log_odds >= FIRM_FEET else None
-    surfaces = with_mapped(surfaces, raster, firm)
-    # After the map's: its walls may go on farther, and its floor is where feet stand.
-    if heaven.is_ceiling:
-        surfaces = with_skirtings(surfaces, lines, camera, turns)
-    elif look.sketch is not None:
-        surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, heaven, view)
-    sight = _Sight(planes, lines, look, raster, view, feet)
-    shown = sight.show(surfaces, heaven, firm)
+    ceiling = _ceiling(look, lines) if heaven.is_ceiling else None
+    sight = _Sight(planes, lines, look, raster, view, heaven, feet, ceiling)
+    standing = _most_likely(sight, likely_grounds(planes, lines, feet))
+    surfaces, trodden, shown = standing.surfaces, standing.trodden, standing.shown
     filled = shown.filled
     if trodden is not None and any(surface is trodden for surface in shown.surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
         road = None if filled.drop is not None else _road_of_map(trodden, raster, look.mapped)
         if road is not None and not any(surface.kind == "ceiling" for surface in filled.labels.surfaces):
             surfaces = [road if surface is trodden else surface for surface in surfaces]
-            shown = sight.show(surfaces, heaven, firm and road)
+            shown = sight.show(surfaces, standing.firm and road)
             filled = replace(shown.filled, lowered=float(road.offset / trodden.offset) - 1)
     filled = replace(with_hidden(filled, raster), sky=sure_sky(shown.heaven, raster))
     if look.sketch is not None:
@@ -126,6 +160,28 @@ def find_regions(
     filled = uncovered(filled, shown.told)
     ending = [area.shows for area in shown.told.areas if isinstance(area.shows, Surface)]
     return replace(filled, behind=parts_behind(filled.labels, view, ending))
+
+
+def _most_likely(sight: _Sight, grounds: list[Ground]) -> _Standing:
+    """The first of the grounds; where lines contradict feet, or little shows it, the likeliest of those that are seen.
+
+    Feet and lines of misplaced bodies say alike little then, but a floor at the wrong height leaves walls where the
+    photo shows floor. Little is less than shows another level.
+    """
+    first = sight.with_ground(grounds[0] if grounds else None)
+    if len(grounds) < 2 or not (is_contested(grounds) or first.shown.share < max(SEEN, first.shown.of_level)):
+        return first
+    seen = [each for each in (first, *map(sight.with_ground, grounds[1:])) if each.shown.share >= SEEN]
+    return max(seen, key=lambda each: each.log_odds, default=first)
+
+
+def _shares_of_ground(labels: Labels) -> tuple[float, float]:
+    """Shares of the photo's samples that show the ground, and the level below the camera that most of them show."""
+    shown = np.bincount(labels.label[labels.cell], minlength=labels.sky) / len(labels.cell)
+    below = [number for number, surface in enumerate(labels.surfaces) if surface.axis == UP and surface.offset < 0]
+    ground = [number for number in below if labels.surfaces[number].kind == "ground"]
+    levels = [float(shown[number]) for number in below if labels.surfaces[number].kind == "level"]
+    return float(shown[ground].sum()), max(levels, default=0.0)
 
 
 def _road_of_map(ground: Surface, raster: Raster, mapped: MappedDepths | None) -> Surface | None:

@@ -149,6 +149,12 @@ def find_labels(
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
 
+def price_of(labels: Labels, raster: Raster) -> float:
+    """What labels, their corners and the surfaces that are shown cost, as a share of the samples."""
+    shown = np.unique(labels.label[labels.label < labels.sky])
+    return (labels.price + float(_prices(labels.surfaces, raster)[shown].sum()) / UNIT) / len(labels.cell)
+
+
 def _shown_sides(found: Labels, sides: list[Side], covered: Bool) -> list[Side]:
     """The sides, last of the surfaces, that the photo shows in most of where they may be.
 

@@ -1,7 +1,7 @@
 """What a part of the photo may show: the walls of the scene, its ground, its ceiling.
 
 Planes that a wall's relief puts a little before and behind it are one wall here: the one with the most lines stands for
-them. The ground is where the feet of walls put it, as far as the lines of the walls agree, else at the lowest of them.
+them. The ground may be where the feet of walls put it, at the lowest of the lines, or at a level of many lines.
 """
 
 from dataclasses import dataclass
@@ -25,7 +25,8 @@ FURTHEST_FOOT = 1.5  # times the lowest level; the ground is no lower, unless fe
 FURTHEST_FIRM = 3.5  # below shop windows and plain walls there is no line
 FIRM_FEET = 10.0  # log-odds of the feet of walls, from which on they know the ground better than a map or few lines
 BELOW = 1.04  # times the ground's height; a line that ends lower contradicts it
-CONTRADICTION = 20.0  # log-odds against the ground of the feet, times the share of lines that contradict it
+CONTRADICTION = 20.0  # log-odds against a ground, times the share of lines that contradict it
+LEVEL_LINES, LEVEL_SHARE = 8, 0.05  # of a level that may be the ground, with its share of what lines say about levels
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,12 +51,21 @@ class GroundOfFeet:
     is_open: bool = False  # no plants hide the feet (`linecad.model.regions.overgrown`)
 
 
+@dataclass(frozen=True)
+class Ground:
+    """A height at which the ground may be."""
+
+    height: float  # of the camera above it, in the scene's unit
+    log_odds: float  # of the feet that put it there, if any do, less those of lines that end below it
+    is_by_feet: bool = False
+
+
 def find_surfaces(
-    planes: tuple[Plane, ...], lines: Lines, camera: Camera, feet: GroundOfFeet | None, ceiling: float | None
+    planes: tuple[Plane, ...], lines: Lines, camera: Camera, ground: Ground | None, ceiling: float | None
 ) -> list[Surface]:
     """The walls and levels of a scene, those with the longest lines first, then its ground and its ceiling.
 
-    A scene whose lines all end above the horizon has no ground. `ceiling` is the height of one above the camera.
+    `ceiling` is the height of one above the camera.
     """
     length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
     row = {number: index for index, number in enumerate(lines.id.tolist())}
@@ -73,30 +83,53 @@ def find_surfaces(
             kind: Kind = "level" if plane.axis == 2 else "wall"
             found.append(Surface(kind, plane.axis, plane.offset, own, plane.id))
     walls = [wall for wall in found if length[wall.lines].sum() >= LEAST_LENGTH * camera.width][:MOST_SURFACES]
-    ground = ground_height(lines, feet)
-    for kind, height in (("ground", None if ground is None else -ground), ("ceiling", ceiling)):
-        if height is not None:
-            found_by_feet = kind == "ground" and feet is not None and height == -feet.height
-            walls = _with_level(walls, kind, height, SAME_LEVEL if found_by_feet else GROUND_STEP)
-    return walls
+    if ground is not None:
+        walls = _with_level(walls, "ground", -ground.height, SAME_LEVEL if ground.is_by_feet else GROUND_STEP)
+    return walls if ceiling is None else _with_level(walls, "ceiling", ceiling, GROUND_STEP)
 
 
-def ground_height(lines: Lines, feet: GroundOfFeet | None) -> float | None:
-    """Height of the camera above the ground; None where no line ends below the horizon."""
+def likely_grounds(planes: tuple[Plane, ...], lines: Lines, feet: GroundOfFeet | None) -> list[Ground]:
+    """Where the ground may be: first where it is by lines and feet alone, then its rivals; none above the horizon.
+
+    Feet put it there unless lines that end lower say as much against it; then it is at the lowest of the lines, and
+    that of the feet, where no plants hide them, is a rival.
+    """
     lowest = level_of_ends(lines, above=False)
-    if lowest is None or feet is None:
-        return lowest
+    if lowest is None:
+        return []
     weight, low = weights_of(lines), -lines.ends[:, :, 2].min(axis=1)
-    contradicted = weight[low > feet.height * BELOW].sum() / weight[low > 0].sum()
-    furthest = FURTHEST_FIRM if feet.is_open and feet.log_odds >= FIRM_FEET else FURTHEST_FOOT
-    if feet.height < furthest * lowest and feet.log_odds > CONTRADICTION * contradicted:
-        return feet.height
-    return lowest
+    below = weight[low > 0].sum()
+
+    def ground_at(height: float, log_odds: float = 0.0, is_by_feet: bool = False) -> Ground:
+        contradicted = weight[low > height * BELOW].sum() / below
+        return Ground(height, float(log_odds - CONTRADICTION * contradicted), is_by_feet)
+
+    found = [ground_at(lowest)]
+    if feet is not None:
+        furthest = FURTHEST_FIRM if feet.is_open and feet.log_odds >= FIRM_FEET else FURTHEST_FOOT
+        if feet.height < furthest * lowest:
+            trodden = ground_at(feet.height, feet.log_odds, is_by_feet=True)
+            if trodden.log_odds > 0:
+                found.insert(0, trodden)
+            elif feet.is_open:  # else it may be the foot of a hedge, where the photo shows an edge too
+                found.append(trodden)
+    row = {number: index for index, number in enumerate(lines.id.tolist())}
+    levels = [plane for plane in planes if plane.axis == 2 and plane.offset < 0 and len(plane.lines) >= LEVEL_LINES]
+    for level in levels:
+        is_new = all(apart(-level.offset, ground.height) >= SAME_LEVEL for ground in found)
+        if is_new and weight[[row[number] for number in level.lines]].sum() >= LEVEL_SHARE * below:
+            found.append(ground_at(-level.offset))
+    return found
 
 
-def ground_of_feet(surfaces: list[Surface], lines: Lines, feet: GroundOfFeet | None) -> Surface | None:
+def is_contested(grounds: list[Ground]) -> bool:
+    """Whether lines contradict the ground of the feet more than the feet tell."""
+    return any(ground.is_by_feet for ground in grounds[1:])
+
+
+def ground_of_feet(surfaces: list[Surface], ground: Ground | None) -> Surface | None:
     """The ground of those that were found, if feet of walls made it what it is."""
-    if feet is None or ground_height(lines, feet) != feet.height:
+    if ground is None or not ground.is_by_feet:
         return None
     return next((surface for surface in surfaces if surface.kind == "ground"), None)
 

@@ -18,6 +18,7 @@ from linecad.geometry import central_camera, project, world_rays
 from linecad.model.planes import find_planes
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.find import Look, find_regions
+from linecad.model.regions.surfaces import GroundOfFeet, Surface, find_surfaces, likely_grounds
 from linecad.scene import Camera, Intersections, Lines, Plane
 
 WIDTH, HEIGHT, FOCAL = 960, 720, 800.0
@@ -69,6 +70,11 @@ class House:
     photo: NDArray[np.uint8]  # (H, W, 3) RGB
     truth: Int  # (H, W) what each pixel shows: the side, the front, the ground, SKY or CLUTTER
     trees: tuple[Float, ...]  # (V, 2) px, outlines
+
+    def surfaces(self, feet: GroundOfFeet | None = None) -> list[Surface]:
+        """What it is made of, on the likeliest ground."""
+        ground = likely_grounds(self.planes, self.lines, feet)[0]
+        return find_surfaces(self.planes, self.lines, self.camera, ground, ceiling=None)
 
 
 def build_house(trees=(), edges_too=()):

@@ -30,7 +30,7 @@ from linecad.model.regions.evidence import (
 from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.raster import COLUMNS, take_raster
 from linecad.model.regions.segments import limit_of_depth
-from linecad.model.regions.surfaces import Surface, find_surfaces
+from linecad.model.regions.surfaces import Surface
 
 NO_LINES = np.zeros(0, np.int64)
 NO_HEAVEN = Heaven(np.zeros(360 * COLUMNS, bool), is_sky=False, is_ceiling=False)
@@ -44,7 +44,7 @@ def raster(house):
 
 @pytest.fixture(scope="module")
 def surfaces(house):
-    return find_surfaces(house.planes, house.lines, house.camera, None, ceiling=None)
+    return house.surfaces()
 
 
 def sample(x, y):

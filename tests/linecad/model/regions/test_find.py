@@ -1,5 +1,7 @@
 """All stages together, from lines and a picture to what every part of it shows."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -16,7 +18,7 @@ from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.mapped import MappedDepths
 from linecad.model.regions.roofs import Sketch
-from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, level_of_ends
+from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, is_contested, level_of_ends, likely_grounds
 from linecad.scene import Lines, Plane
 
 
@@ -61,6 +63,45 @@ def test_a_tree_before_the_house_takes_no_part_of_its_walls(house, house_regions
 def test_the_feet_of_walls_put_the_ground(house):
     look = Look(house.photo, GroundOfFeet(2.3, 5.0), None)
     assert ("ground", 2, -2.3) in surfaces(find_regions(house.planes, house.lines, house.camera, house.rotation, look))
+
+
+def misplaced(lines, rows, factor):
+    """The lines, with some of them where nothing in the photo tells them apart from themselves, farther or nearer."""
+    ends = lines.ends.copy()
+    ends[rows] *= factor
+    return replace(lines, ends=ends)
+
+
+def ground_of(house, lines, planes, feet):
+    found = find_regions(planes, lines, house.camera, house.rotation, Look(house.photo, feet, None))
+    return [-offset for kind, _, offset in surfaces(found) if kind == "ground"]
+
+
+def test_the_photo_tells_feet_from_lines_of_misplaced_bodies_that_contradict_them(house):
+    """A body 2.5 times too far ends far below the ground, and its walls would show what is floor in the photo."""
+    windows = np.flatnonzero(house.lines.ends[:, :, 0].max(axis=1) > 2.1)
+    lines = misplaced(house.lines, windows, 2.5)
+    planes = tuple(plane for plane in house.planes if plane.axis == 0)
+    feet = GroundOfFeet(2.0, 5.0, is_open=True)
+    assert is_contested(likely_grounds(planes, lines, feet))
+    assert ground_of(house, lines, planes, feet) == [2.0]
+
+
+def test_feet_that_lines_contradict_are_wrong_where_the_photo_fits_the_lines(house):
+    feet = GroundOfFeet(0.9, 5.0, is_open=True)
+    assert is_contested(likely_grounds(house.planes, house.lines, feet))
+    assert ground_of(house, house.lines, house.planes, feet) == [2.0]
+
+
+def test_the_ground_is_a_level_of_lines_that_shows_more_of_the_photo(make_house):
+    """Feet below the level that the floor's own lines show would make two floors of it."""
+    paving = [(1, np.array([[x, 4.5, -2.0], [x, 30.0, -2.0]])) for x in np.linspace(-3, 2, 12)]
+    paving += [(0, np.array([[-3.0, y, -2.0], [2.0, y, -2.0]])) for y in np.linspace(4.5, 16, 16)]
+    house = make_house(edges_too=paving)
+    assert ("level", 2, -2.0) in {
+        (each.kind, each.axis, each.offset) for each in house.surfaces(GroundOfFeet(2.6, 1.0))
+    }
+    assert ground_of(house, house.lines, house.planes, GroundOfFeet(2.6, 1.0)) == [2.0]
 
 
 @pytest.mark.parametrize(
@@ -177,9 +218,9 @@ def test_a_plain_wall_of_a_room_stands_on_its_skirting(house, silent, monkeypatc
 def test_heads_put_the_ceiling_above_the_ends_of_lines_where_no_map_shows_it(house, silent, monkeypatch):
     asked = []
 
-    def with_ceiling(planes, lines, camera, feet, ceiling):
+    def with_ceiling(planes, lines, camera, ground, ceiling):
         asked.append(ceiling)
-        return find_surfaces(planes, lines, camera, feet, ceiling)
+        return find_surfaces(planes, lines, camera, ground, ceiling)
 
     monkeypatch.setattr(find, "look_up", below_a_ceiling)
     monkeypatch.setattr(find, "find_surfaces", with_ceiling)

@@ -13,7 +13,7 @@ from linecad.model.regions.heaven import look_up
 from linecad.model.regions.labelling import CORNER, UNIT, Labels, find_labels, united
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
-from linecad.model.regions.surfaces import Surface, find_surfaces
+from linecad.model.regions.surfaces import Surface
 
 LIMIT = 440  # px from the top; the ground ends there, some way behind the house
 
@@ -22,7 +22,7 @@ def labels_of(house, more=()):
     """Labels by the lines and the picture of a house; `more` are surfaces that it does not have."""
     view = View(house.camera, house.rotation, house.photo)
     raster = take_raster(house.lines, house.camera, house.rotation, house.photo)
-    surfaces = [*find_surfaces(house.planes, house.lines, house.camera, None, ceiling=None), *more]
+    surfaces = [*house.surfaces(), *more]
     return find_labels(house.lines, surfaces, raster, look_up(raster), view)
 
 

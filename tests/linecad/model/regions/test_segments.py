@@ -9,7 +9,7 @@ import pytest
 from linecad.geometry import angles_to, vanishing_points, world_rays
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import FURTHEST, View, find_meets, find_segments, limit_of_depth
-from linecad.model.regions.surfaces import Surface, find_surfaces
+from linecad.model.regions.surfaces import Surface
 
 PLAIN = np.full((720, 960, 3), 128, np.uint8)
 NO_LINES = np.zeros(0, np.int64)
@@ -17,7 +17,7 @@ NO_LINES = np.zeros(0, np.int64)
 
 def seen(house, photo=None):
     """Surfaces, raster and view of the house, or of another photo with its lines."""
-    surfaces = find_surfaces(house.planes, house.lines, house.camera, None, ceiling=None)
+    surfaces = house.surfaces()
     return surfaces, take_raster(house.lines, house.camera, house.rotation, photo), View(
         house.camera, house.rotation, photo
     )  # fmt: skip

@@ -9,12 +9,15 @@ from linecad.model.regions.surfaces import (
     FURTHEST_FIRM,
     FURTHEST_FOOT,
     GROUND_STEP,
+    LEVEL_LINES,
+    LEVEL_SHARE,
     MOST_SURFACES,
     RELIEF,
     GroundOfFeet,
     find_surfaces,
-    ground_height,
+    is_contested,
     level_of_ends,
+    likely_grounds,
 )  # fmt: skip
 from linecad.scene import Camera, Lines, Plane
 
@@ -35,8 +38,9 @@ def upright(*spans, length=100.0, probability=(), component=None):
 
 
 def surfaces(planes, lines, feet=None, ceiling=None):
-    """What is found, as tuples."""
-    found = find_surfaces(tuple(planes), lines, CAMERA, feet, ceiling)
+    """What is found, as tuples, on the likeliest ground."""
+    grounds = likely_grounds(tuple(planes), lines, feet)
+    found = find_surfaces(tuple(planes), lines, CAMERA, grounds[0] if grounds else None, ceiling)
     return [(each.kind, each.axis, each.offset, each.lines.tolist(), each.plane) for each in found]
 
 
@@ -78,8 +82,8 @@ def test_the_ground_is_where_nearly_all_lines_end():
 
 
 def test_lines_above_the_horizon_have_no_ground():
-    assert ground_height(ABOVE, None) is None
-    assert ground_height(upright((-2, 2), (-2, 2), *[(1, 2)] * 4), None) is None
+    assert likely_grounds((), ABOVE, None) == []
+    assert likely_grounds((), upright((-2, 2), (-2, 2), *[(1, 2)] * 4), None) == []
     assert surfaces([], ABOVE, GroundOfFeet(1.5, 9.0)) == []
 
 
@@ -90,21 +94,49 @@ def test_lines_whose_place_is_unsure_say_less_about_the_ground():
     assert level_of_ends(upright(*spans, component=[0] * 28 + [1] * 2), above=False) == 2
 
 
+def heights(lines, feet, planes=()):
+    """Of the ground that is likeliest by lines and feet, and of its rivals."""
+    return [ground.height for ground in likely_grounds(planes, lines, feet)]
+
+
 def test_feet_put_the_ground_where_no_line_contradicts_them():
     # All lines end above the feet: the ground is lower than each of them.
-    assert ground_height(BOTH, GroundOfFeet(2.5, 1.0)) == 2.5
-    assert ground_height(BOTH, GroundOfFeet(2.0 / BELOW * 1.001, 0.1)) == 2.0 / BELOW * 1.001
-    # All reach below the feet, which then need log-odds of more than 20.
-    low = GroundOfFeet(1.0, 19.0)
-    assert ground_height(BOTH, low) == 2
-    assert ground_height(BOTH, GroundOfFeet(1.0, 21.0)) == 1.0
+    assert heights(BOTH, GroundOfFeet(2.5, 1.0)) == [2.5, 2]
+    assert heights(BOTH, GroundOfFeet(2.0 / BELOW * 1.001, 0.1))[0] == 2.0 / BELOW * 1.001
     # Feet far below all lines are no feet of theirs.
     far = FURTHEST_FOOT * 2 * 1.01
-    assert ground_height(BOTH, GroundOfFeet(far, 99.0)) == 2
+    assert heights(BOTH, GroundOfFeet(far, 99.0)) == [2]
     # Unless they are firm and in the open: below shop windows there is no line.
-    assert ground_height(BOTH, GroundOfFeet(far, FIRM_FEET, is_open=True)) == far
-    assert ground_height(BOTH, GroundOfFeet(far, 0.99 * FIRM_FEET, is_open=True)) == 2
-    assert ground_height(BOTH, GroundOfFeet(FURTHEST_FIRM * 2 * 1.01, 99.0, is_open=True)) == 2
+    assert heights(BOTH, GroundOfFeet(far, FIRM_FEET, is_open=True)) == [far, 2]
+    assert heights(BOTH, GroundOfFeet(far, 0.99 * FIRM_FEET, is_open=True)) == [2]
+    assert heights(BOTH, GroundOfFeet(FURTHEST_FIRM * 2 * 1.01, 99.0, is_open=True)) == [2]
+
+
+def test_lines_that_reach_below_the_feet_contest_the_ground():
+    # All do, so the feet need log-odds of more than 20.
+    lowest, trodden = likely_grounds((), BOTH, GroundOfFeet(1.0, 19.0, is_open=True))
+    assert (lowest.height, lowest.log_odds, lowest.is_by_feet) == (2, 0, False)
+    assert (trodden.height, trodden.log_odds, trodden.is_by_feet) == (1, -1, True)
+    assert is_contested([lowest, trodden])
+    grounds = likely_grounds((), BOTH, GroundOfFeet(1.0, 21.0))
+    assert [(ground.height, ground.log_odds) for ground in grounds] == [(1, 1), (2, 0)]
+    assert not is_contested(grounds)
+    assert not is_contested(likely_grounds((), BOTH, None))
+    assert heights(BOTH, GroundOfFeet(1.0, 19.0)) == [2], "plants hide them"
+
+
+def test_a_level_of_many_lines_may_be_the_ground():
+    lines = upright(*[(-2, 2)] * 100)
+    many = max(LEVEL_LINES, round(LEVEL_SHARE * 100))
+    level = Plane(0, 2, -1.5, tuple(range(10, 10 + many)))
+    assert heights(lines, None, (level,)) == [2, 1.5]
+    assert heights(lines, GroundOfFeet(2.5, 1.0), (level,)) == [2.5, 2, 1.5]
+    assert heights(lines, GroundOfFeet(1.52, 99.0), (level,)) == [1.52, 2]  # which is that of the feet
+    assert heights(lines, None, (Plane(0, 2, 1.5, level.lines),)) == [2]  # above the camera
+    assert heights(lines, None, (Plane(0, 0, -1.5, level.lines),)) == [2]  # upright
+    assert heights(lines, None, (Plane(0, 2, -1.5, level.lines[: LEVEL_LINES - 1]),)) == [2]
+    assert many < LEVEL_SHARE * 1000
+    assert heights(upright(*[(-2, 2)] * 1000), None, (level,)) == [2]
 
 
 def test_levels_near_the_ground_become_it_and_kerbs_join_it():

@@ -11,14 +11,10 @@ from linecad.directions import UP
 from linecad.model.regions import find
 from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.segments import View
-from linecad.model.regions.surfaces import GroundOfFeet, Surface, find_surfaces, weights_of
+from linecad.model.regions.surfaces import GroundOfFeet, Surface, weights_of
 from linecad.model.regions.telling import IN_THE_SKY, ground_height, tell, wall_by_edges
 
 EVERYWHERE = shapely.box(-0.5, -0.5, 959.5, 719.5)
-
-
-def surfaces_of(house, feet=None):
-    return find_surfaces(house.planes, house.lines, house.camera, feet, ceiling=None)
 
 
 def anchor(house, row):
@@ -38,7 +34,7 @@ def by_edges(house, lines=None, planes=None, surfaces=None):
     view = View(house.camera, house.rotation, house.photo)
     edit = WallByEdges(tuple(anchor(house, row) for row in front_edges(house)))
     planes = house.planes if planes is None else planes
-    return wall_by_edges(edit, planes, lines or house.lines, surfaces or surfaces_of(house), view)
+    return wall_by_edges(edit, planes, lines or house.lines, surfaces or house.surfaces(), view)
 
 
 def test_a_wall_has_the_coordinates_of_its_edges_to_the_last_digit(house):
@@ -118,14 +114,14 @@ def test_told_ground_has_the_height_of_level_lines_on_it_else_of_feet_else_of_th
 def test_ground_above_the_horizon_is_left_out_with_a_note(house):
     view = View(house.camera, house.rotation, house.photo)
     edit = Region(((10.0, 5.0), (200.0, 5.0), (200.0, 60.0)), "ground")
-    told, _ = tell([edit], house.planes, house.lines, surfaces_of(house), view, None)
+    told, _ = tell([edit], house.planes, house.lines, house.surfaces(), view, None)
     assert told.areas == ()
     assert told.notes == (IN_THE_SKY,)
 
 
 def test_told_ground_becomes_a_surface_where_none_was_found(house):
     view = View(house.camera, house.rotation, house.photo)
-    walls = [surface for surface in surfaces_of(house) if surface.kind != "ground"]
+    walls = [surface for surface in house.surfaces() if surface.kind != "ground"]
     edit = Region(((10.0, 650.0), (200.0, 650.0), (200.0, 710.0)), "ground")
     told, surfaces = tell([edit], house.planes, house.lines, walls, view, GroundOfFeet(2.0, 5.0))
     assert [(each.kind, each.offset) for each in surfaces if each.kind == "ground"] == [("ground", -2.0)]
