@@ -1,14 +1,15 @@
 """The stages of finding what the photo shows, in order."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from linecad.arrays import Float
 from linecad.corrections.edits import FaceEdit
 from linecad.depth.normals import Normals
-from linecad.directions import UP, Turns
+from linecad.directions import Turns
 from linecad.model.openings.shown import WallShown
 from linecad.model.regions.as_told import uncovered, with_told
 from linecad.model.regions.blank_walls import with_blank_walls
@@ -17,7 +18,7 @@ from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.kerbs import STEPS, on_kerbs
-from linecad.model.regions.labelling import Labels, find_labels, price_of
+from linecad.model.regions.labelling import Labels, find_labels, price_per_sample
 from linecad.model.regions.lower import parts_behind
 from linecad.model.regions.mapped import MappedDepths, laid_on, level_of_map, with_mapped
 from linecad.model.regions.opened import with_walls_shown
@@ -29,10 +30,15 @@ from linecad.model.regions.skirtings import with_skirtings
 from linecad.model.regions.skyline import sure_sky
 from linecad.model.regions.surfaces import (
     FIRM_FEET,
+    SAME_LEVEL,
     Ground,
     GroundOfFeet,
+    Kind,
     Surface,
+    against,
+    apart,
     find_surfaces,
+    find_walls,
     ground_of_feet,
     is_contested,
     level_of_ends,
@@ -44,7 +50,7 @@ from linecad.scene import Camera, Lines, Plane
 
 EXACT = 0.03  # log depth, widest errors of parts of bodies by a map that tells a road from a pavement
 SEEN = 0.01  # of the photo, that shows the ground at least where it is seen
-PER_PHOTO = 240.0  # log-odds for a ground by which the labels cost less, where each sample of the photo costs 1 less
+PER_PHOTO = 240.0  # log-odds for a ground with which each sample of the photo costs 1 less
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +72,7 @@ class _Sight:
     """What is looked at, and what is known of it before anything is labelled."""
 
     planes: tuple[Plane, ...]
+    walls: list[Surface]  # and levels, of these planes
     lines: Lines
     look: Look
     raster: Raster
@@ -74,10 +81,10 @@ class _Sight:
     feet: GroundOfFeet | None
     ceiling: float | None  # its height above the camera, where there is one
 
-    def with_ground(self, ground: Ground | None) -> "_Standing":
-        """What every part of the photo shows where the ground is at a height."""
+    def stand_on(self, ground: Ground | None) -> "_Standing":
+        """The surfaces where the ground is at a height."""
         lines, look, raster, view = self.lines, self.look, self.raster, self.view
-        surfaces = find_surfaces(self.planes, lines, view.camera, ground, self.ceiling)
+        surfaces = find_surfaces(self.walls, ground, self.ceiling)
         trodden = ground_of_feet(surfaces, ground)
         firm = trodden if self.feet and self.feet.log_odds >= FIRM_FEET else None
         surfaces = with_mapped(surfaces, raster, firm)
@@ -86,12 +93,15 @@ class _Sight:
             surfaces = with_skirtings(surfaces, lines, view.camera, view.turns)
         elif look.sketch is not None:
             surfaces = with_blank_walls(surfaces, look.sketch, lines, raster, self.heaven, view)
-        return _Standing(ground, surfaces, trodden, firm, self.show(surfaces, firm))
+        return _Standing(self, ground, surfaces, trodden, firm)
 
-    def show(self, surfaces: list[Surface], firm: Surface | None) -> "_Shown":
-        """What every part of the photo shows of some surfaces."""
+    def label(self, surfaces: list[Surface], firm: Surface | None) -> Labels:
+        """What the photo shows of some surfaces, before a person tells."""
+        return find_labels(self.lines, surfaces, self.raster, self.heaven, self.view, firm)
+
+    def show(self, found: Labels, surfaces: list[Surface], firm: Surface | None) -> "_Shown":
+        """What every part of the photo shows of some surfaces, of which labels were `found`."""
         lines, raster, view, heaven = self.lines, self.raster, self.view, self.heaven
-        found = find_labels(lines, surfaces, raster, heaven, view, firm)
         told, surfaces = tell(self.look.faces, self.planes, lines, surfaces, view, self.feet)
         if told.areas:
             told = replace(told, before=Before(found.surfaces, found.label[found.cell]))
@@ -100,8 +110,7 @@ class _Sight:
         meets = find_meets(lines, found.surfaces, view).ends
         length = np.linalg.norm(meets[:, 1] - meets[:, 0], axis=1)
         filled = fill(found, meets[np.argsort(-length, kind="stable")], raster, view, told.shapes("clutter"))
-        filled = with_told(on_ground(filled, raster, view), told)
-        return _Shown(filled, surfaces, told, heaven, price_of(found, raster), *_shares_of_ground(found))
+        return _Shown(with_told(on_ground(filled, raster, view), told), surfaces, told, heaven)
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,25 +121,45 @@ class _Shown:
     surfaces: list[Surface]  # with those that a person told of
     told: Told
     heaven: Heaven  # as a person has it
-    price: float  # of the labels, as a share of the samples
-    share: float  # of the photo that shows ground
-    of_level: float  # of the photo that shows the level below the camera that it shows most of
 
 
 @dataclass(frozen=True, eq=False)
 class _Standing:
-    """What every part of a photo shows where the ground is at a height, and of which surfaces."""
+    """Surfaces where the ground is at a height, before a person tells."""
 
+    sight: _Sight
     ground: Ground | None
-    surfaces: list[Surface]  # before a person tells of others
+    surfaces: list[Surface]
     trodden: Surface | None  # the ground among them, if feet of walls put it there
     firm: Surface | None  # the same where these feet are firm
-    shown: _Shown
+
+    @cached_property
+    def labels(self) -> Labels:
+        """What the photo shows of them."""
+        return self.sight.label(self.surfaces, self.firm)
 
     @property
+    def height(self) -> float | None:
+        """Of the camera above the ground as it is among the surfaces: that of a level, or as a depth map has it."""
+        return next((-surface.offset for surface in self.surfaces if surface.kind == "ground"), None)
+
+    @cached_property
     def log_odds(self) -> float:
-        """What lines, feet and labels say of this ground."""
-        return (self.ground.log_odds if self.ground else 0.0) - PER_PHOTO * self.shown.price
+        """What feet, lines and labels say of this ground, by one cost of labels: a firm ground costs more."""
+        labels = self.labels if self.firm is None else self.sight.label(self.surfaces, None)
+        of_feet = self.ground.of_feet if self.ground else 0.0
+        lines = against(self.sight.lines, self.height) if self.height is not None else 0.0
+        return of_feet - lines - PER_PHOTO * price_per_sample(labels, self.sight.raster)
+
+    def share(self, kind: Kind, heights: Collection[float] | None = None) -> float:
+        """Share of the photo that shows surfaces of a kind below the camera, of all or some heights above these."""
+        labels = self.labels
+        own = [
+            number
+            for number, surface in enumerate(labels.surfaces)
+            if surface.kind == kind and surface.offset < 0 and (heights is None or -surface.offset in heights)
+        ]
+        return float(np.isin(labels.label[labels.cell], own).mean())
 
 
 def find_regions(
@@ -143,16 +172,19 @@ def find_regions(
     heaven = look_up(raster)
     feet = look.feet and replace(look.feet, is_open=is_in_the_open(look.feet, lines, raster, view))
     ceiling = _ceiling(look, lines) if heaven.is_ceiling else None
-    sight = _Sight(planes, lines, look, raster, view, heaven, feet, ceiling)
-    standing = _most_likely(sight, likely_grounds(planes, lines, feet))
-    surfaces, trodden, shown = standing.surfaces, standing.trodden, standing.shown
+    walls = find_walls(planes, lines, camera)
+    sight = _Sight(planes, walls, lines, look, raster, view, heaven, feet, ceiling)
+    standing = _most_likely(sight, likely_grounds(walls, lines, feet))
+    surfaces, trodden, firm = standing.surfaces, standing.trodden, standing.firm
+    shown = sight.show(standing.labels, surfaces, firm)
     filled = shown.filled
     if trodden is not None and any(surface is trodden for surface in shown.surfaces):
         filled = on_kerbs(filled, planes, raster, view)  # walls stand on the pavement; lines may have found the road
         road = None if filled.drop is not None else _road_of_map(trodden, raster, look.mapped)
         if road is not None and not any(surface.kind == "ceiling" for surface in filled.labels.surfaces):
             surfaces = [road if surface is trodden else surface for surface in surfaces]
-            shown = sight.show(surfaces, standing.firm and road)
+            firm = firm and road
+            shown = sight.show(sight.label(surfaces, firm), surfaces, firm)
             filled = replace(shown.filled, lowered=float(road.offset / trodden.offset) - 1)
     filled = replace(with_hidden(filled, raster), sky=sure_sky(shown.heaven, raster))
     if look.sketch is not None:
@@ -163,25 +195,34 @@ def find_regions(
 
 
 def _most_likely(sight: _Sight, grounds: list[Ground]) -> _Standing:
-    """The first of the grounds; where lines contradict feet, or little shows it, the likeliest of those that are seen.
+    """The first of the grounds, or where that is in question the likeliest of those that the photo shows.
 
-    Feet and lines of misplaced bodies say alike little then, but a floor at the wrong height leaves walls where the
-    photo shows floor. Little is less than shows another level.
+    It is where lines contradict feet, where the photo hardly shows it, and where it shows more of a rival. Feet and
+    lines of misplaced bodies say alike little then, but a floor at the wrong height leaves walls where the photo shows
+    floor.
     """
-    first = sight.with_ground(grounds[0] if grounds else None)
-    if len(grounds) < 2 or not (is_contested(grounds) or first.shown.share < max(SEEN, first.shown.of_level)):
+    first = sight.stand_on(grounds[0] if grounds else None)
+    rivals = [ground for ground in grounds[1:] if ground.height != grounds[0].height]
+    if not rivals:
         return first
-    seen = [each for each in (first, *map(sight.with_ground, grounds[1:])) if each.shown.share >= SEEN]
-    return max(seen, key=lambda each: each.log_odds, default=first)
+    seen = first.share("ground")
+    is_hardly_seen = seen < max(SEEN, first.share("level", [ground.height for ground in rivals]))
+    if not (is_contested(grounds) or is_hardly_seen):
+        return first
+    different = [first]
+    for ground in rivals:
+        rival = sight.stand_on(ground)
+        if all(_differ(rival.height, each.height) for each in different):
+            different.append(rival)
+    shown = [each for each in different if each.share("ground") >= SEEN]
+    return max(shown, key=lambda each: each.log_odds, default=first)
 
 
-def _shares_of_ground(labels: Labels) -> tuple[float, float]:
-    """Shares of the photo's samples that show the ground, and the level below the camera that most of them show."""
-    shown = np.bincount(labels.label[labels.cell], minlength=labels.sky) / len(labels.cell)
-    below = [number for number, surface in enumerate(labels.surfaces) if surface.axis == UP and surface.offset < 0]
-    ground = [number for number in below if labels.surfaces[number].kind == "ground"]
-    levels = [float(shown[number]) for number in below if labels.surfaces[number].kind == "level"]
-    return float(shown[ground].sum()), max(levels, default=0.0)
+def _differ(one: float | None, other: float | None) -> bool:
+    """Whether two heights above the ground are those of two grounds."""
+    if one is None or other is None:
+        return one is not other
+    return apart(one, other) >= SAME_LEVEL
 
 
 def _road_of_map(ground: Surface, raster: Raster, mapped: MappedDepths | None) -> Surface | None:

@@ -149,8 +149,8 @@ def find_labels(
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
 
-def price_of(labels: Labels, raster: Raster) -> float:
-    """What labels, their corners and the surfaces that are shown cost, as a share of the samples."""
+def price_per_sample(labels: Labels, raster: Raster) -> float:
+    """What labels, their corners and the surfaces that are shown cost, by the number of samples."""
     shown = np.unique(labels.label[labels.label < labels.sky])
     return (labels.price + float(_prices(labels.surfaces, raster)[shown].sum()) / UNIT) / len(labels.cell)
 

@@ -27,6 +27,7 @@ FIRM_FEET = 10.0  # log-odds of the feet of walls, from which on they know the g
 BELOW = 1.04  # times the ground's height; a line that ends lower contradicts it
 CONTRADICTION = 20.0  # log-odds against a ground, times the share of lines that contradict it
 LEVEL_LINES, LEVEL_SHARE = 8, 0.05  # of a level that may be the ground, with its share of what lines say about levels
+MOST_LEVELS = 2  # that may be the ground, those with the most of that
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,17 +57,13 @@ class Ground:
     """A height at which the ground may be."""
 
     height: float  # of the camera above it, in the scene's unit
-    log_odds: float  # of the feet that put it there, if any do, less those of lines that end below it
+    reach: float  # log offset within which it is the level of lines that is there
+    of_feet: float = 0.0  # log-odds of the feet of walls that put it there
     is_by_feet: bool = False
 
 
-def find_surfaces(
-    planes: tuple[Plane, ...], lines: Lines, camera: Camera, ground: Ground | None, ceiling: float | None
-) -> list[Surface]:
-    """The walls and levels of a scene, those with the longest lines first, then its ground and its ceiling.
-
-    `ceiling` is the height of one above the camera.
-    """
+def find_walls(planes: tuple[Plane, ...], lines: Lines, camera: Camera) -> list[Surface]:
+    """The walls and levels of a scene, those with the longest lines first."""
     length = np.linalg.norm(lines.segment[:, 1] - lines.segment[:, 0], axis=1)
     row = {number: index for index, number in enumerate(lines.id.tolist())}
     members = [np.array([row[number] for number in plane.lines], np.int64) for plane in planes]
@@ -82,48 +79,50 @@ def find_surfaces(
         else:
             kind: Kind = "level" if plane.axis == 2 else "wall"
             found.append(Surface(kind, plane.axis, plane.offset, own, plane.id))
-    walls = [wall for wall in found if length[wall.lines].sum() >= LEAST_LENGTH * camera.width][:MOST_SURFACES]
+    return [wall for wall in found if length[wall.lines].sum() >= LEAST_LENGTH * camera.width][:MOST_SURFACES]
+
+
+def find_surfaces(walls: list[Surface], ground: Ground | None, ceiling: float | None) -> list[Surface]:
+    """The walls and levels, then the ground and the ceiling, of which `ceiling` is the height above the camera."""
     if ground is not None:
-        walls = _with_level(walls, "ground", -ground.height, SAME_LEVEL if ground.is_by_feet else GROUND_STEP)
+        walls = _with_level(walls, "ground", -ground.height, ground.reach)
     return walls if ceiling is None else _with_level(walls, "ceiling", ceiling, GROUND_STEP)
 
 
-def likely_grounds(planes: tuple[Plane, ...], lines: Lines, feet: GroundOfFeet | None) -> list[Ground]:
+def likely_grounds(walls: list[Surface], lines: Lines, feet: GroundOfFeet | None) -> list[Ground]:
     """Where the ground may be: first where it is by lines and feet alone, then its rivals; none above the horizon.
 
     Feet put it there unless lines that end lower say as much against it; then it is at the lowest of the lines, and
-    that of the feet, where no plants hide them, is a rival.
+    that of the feet, where no plants hide them, is a rival. So are the levels of many lines among the `walls`.
     """
     lowest = level_of_ends(lines, above=False)
     if lowest is None:
         return []
-    weight, low = weights_of(lines), -lines.ends[:, :, 2].min(axis=1)
-    below = weight[low > 0].sum()
-
-    def ground_at(height: float, log_odds: float = 0.0, is_by_feet: bool = False) -> Ground:
-        contradicted = weight[low > height * BELOW].sum() / below
-        return Ground(height, float(log_odds - CONTRADICTION * contradicted), is_by_feet)
-
-    found = [ground_at(lowest)]
+    found = [Ground(lowest, GROUND_STEP)]
     if feet is not None:
         furthest = FURTHEST_FIRM if feet.is_open and feet.log_odds >= FIRM_FEET else FURTHEST_FOOT
         if feet.height < furthest * lowest:
-            trodden = ground_at(feet.height, feet.log_odds, is_by_feet=True)
-            if trodden.log_odds > 0:
+            trodden = Ground(feet.height, SAME_LEVEL, feet.log_odds, is_by_feet=True)
+            if feet.log_odds > against(lines, feet.height):
                 found.insert(0, trodden)
             elif feet.is_open:  # else it may be the foot of a hedge, where the photo shows an edge too
                 found.append(trodden)
-    row = {number: index for index, number in enumerate(lines.id.tolist())}
-    levels = [plane for plane in planes if plane.axis == 2 and plane.offset < 0 and len(plane.lines) >= LEVEL_LINES]
-    for level in levels:
-        is_new = all(apart(-level.offset, ground.height) >= SAME_LEVEL for ground in found)
-        if is_new and weight[[row[number] for number in level.lines]].sum() >= LEVEL_SHARE * below:
-            found.append(ground_at(-level.offset))
-    return found
+    weight, below = weights_of(lines), lines.ends[:, :, 2].min(axis=1) < 0
+    levels = [wall for wall in walls if wall.axis == 2 and wall.offset < 0 and len(wall.lines) >= LEVEL_LINES]
+    levels = [level for level in levels if weight[level.lines].sum() >= LEVEL_SHARE * weight[below].sum()]
+    levels.sort(key=lambda level: -weight[level.lines].sum())
+    return found + [Ground(-level.offset, SAME_LEVEL) for level in levels[:MOST_LEVELS]]
+
+
+def against(lines: Lines, height: float) -> float:
+    """Log-odds of the lines that end lower against a ground, by the height of the camera above it."""
+    weight, low = weights_of(lines), -lines.ends[:, :, 2].min(axis=1)
+    below = weight[low > 0].sum()
+    return CONTRADICTION * float(weight[low > height * BELOW].sum() / below) if below > 0 else 0.0
 
 
 def is_contested(grounds: list[Ground]) -> bool:
-    """Whether lines contradict the ground of the feet more than the feet tell."""
+    """Whether the ground of the feet is a rival of another one."""
     return any(ground.is_by_feet for ground in grounds[1:])
 
 

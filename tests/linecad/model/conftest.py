@@ -18,7 +18,7 @@ from linecad.geometry import central_camera, project, world_rays
 from linecad.model.planes import find_planes
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.find import Look, find_regions
-from linecad.model.regions.surfaces import GroundOfFeet, Surface, find_surfaces, likely_grounds
+from linecad.model.regions.surfaces import GroundOfFeet, Surface, find_surfaces, find_walls, likely_grounds
 from linecad.scene import Camera, Intersections, Lines, Plane
 
 WIDTH, HEIGHT, FOCAL = 960, 720, 800.0
@@ -73,8 +73,8 @@ class House:
 
     def surfaces(self, feet: GroundOfFeet | None = None) -> list[Surface]:
         """What it is made of, on the likeliest ground."""
-        ground = likely_grounds(self.planes, self.lines, feet)[0]
-        return find_surfaces(self.planes, self.lines, self.camera, ground, ceiling=None)
+        walls = find_walls(self.planes, self.lines, self.camera)
+        return find_surfaces(walls, likely_grounds(walls, self.lines, feet)[0], ceiling=None)
 
 
 def build_house(trees=(), edges_too=()):

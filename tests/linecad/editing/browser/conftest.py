@@ -254,7 +254,7 @@ class Screen:
             """([path, answer]) => {
               const ask = window.fetch;
               window.fetch = (url, options) =>
-                url.includes(path) ? Promise.resolve(Response.json(answer)) : ask(url, options);
+                url.endsWith(path) ? Promise.resolve(Response.json(answer)) : ask(url, options);
               window.answered = () => { window.fetch = ask; };
             }""",
             [path, answer],

@@ -18,7 +18,14 @@ from linecad.model.regions.find import Look, find_regions
 from linecad.model.regions.heaven import Heaven
 from linecad.model.regions.mapped import MappedDepths
 from linecad.model.regions.roofs import Sketch
-from linecad.model.regions.surfaces import GroundOfFeet, find_surfaces, is_contested, level_of_ends, likely_grounds
+from linecad.model.regions.surfaces import (
+    GroundOfFeet,
+    find_surfaces,
+    find_walls,
+    is_contested,
+    level_of_ends,
+    likely_grounds,
+)
 from linecad.scene import Lines, Plane
 
 
@@ -77,31 +84,70 @@ def ground_of(house, lines, planes, feet):
     return [-offset for kind, _, offset in surfaces(found) if kind == "ground"]
 
 
-def test_the_photo_tells_feet_from_lines_of_misplaced_bodies_that_contradict_them(house):
-    """A body 2.5 times too far ends far below the ground, and its walls would show what is floor in the photo."""
+@pytest.fixture(scope="module")
+def astray(house):
+    """The lines of the house with a body 2.5 times too far, which ends far below the ground; planes of the rest."""
     windows = np.flatnonzero(house.lines.ends[:, :, 0].max(axis=1) > 2.1)
-    lines = misplaced(house.lines, windows, 2.5)
-    planes = tuple(plane for plane in house.planes if plane.axis == 0)
-    feet = GroundOfFeet(2.0, 5.0, is_open=True)
-    assert is_contested(likely_grounds(planes, lines, feet))
-    assert ground_of(house, lines, planes, feet) == [2.0]
+    return misplaced(house.lines, windows, 2.5), tuple(plane for plane in house.planes if plane.axis == 0)
+
+
+def grounds_of(house, lines, planes, feet):
+    return likely_grounds(find_walls(planes, lines, house.camera), lines, replace(feet, is_open=True))
+
+
+@pytest.mark.parametrize("log_odds", [1.0, 5.0])
+def test_the_photo_tells_feet_from_lines_of_misplaced_bodies_that_contradict_them(house, astray, log_odds):
+    """Their walls would show what is floor in the photo."""
+    feet = GroundOfFeet(2.0, log_odds)
+    assert is_contested(grounds_of(house, *astray, feet))
+    assert ground_of(house, *astray, feet) == [2.0]
+
+
+def test_lines_that_contradict_feet_outweigh_what_labels_gain_by_little(house, astray, monkeypatch):
+    """Seen alone, the labels of this photo would have the ground of the feet (above)."""
+    monkeypatch.setattr(find, "PER_PHOTO", 1.0)
+    assert ground_of(house, *astray, GroundOfFeet(2.0, 1.0)) == [pytest.approx(5.0)]
 
 
 def test_feet_that_lines_contradict_are_wrong_where_the_photo_fits_the_lines(house):
-    feet = GroundOfFeet(0.9, 5.0, is_open=True)
-    assert is_contested(likely_grounds(house.planes, house.lines, feet))
+    feet = GroundOfFeet(0.9, 5.0)
+    assert is_contested(grounds_of(house, house.lines, house.planes, feet))
     assert ground_of(house, house.lines, house.planes, feet) == [2.0]
+
+
+def test_what_a_person_tells_elsewhere_leaves_the_ground(house, astray):
+    for top in (545.0, 540.0, 535.0):
+        bottom = Region(((0.0, top), (960.0, top), (960.0, 719.0), (0.0, 719.0)), "clutter")
+        lines, planes = astray
+        look = Look(house.photo, GroundOfFeet(2.0, 1.0), None, faces=(bottom,))
+        found = surfaces(find_regions(planes, lines, house.camera, house.rotation, look))
+        assert [-offset for kind, _, offset in found if kind == "ground"] == [2.0]
 
 
 def test_the_ground_is_a_level_of_lines_that_shows_more_of_the_photo(make_house):
     """Feet below the level that the floor's own lines show would make two floors of it."""
     paving = [(1, np.array([[x, 4.5, -2.0], [x, 30.0, -2.0]])) for x in np.linspace(-3, 2, 12)]
     paving += [(0, np.array([[-3.0, y, -2.0], [2.0, y, -2.0]])) for y in np.linspace(4.5, 16, 16)]
-    house = make_house(edges_too=paving)
-    assert ("level", 2, -2.0) in {
-        (each.kind, each.axis, each.offset) for each in house.surfaces(GroundOfFeet(2.6, 1.0))
-    }
-    assert ground_of(house, house.lines, house.planes, GroundOfFeet(2.6, 1.0)) == [2.0]
+    house, feet = make_house(edges_too=paving), GroundOfFeet(2.6, 1.0)
+    assert ("level", 2, -2.0) in {(each.kind, each.axis, each.offset) for each in house.surfaces(feet)}
+    assert not is_contested(grounds_of(house, house.lines, house.planes, feet))
+    assert ground_of(house, house.lines, house.planes, feet) == [2.0]
+
+
+def test_where_no_ground_is_seen_the_first_one_stays(house, monkeypatch):
+    tried, stand_on = [], find._Sight.stand_on
+
+    def counted(sight, ground):
+        tried.append(ground.height)
+        return stand_on(sight, ground)
+
+    monkeypatch.setattr(find._Sight, "stand_on", counted)
+    feet = GroundOfFeet(2.2, 5.0)
+    assert ground_of(house, house.lines, house.planes, feet) == [2.2]
+    assert tried == [2.2], "it is seen, and nothing contradicts it"
+    monkeypatch.setattr(find, "SEEN", 0.9)  # of the photo
+    assert ground_of(house, house.lines, house.planes, feet) == [2.2]
+    assert tried == [2.2, 2.2, 2.0]
 
 
 @pytest.mark.parametrize(
@@ -218,9 +264,9 @@ def test_a_plain_wall_of_a_room_stands_on_its_skirting(house, silent, monkeypatc
 def test_heads_put_the_ceiling_above_the_ends_of_lines_where_no_map_shows_it(house, silent, monkeypatch):
     asked = []
 
-    def with_ceiling(planes, lines, camera, ground, ceiling):
+    def with_ceiling(walls, ground, ceiling):
         asked.append(ceiling)
-        return find_surfaces(planes, lines, camera, ground, ceiling)
+        return find_surfaces(walls, ground, ceiling)
 
     monkeypatch.setattr(find, "look_up", below_a_ceiling)
     monkeypatch.setattr(find, "find_surfaces", with_ceiling)

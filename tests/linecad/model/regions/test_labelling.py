@@ -10,7 +10,7 @@ import shapely
 from linecad.geometry import project
 from linecad.model.regions.cuts import Borders, energy
 from linecad.model.regions.heaven import look_up
-from linecad.model.regions.labelling import CORNER, UNIT, Labels, find_labels, united
+from linecad.model.regions.labelling import CORNER, SURFACE, UNIT, Labels, find_labels, price_per_sample, united
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface
@@ -29,6 +29,17 @@ def labels_of(house, more=()):
 @pytest.fixture(scope="module")
 def found(house):
     return labels_of(house)
+
+
+def test_the_price_of_a_sample_counts_cells_corners_and_the_surfaces_that_are_shown(found, house):
+    raster = take_raster(house.lines, house.camera, house.rotation, house.photo)
+    count = len(np.unique(found.label[found.label < found.sky]))
+    assert count > 0
+    assert price_per_sample(found, raster) == pytest.approx(found.price / raster.size + count * SURFACE, abs=1e-6)
+    more = [*found.surfaces, found.surfaces[0]]  # one that no cell shows
+    label = found.label + (found.label >= found.sky)
+    unseen = replace(found, surfaces=more, label=label, costs=np.insert(found.costs, found.sky, 0, axis=1))
+    assert price_per_sample(unseen, raster) == pytest.approx(price_per_sample(found, raster))
 
 
 def shown(found, house):

@@ -11,10 +11,14 @@ from linecad.model.regions.surfaces import (
     GROUND_STEP,
     LEVEL_LINES,
     LEVEL_SHARE,
+    MOST_LEVELS,
     MOST_SURFACES,
     RELIEF,
+    SAME_LEVEL,
     GroundOfFeet,
+    against,
     find_surfaces,
+    find_walls,
     is_contested,
     level_of_ends,
     likely_grounds,
@@ -39,8 +43,9 @@ def upright(*spans, length=100.0, probability=(), component=None):
 
 def surfaces(planes, lines, feet=None, ceiling=None):
     """What is found, as tuples, on the likeliest ground."""
-    grounds = likely_grounds(tuple(planes), lines, feet)
-    found = find_surfaces(tuple(planes), lines, CAMERA, grounds[0] if grounds else None, ceiling)
+    walls = find_walls(tuple(planes), lines, CAMERA)
+    grounds = likely_grounds(walls, lines, feet)
+    found = find_surfaces(walls, grounds[0] if grounds else None, ceiling)
     return [(each.kind, each.axis, each.offset, each.lines.tolist(), each.plane) for each in found]
 
 
@@ -82,8 +87,8 @@ def test_the_ground_is_where_nearly_all_lines_end():
 
 
 def test_lines_above_the_horizon_have_no_ground():
-    assert likely_grounds((), ABOVE, None) == []
-    assert likely_grounds((), upright((-2, 2), (-2, 2), *[(1, 2)] * 4), None) == []
+    assert likely_grounds([], ABOVE, None) == []
+    assert likely_grounds([], upright((-2, 2), (-2, 2), *[(1, 2)] * 4), None) == []
     assert surfaces([], ABOVE, GroundOfFeet(1.5, 9.0)) == []
 
 
@@ -96,7 +101,7 @@ def test_lines_whose_place_is_unsure_say_less_about_the_ground():
 
 def heights(lines, feet, planes=()):
     """Of the ground that is likeliest by lines and feet, and of its rivals."""
-    return [ground.height for ground in likely_grounds(planes, lines, feet)]
+    return [ground.height for ground in likely_grounds(find_walls(planes, lines, CAMERA), lines, feet)]
 
 
 def test_feet_put_the_ground_where_no_line_contradicts_them():
@@ -114,29 +119,38 @@ def test_feet_put_the_ground_where_no_line_contradicts_them():
 
 def test_lines_that_reach_below_the_feet_contest_the_ground():
     # All do, so the feet need log-odds of more than 20.
-    lowest, trodden = likely_grounds((), BOTH, GroundOfFeet(1.0, 19.0, is_open=True))
-    assert (lowest.height, lowest.log_odds, lowest.is_by_feet) == (2, 0, False)
-    assert (trodden.height, trodden.log_odds, trodden.is_by_feet) == (1, -1, True)
+    assert (against(BOTH, 1.0), against(BOTH, 2.0), against(ABOVE, 1.0)) == (20, 0, 0)
+    lowest, trodden = likely_grounds([], BOTH, GroundOfFeet(1.0, 19.0, is_open=True))
+    assert (lowest.height, lowest.reach, lowest.of_feet, lowest.is_by_feet) == (2, GROUND_STEP, 0, False)
+    assert (trodden.height, trodden.reach, trodden.of_feet, trodden.is_by_feet) == (1, SAME_LEVEL, 19, True)
     assert is_contested([lowest, trodden])
-    grounds = likely_grounds((), BOTH, GroundOfFeet(1.0, 21.0))
-    assert [(ground.height, ground.log_odds) for ground in grounds] == [(1, 1), (2, 0)]
+    grounds = likely_grounds([], BOTH, GroundOfFeet(1.0, 21.0))
+    assert [(ground.height, ground.is_by_feet) for ground in grounds] == [(1, True), (2, False)]
     assert not is_contested(grounds)
-    assert not is_contested(likely_grounds((), BOTH, None))
+    assert not is_contested(likely_grounds([], BOTH, None))
     assert heights(BOTH, GroundOfFeet(1.0, 19.0)) == [2], "plants hide them"
 
 
 def test_a_level_of_many_lines_may_be_the_ground():
     lines = upright(*[(-2, 2)] * 100)
-    many = max(LEVEL_LINES, round(LEVEL_SHARE * 100))
-    level = Plane(0, 2, -1.5, tuple(range(10, 10 + many)))
+    count = max(LEVEL_LINES, round(LEVEL_SHARE * 100))
+    level = Plane(0, 2, -1.5, tuple(range(10, 10 + count)))
     assert heights(lines, None, (level,)) == [2, 1.5]
     assert heights(lines, GroundOfFeet(2.5, 1.0), (level,)) == [2.5, 2, 1.5]
-    assert heights(lines, GroundOfFeet(1.52, 99.0), (level,)) == [1.52, 2]  # which is that of the feet
     assert heights(lines, None, (Plane(0, 2, 1.5, level.lines),)) == [2]  # above the camera
     assert heights(lines, None, (Plane(0, 0, -1.5, level.lines),)) == [2]  # upright
     assert heights(lines, None, (Plane(0, 2, -1.5, level.lines[: LEVEL_LINES - 1]),)) == [2]
-    assert many < LEVEL_SHARE * 1000
+    assert count < LEVEL_SHARE * 1000
     assert heights(upright(*[(-2, 2)] * 1000), None, (level,)) == [2]
+
+
+def test_of_many_levels_those_of_the_most_lines_may_be_the_ground():
+    spans, first, levels = [(-2, 2)] * 60, 10, []
+    for offset, count in ((-1.0, 9), (-1.2, 12), (-1.4, 10)):
+        levels.append(Plane(len(levels), 2, offset, tuple(range(first, first + count))))
+        first += count
+    assert len(levels) > MOST_LEVELS
+    assert heights(upright(*spans), None, tuple(levels)) == [2, 1.2, 1.4]
 
 
 def test_levels_near_the_ground_become_it_and_kerbs_join_it():
