@@ -202,11 +202,11 @@ def _most_likely(sight: _Sight, grounds: list[Ground]) -> _Standing:
     floor.
     """
     first = sight.stand_on(grounds[0] if grounds else None)
-    rivals = [ground for ground in grounds[1:] if ground.height != grounds[0].height]
+    rivals = grounds[1:]
     if not rivals:
         return first
-    seen = first.share("ground")
-    is_hardly_seen = seen < max(SEEN, first.share("level", [ground.height for ground in rivals]))
+    of_rivals = first.share("level", [ground.height for ground in rivals])
+    is_hardly_seen = first.share("ground") < max(SEEN, of_rivals)
     if not (is_contested(grounds) or is_hardly_seen):
         return first
     different = [first]

@@ -222,47 +222,39 @@ class Screen:
 
     @contextmanager
     def holding(self, path: str) -> Iterator[Callable[[], int]]:
-        """What the page asks for at a path waits until the block ends; gives how many wait.
+        """What the page asks for at a path waits until the block ends; gives how many wait."""
+        with self._replying(path, "(ask) => new Promise((go) => held.push(() => go(ask())))"):
+            yield lambda: self.run("window.held.length")
+
+    @contextmanager
+    def answering(self, path: str, answer) -> Iterator[None]:
+        """The page gets this answer, as JSON, to what it asks for at a path."""
+        with self._replying(path, f"() => Promise.resolve(Response.json({json.dumps(answer)}))"):
+            yield
+
+    @contextmanager
+    def _replying(self, path: str, reply: str) -> Iterator[None]:
+        """A script replies to what the page asks for at a path; it may keep in `held` what is let go at the end.
 
         Playwright's own routes now and then lose another request that is on its way when a route ends.
         """
         self.run(
             """(path) => {
               const ask = window.fetch;
-              const held = [];
-              window.fetch = (url, options) =>
-                url.includes(path) ? new Promise((go) => held.push(() => go(ask(url, options)))) : ask(url, options);
-              window.held = {
-                count: () => held.length,
-                end: () => {
-                  window.fetch = ask;
-                  for (const go of held) go();
-                },
+              const held = (window.held = []);
+              const reply = REPLY;
+              window.fetch = (...asked) => (asked[0].includes(path) ? reply(() => ask(...asked)) : ask(...asked));
+              window.endReplying = () => {
+                window.fetch = ask;
+                for (const go of held) go();
               };
-            }""",
+            }""".replace("REPLY", reply),
             path,
-        )
-        try:
-            yield lambda: self.run("window.held.count()")
-        finally:
-            self.run("window.held.end()")
-
-    @contextmanager
-    def answering(self, path: str, answer) -> Iterator[None]:
-        """The page gets this answer, as JSON, to what it asks for at a path."""
-        self.run(
-            """([path, answer]) => {
-              const ask = window.fetch;
-              window.fetch = (url, options) =>
-                url.endsWith(path) ? Promise.resolve(Response.json(answer)) : ask(url, options);
-              window.answered = () => { window.fetch = ask; };
-            }""",
-            [path, answer],
         )
         try:
             yield
         finally:
-            self.run("window.answered()")
+            self.run("window.endReplying()")
 
     def painted(self, canvas: str) -> int:
         """How many px of a canvas hold lines or marks; faces are fainter."""
