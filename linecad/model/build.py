@@ -14,6 +14,7 @@ from linecad.graph.connectivity import components, spanning_tree
 from linecad.line_graph import LineGraph, ManhattanFrame, Segments, Solution
 from linecad.model.agreement import disagreements
 from linecad.model.body_scales import join_bodies
+from linecad.model.clean.buried import ending_on_ground, grounds_of
 from linecad.model.clean.roles import with_roles
 from linecad.model.clean.settling import outlines_of, settled
 from linecad.model.clean.sight import Sight
@@ -181,11 +182,14 @@ def _with_planes_joined(found: Components, graph: LineGraph, placed: Placed) -> 
 def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:
     """The lines with their ends where they stop, and what each is drawn for, by the faces of planes."""
     outlines, meets = outlines_of(planes), ends_that_meet_others(framed, sight)
+    grounds = grounds_of(planes, sight)
 
     def draw(lines: Lines, frame: int) -> Lines:
         own_sight = sight_in(sight, frame, framed.turns)
         own = planes_in(planes, frame, framed.turns)
-        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, meets[framed.of(frame)])
+        held = meets[framed.of(frame)]
+        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, held)
+        ends_there = ending_on_ground(ends_there, grounds, own_sight, held)
         return with_roles(ends_there, own, own_sight.forward, rectangles_of(openings, own))
 
     return framed.each(draw)
