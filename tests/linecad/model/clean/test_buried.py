@@ -54,7 +54,7 @@ def test_an_end_that_meets_a_line_stays(lowest):
 
 
 def test_only_where_the_photo_shows_the_ground(lowest):
-    aside = OUTLINE + [9.0, 0, 0]
+    aside = OUTLINE + np.array([9.0, 0, 0])
     hole = np.array([[-1.0, 5.0, FLOOR], [1.0, 5.0, FLOOR], [1.0, 9.0, FLOOR], [-1.0, 9.0, FLOOR]])
     assert lowest(upright(-1.6), outline=aside) == [-1.6]
     assert lowest(upright(-1.6), holes=(hole,)) == [-1.6]
