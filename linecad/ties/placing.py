@@ -24,7 +24,7 @@ from linecad.ties.pieces import ties_between_bodies, with_pieces_heard
 from linecad.ties.probability import chances, main_lines, probabilities
 from linecad.ties.seams import Seam
 from linecad.ties.setting import Setting, Sight
-from linecad.ties.weights import mean_of_looks, weigh_candidates, worth_a_tie
+from linecad.ties.weights import mean_of_looks, weigh_candidates, with_feet_once, worth_a_tie
 from solver.bodies.search import place
 from solver.bodies.ties import Placement, Ties
 from solver.choice import boundaries
@@ -266,6 +266,7 @@ def tie_up(evidence: Evidence, facts: Sequence[ToldFact], told: FactTies) -> tup
         (weigh_candidates(kept, setting.bodies.size), worth_a_tie(kept)),
         (between.subset(np.array(stands, np.int64)), [of_pieces[number] for number in stands]),
     )
+    found = with_feet_once(found, candidates)
     return found.joined(sure).joined(told.ties), [*candidates, *edges.tolist(), *(-1 - told.number).tolist()]
 
 

@@ -19,6 +19,10 @@ REPEATED = 0.6  # of the weight of planes and levels, which repeat each other mo
 OF_PIECES = 1 / 3  # of a tie's weight, that the look at pieces has
 LEAST_OF_PIECES = 0.5  # what that must come to of a tie that pieces alone ask for: many of crumbs make the search long
 FULL_SIZE = 30.0  # lines of the smaller body, from which a tie has its full weight: crumbs must not move walls
+JOINED = 2.5  # weight of a bundle, from which on what hides the foot of one of its bodies hides that of the other
+UNCLEAR = 0.4  # log-odds; feet below that are wrong in two cases of five, or more
+SAME_FOOT = 0.1  # log height of the camera, within which unclear feet repeat each other
+AGAIN = 0.3  # what is left of the weight of an unclear foot for each heavier one that it repeats
 
 
 def log_odds_of(candidate: Candidate) -> float:
@@ -83,3 +87,36 @@ def mean_of_looks(
     added = others.subset(np.array(alone, np.int64))
     mean = replace(ties, weight=weight).joined(replace(added, weight=OF_PIECES * added.weight))
     return mean, [*candidates, *(told[number] for number in alone)]
+
+
+def with_feet_once(ties: Ties, candidates: Sequence[Candidate]) -> Ties:
+    """The ties, each of one of the candidates, where unclear feet that repeat each other hardly count more than one.
+
+    What hides the foot of a wall, a hedge or a row of cars, goes on before all bodies of that wall, and looks like a
+    foot at the same height of each of them. A clear foot is a witness of its own.
+    """
+    part, shift = _hanging_together(ties, candidates)
+    weight, heights = ties.weight.copy(), dict[int, list[float]]()
+    for number in np.argsort(-ties.weight, kind="stable").tolist():
+        if candidates[number].kind == "ground" and log_odds_of(candidates[number]) < UNCLEAR:
+            body = ties.bodies[number, 0]
+            height = float(ties.log_ratio[number] - shift[body])
+            others = heights.setdefault(int(part[body]), [])
+            weight[number] *= AGAIN ** sum(abs(height - other) < SAME_FOOT for other in others)
+            others.append(height)
+    return replace(ties, weight=weight)
+
+
+def _hanging_together(ties: Ties, candidates: Sequence[Candidate]) -> tuple[Int, Float]:
+    """The part (B,) that each body is in by strong bundles, and its log scale (B,) in that by the heaviest of them."""
+    count = int(ties.bodies.max(initial=-1)) + 1
+    part, shift = np.arange(count), np.zeros(count)
+    bundles = [number for number, each in enumerate(candidates) if each.kind == "bundle"]
+    strong = np.array([number for number in bundles if ties.weight[number] >= JOINED], np.int64)
+    for number in strong[np.argsort(-ties.weight[strong], kind="stable")].tolist():
+        first, second = ties.bodies[number]
+        if part[first] != part[second]:
+            own = part == part[second]
+            shift[own] += shift[first] - shift[second] - ties.log_ratio[number]
+            part[own] = part[first]
+    return part, shift

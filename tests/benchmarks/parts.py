@@ -22,19 +22,28 @@ PARTS: dict[str, tuple[float, float, float, float, float]] = {
     "right": (0.26, 0.0, 1.0, 1.0, 0.9),
     "middle": (0.1, 0.06, 0.94, 0.97, 0.93),
 }
+# Others, from which nothing is fitted: what crops.py measures.
+CROPS: dict[str, tuple[float, float, float, float, float]] = {
+    "tiny": (0.0, 0.0, 1.0, 1.0, 0.34),
+    "far left": (0.0, 0.0, 0.6, 1.0, 0.9),
+    "far right": (0.4, 0.0, 1.0, 1.0, 0.9),
+    "lower": (0.0, 0.25, 1.0, 1.0, 0.8),
+    "inner": (0.2, 0.15, 0.8, 0.85, 1.0),
+}
 
 
 def part_of(photo: Photo, reference: Reference, name: str) -> tuple[Photo, Reference]:
-    """One of PARTS of a photo, with the points of known depth that it shows; nothing else is known about it."""
+    """One of PARTS or CROPS of a photo, with the points of known depth that it shows; no more is known about it."""
     height, width = photo.pixels.shape[:2]
-    left, upper, right, lower = np.rint(np.array(PARTS[name][:4]) * [width, height, width, height]).astype(int).tolist()
+    *borders, resized = (PARTS | CROPS)[name]
+    left, upper, right, lower = np.rint(np.array(borders) * [width, height, width, height]).astype(int).tolist()
     cut = photo.pixels[upper:lower, left:right]
-    size = round(cut.shape[1] * PARTS[name][4]), round(cut.shape[0] * PARTS[name][4])
+    size = round(cut.shape[1] * resized), round(cut.shape[0] * resized)
     scale = np.array(size) / [cut.shape[1], cut.shape[0]]
     assert photo.camera is not None
     matrix = photo.camera.matrix.copy()
     matrix[:2, 2] -= left, upper
-    camera = Camera(*size, resized_camera(matrix, np.full(2, PARTS[name][4])), photo.camera.source)
+    camera = Camera(*size, resized_camera(matrix, np.full(2, resized)), photo.camera.source)
     pixels = np.asarray(cv2.resize(cut, size, interpolation=cv2.INTER_AREA), np.uint8)
 
     def shown(points: Points | None) -> Points | None:

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from parts import PARTS, part_of
+from parts import CROPS, PARTS, part_of
 
 from linecad.camera.photo import Photo
 from linecad.evaluation.references import Points, Reference
@@ -16,7 +16,7 @@ def photo(pixels):
     return Photo("photo.jpg", pixels, Camera(WIDTH, HEIGHT, central_camera(350.0, WIDTH, HEIGHT), "file"))
 
 
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize("name", PARTS | CROPS)
 def test_the_rays_of_known_points_stay_the_same(name):
     random = np.random.default_rng(3)
     rays = random.uniform([-0.5, -0.4], [0.5, 0.4], (500, 2))
@@ -24,7 +24,7 @@ def test_the_rays_of_known_points_stay_the_same(name):
     whole = photo(np.zeros((HEIGHT, WIDTH, 3), np.uint8))
     pixels = (homogeneous(rays) @ whole.camera.matrix.T)[:, :2]
     part, known = part_of(whole, Reference(edges=Points(pixels, depth), dense=Points(pixels[:9], depth[:9])), name)
-    left, upper, right, lower, scale = PARTS[name]
+    left, upper, right, lower, scale = (PARTS | CROPS)[name]
     assert part.width == pytest.approx((right - left) * scale * WIDTH, abs=1.5)
     assert part.height == pytest.approx((lower - upper) * scale * HEIGHT, abs=1.5)
     found = (homogeneous(known.edges.pixels) @ np.linalg.inv(part.camera.matrix).T)[:, :2]
@@ -37,7 +37,7 @@ def test_the_rays_of_known_points_stay_the_same(name):
     assert len(known.dense.depth) <= 9
 
 
-@pytest.mark.parametrize("name", PARTS)
+@pytest.mark.parametrize("name", PARTS | CROPS)
 def test_a_mark_is_where_its_known_point_is(name):
     """A bright spot, and the pixel that the truth names for it."""
     pixels = np.zeros((HEIGHT, WIDTH, 3), np.uint8)

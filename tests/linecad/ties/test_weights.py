@@ -6,16 +6,21 @@ import pytest
 from linecad.ties.candidates import KINDS, SAME_RATIO, Candidate
 from linecad.ties.table import AT_ONCE, LOG_ODDS
 from linecad.ties.weights import (
+    AGAIN,
     BY_CHANCE,
     FULL_SIZE,
+    JOINED,
     LEAST_OF_PIECES,
     LEAST_WEIGHT,
     OF_PIECES,
     REPEATED,
+    SAME_FOOT,
     TOLERANCE,
+    UNCLEAR,
     log_odds_of,
     mean_of_looks,
     weigh_candidates,
+    with_feet_once,
 )
 
 LARGE = np.array([40, 50, 60])
@@ -145,3 +150,61 @@ def test_looks_that_agree_weigh_as_one():
     assert told == candidates
     assert ties.weight.tolist() == pytest.approx(once.weight.tolist())
     assert ties.group.tolist() == once.group.tolist()
+
+
+GROUND = len(LARGE)
+
+
+def foot(body, height, log_odds=UNCLEAR - 0.5):
+    """A foot of a body: the camera is so high above the ground, log, at the body's own scale."""
+    return worth(log_odds - CHANCE, "ground", (body, GROUND), -height)
+
+
+def shares(*candidates):
+    """What each keeps of its weight."""
+    ties = weigh_candidates(candidates, LARGE)
+    assert len(ties) == len(candidates)
+    after = with_feet_once(ties, candidates)
+    np.testing.assert_array_equal(after.log_ratio, ties.log_ratio)
+    return (after.weight / ties.weight).tolist()
+
+
+def test_unclear_feet_of_bodies_that_hang_together_hardly_count_more_than_one():
+    assert shares(foot(0, 0.0), foot(1, 0.0), worth(4.0)) == pytest.approx([1, AGAIN, 1])
+    chain = [worth(4.0), worth(4.0, bodies=(1, 2))]
+    assert shares(foot(0, 0.0), foot(2, 0.0), foot(1, 0.0), *chain) == pytest.approx([1, AGAIN, AGAIN**2, 1, 1])
+
+
+def test_the_heaviest_of_them_keeps_its_weight():
+    assert shares(foot(0, 0.0, UNCLEAR - 0.3), foot(1, 0.0, UNCLEAR - 0.1), worth(4.0)) == pytest.approx([AGAIN, 1, 1])
+
+
+def test_feet_of_bodies_that_nothing_joins_are_witnesses_apart():
+    assert shares(foot(0, 0.0), foot(1, 0.0)) == [1, 1]
+    assert shares(foot(0, 0.0), foot(1, 0.0), worth(JOINED - 0.1)) == [1, 1, 1]
+    assert shares(foot(0, 0.0), foot(1, 0.0), worth(6.0, "plane", normal=0)) == [1, 1, 1]
+
+
+def test_clear_feet_are_witnesses_apart():
+    clear = UNCLEAR + 0.1
+    assert shares(foot(0, 0.0, clear), foot(1, 0.0, clear), worth(4.0)) == [1, 1, 1]
+
+
+@pytest.mark.parametrize(("bodies", "sign"), [((0, 1), 1), ((1, 0), -1)])
+def test_heights_are_the_same_or_not_where_the_bundle_has_the_bodies(bodies, sign):
+    """The scale of the first body is exp(0.7) times that of the second: there the camera is so much higher at its."""
+    bundle = worth(4.0, bodies=bodies, log_ratio=sign * 0.7)
+    assert shares(foot(0, 0.2), foot(1, 0.9), bundle) == pytest.approx([1, AGAIN, 1])
+    assert shares(foot(0, 0.2), foot(1, 0.9 + SAME_FOOT - 0.01), bundle) == pytest.approx([1, AGAIN, 1])
+    assert shares(foot(0, 0.2), foot(1, 0.9 + SAME_FOOT + 0.01), bundle) == [1, 1, 1]
+    assert shares(foot(0, 0.2), foot(1, 0.2), bundle) == [1, 1, 1]
+
+
+def test_the_heaviest_bundle_says_how_bodies_hang_together():
+    bundles = worth(4.0), worth(6.0, log_ratio=0.7)
+    assert shares(foot(0, 0.2), foot(1, 0.9), *bundles) == pytest.approx([1, AGAIN, 1, 1])
+    assert shares(foot(0, 0.2), foot(1, 0.2), *bundles) == [1, 1, 1, 1]
+
+
+def test_without_ties_nothing_changes():
+    assert shares() == []
