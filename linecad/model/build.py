@@ -147,7 +147,8 @@ def build_scene(
     said = lines_told(cleaned.intersections, of_bodies)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)
     on_faces = follow_map(on_faces, look.mapped, view.camera, sight, said)
-    ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight), sight)
+    of_person = np.isin(on_faces.lines.lines.id, said)
+    ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight, of_person), sight)
     framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     lines = framed.in_world()
@@ -179,17 +180,23 @@ def _with_planes_joined(found: Components, graph: LineGraph, placed: Placed) -> 
     return replace(found, lifted=join_planes(found.lifted, found.component, graph.axis, told))
 
 
-def _drawn(framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight) -> FramedLines:
-    """The lines with their ends where they stop, and what each is drawn for, by the faces of planes."""
+def _drawn(
+    framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight, of_person: Bool
+) -> FramedLines:
+    """The lines with their ends where they stop, and what each is drawn for, by the faces of planes.
+
+    Lines (N,) of which a person said something may end below the ground.
+    """
     outlines, meets = outlines_of(planes), ends_that_meet_others(framed, sight)
     grounds = grounds_of(planes, sight)
 
     def draw(lines: Lines, frame: int) -> Lines:
         own_sight = sight_in(sight, frame, framed.turns)
         own = planes_in(planes, frame, framed.turns)
-        held = meets[framed.of(frame)]
-        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, held)
-        ends_there = ending_on_ground(ends_there, grounds, own_sight, held)
+        rows = framed.of(frame)
+        ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, meets[rows])
+        stays = meets[rows] | of_person[rows, None]
+        ends_there = ending_on_ground(ends_there, grounds, own_sight, stays)
         return with_roles(ends_there, own, own_sight.forward, rectangles_of(openings, own))
 
     return framed.each(draw)

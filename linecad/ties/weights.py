@@ -22,7 +22,7 @@ FULL_SIZE = 30.0  # lines of the smaller body, from which a tie has its full wei
 JOINED = 2.5  # weight of a bundle, from which on what hides the foot of one of its bodies hides that of the other
 UNCLEAR = 0.4  # log-odds; feet below that are wrong in two cases of five, or more
 SAME_FOOT = 0.1  # log height of the camera, within which unclear feet repeat each other
-AGAIN = 0.3  # what is left of the weight of an unclear foot for each heavier one that it repeats
+AGAIN = 0.5  # what is left of the weight of an unclear foot that repeats a heavier one of another body
 
 
 def log_odds_of(candidate: Candidate) -> float:
@@ -96,14 +96,16 @@ def with_feet_once(ties: Ties, candidates: Sequence[Candidate]) -> Ties:
     foot at the same height of each of them. A clear foot is a witness of its own.
     """
     part, shift = _hanging_together(ties, candidates)
-    weight, heights = ties.weight.copy(), dict[int, list[float]]()
+    weight, heavier = ties.weight.copy(), dict[int, list[tuple[int, float]]]()
     for number in np.argsort(-ties.weight, kind="stable").tolist():
         if candidates[number].kind == "ground" and log_odds_of(candidates[number]) < UNCLEAR:
-            body = ties.bodies[number, 0]
+            body = int(ties.bodies[number, 0])
             height = float(ties.log_ratio[number] - shift[body])
-            others = heights.setdefault(int(part[body]), [])
-            weight[number] *= AGAIN ** sum(abs(height - other) < SAME_FOOT for other in others)
-            others.append(height)
+            others = heavier.setdefault(int(part[body]), [])
+            # Two feet of one body are rivals.
+            if any(other != body and abs(height - of_other) < SAME_FOOT for other, of_other in others):
+                weight[number] *= AGAIN
+            others.append((body, height))
     return replace(ties, weight=weight)
 
 

@@ -1,7 +1,7 @@
 """Crops of real photos through the whole program: python tests/benchmarks/crops.py DATASET ... [--scenes DIR]
 
 Who frames a photo otherwise cuts off other walls, eaves and feet, and what one more tie kept right is wrong. So
-each crop (CROPS of parts.py) is one more photo of a known place, from which nothing was fitted. Prints recall and
+each crop (CROPS of parts.py) is one more photo of a known place, which no fit has seen. Prints recall and
 precision of lines, and of all depths where depths are known off the edges too, within 5 %, everything in the file: the
 means of each dataset, then a row a crop. With --scenes, the scene files and the crops are left in DIR.
 """

@@ -22,7 +22,7 @@ PARTS: dict[str, tuple[float, float, float, float, float]] = {
     "right": (0.26, 0.0, 1.0, 1.0, 0.9),
     "middle": (0.1, 0.06, 0.94, 0.97, 0.93),
 }
-# Others, from which nothing is fitted: what crops.py measures.
+# Others, which no fit has seen: what crops.py measures.
 CROPS: dict[str, tuple[float, float, float, float, float]] = {
     "tiny": (0.0, 0.0, 1.0, 1.0, 0.34),
     "far left": (0.0, 0.0, 0.6, 1.0, 0.9),

@@ -1,7 +1,7 @@
 """Uprights that run on below the ground end on it: what the photo shows there is the ground, and what it mirrors.
 
 An edge of a wall and the joint of the paving before it, or a locker and its reflection in the floor, are one line in
-the photo.
+the photo. Where most of a line or another one that crosses it is below the ground, the ground may be what is wrong.
 """
 
 from dataclasses import dataclass, replace
@@ -12,23 +12,25 @@ import shapely
 from linecad.arrays import Bool
 from linecad.directions import UP
 from linecad.geometry import project
-from linecad.model.clean.ends import NEAR, ends_that_meet
+from linecad.model.clean.ends import NEAR, ends_that_meet, nearest_crossings
 from linecad.model.clean.joining import with_ends
 from linecad.model.clean.sight import Sight
 from linecad.model.clean.strokes import strokes_of
 from linecad.scene import Lines, Plane
 
+MOST_BURIED = 0.5  # of a line
+
 
 @dataclass(frozen=True, eq=False)
 class Ground:
-    """A face of the ground as the photo shows it."""
+    """A face of the ground in the photo, with what stands before it."""
 
     polygon: shapely.Geometry  # px
     height: float  # along the upright axis
 
 
 def grounds_of(planes: tuple[Plane, ...], sight: Sight) -> tuple[Ground, ...]:
-    """All faces of ground; what a thing before them hides of them is part of them."""
+    """All faces of ground."""
     found = []
     for plane in planes:
         for face in plane.faces if plane.axis == UP else ():
@@ -40,23 +42,24 @@ def grounds_of(planes: tuple[Plane, ...], sight: Sight) -> tuple[Ground, ...]:
     return tuple(found)
 
 
-def ending_on_ground(lines: Lines, grounds: tuple[Ground, ...], sight: Sight, meets: Bool) -> Lines:
-    """The lines with uprights cut off at the ground that end below it, in the air, where the photo shows it.
+def ending_on_ground(lines: Lines, grounds: tuple[Ground, ...], sight: Sight, stays: Bool) -> Lines:
+    """The lines with uprights cut off at the ground that end below it, in the air, where the photo has this ground.
 
-    Ends that meet others than these lines, `meets` (N, 2), stay, and so do lines of which no more than a miss is above
-    the ground.
+    Ends that `stays` (N, 2) marks are not asked.
     """
     strokes = strokes_of(lines, sight.forward)
-    upright = np.flatnonzero((strokes.axis == UP) & ~(ends_that_meet(strokes) | meets)[:, 0])
+    upright = np.flatnonzero((strokes.axis == UP) & ~(ends_that_meet(strokes) | stays)[:, 0])
     if not grounds or len(upright) == 0:
         return lines
     pixel = sight.pixels(strokes.points(strokes.reach)[upright, 0])
-    shown = np.flatnonzero(np.isfinite(pixel).all(axis=1))
+    before = np.isfinite(pixel).all(axis=1)
+    upright, pixel = upright[before], pixel[before]
+    last_crossing = strokes.reach[upright, 0] + nearest_crossings(strokes, upright, np.zeros_like(upright))[1]
     reach = strokes.reach.copy()
     for ground in grounds:
-        on_it = upright[shown[shapely.contains_xy(ground.polygon, pixel[shown])]]
-        near = NEAR * np.abs(strokes.end_depth[on_it])
-        low, high = strokes.reach[on_it].T
-        buried = on_it[(low < ground.height - near[:, 0]) & (high > ground.height + near[:, 1])]
-        reach[buried, 0] = ground.height
+        low, high = strokes.reach[upright].T
+        near = NEAR * np.abs(strokes.end_depth[upright])
+        buried = (low < ground.height - near[:, 0]) & (high > ground.height + near[:, 1])
+        buried &= (ground.height - low <= MOST_BURIED * (high - low)) & (last_crossing >= ground.height - near[:, 0])
+        reach[upright[buried & shapely.contains_xy(ground.polygon, pixel)], 0] = ground.height
     return with_ends(lines, replace(strokes, reach=reach))

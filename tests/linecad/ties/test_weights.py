@@ -155,14 +155,14 @@ def test_looks_that_agree_weigh_as_one():
 GROUND = len(LARGE)
 
 
-def foot(body, height, log_odds=UNCLEAR - 0.5):
+def foot(body, height, log_odds=UNCLEAR - 0.5, ground=GROUND):
     """A foot of a body: the camera is so high above the ground, log, at the body's own scale."""
-    return worth(log_odds - CHANCE, "ground", (body, GROUND), -height)
+    return worth(log_odds - CHANCE, "ground", (body, ground), -height)
 
 
-def shares(*candidates):
+def shares(*candidates, size=LARGE):
     """What each keeps of its weight."""
-    ties = weigh_candidates(candidates, LARGE)
+    ties = weigh_candidates(candidates, size)
     assert len(ties) == len(candidates)
     after = with_feet_once(ties, candidates)
     np.testing.assert_array_equal(after.log_ratio, ties.log_ratio)
@@ -172,7 +172,12 @@ def shares(*candidates):
 def test_unclear_feet_of_bodies_that_hang_together_hardly_count_more_than_one():
     assert shares(foot(0, 0.0), foot(1, 0.0), worth(4.0)) == pytest.approx([1, AGAIN, 1])
     chain = [worth(4.0), worth(4.0, bodies=(1, 2))]
-    assert shares(foot(0, 0.0), foot(2, 0.0), foot(1, 0.0), *chain) == pytest.approx([1, AGAIN, AGAIN**2, 1, 1])
+    assert shares(foot(0, 0.0), foot(2, 0.0), foot(1, 0.0), *chain) == pytest.approx([1, AGAIN, AGAIN, 1, 1])
+
+
+def test_two_feet_of_one_body_are_rivals():
+    assert shares(foot(0, 0.0), foot(0, 0.05)) == [1, 1]
+    assert shares(foot(0, 0.0), foot(0, 0.05), foot(1, 0.02), worth(4.0)) == pytest.approx([1, 1, AGAIN, 1])
 
 
 def test_the_heaviest_of_them_keeps_its_weight():
@@ -190,14 +195,26 @@ def test_clear_feet_are_witnesses_apart():
     assert shares(foot(0, 0.0, clear), foot(1, 0.0, clear), worth(4.0)) == [1, 1, 1]
 
 
-@pytest.mark.parametrize(("bodies", "sign"), [((0, 1), 1), ((1, 0), -1)])
-def test_heights_are_the_same_or_not_where_the_bundle_has_the_bodies(bodies, sign):
-    """The scale of the first body is exp(0.7) times that of the second: there the camera is so much higher at its."""
-    bundle = worth(4.0, bodies=bodies, log_ratio=sign * 0.7)
+def test_heights_are_the_same_or_not_where_the_bundle_has_the_bodies():
+    """The scale of the first body is exp(0.7) times that of the second, at which the camera is so much higher."""
+    bundle = worth(4.0, log_ratio=0.7)
     assert shares(foot(0, 0.2), foot(1, 0.9), bundle) == pytest.approx([1, AGAIN, 1])
     assert shares(foot(0, 0.2), foot(1, 0.9 + SAME_FOOT - 0.01), bundle) == pytest.approx([1, AGAIN, 1])
     assert shares(foot(0, 0.2), foot(1, 0.9 + SAME_FOOT + 0.01), bundle) == [1, 1, 1]
     assert shares(foot(0, 0.2), foot(1, 0.2), bundle) == [1, 1, 1]
+
+
+def test_parts_that_a_lighter_bundle_joins_move_as_wholes():
+    """Scales 0, -0.3, -1.0 and -1.4, log, of bodies that two heavy bundles and a lighter one join."""
+    bundles = [
+        worth(6.0, bodies=(0, 1), log_ratio=0.3),
+        worth(6.0, bodies=(2, 3), log_ratio=0.4),
+        worth(4.0, bodies=(1, 2), log_ratio=0.7),
+    ]
+    first = foot(0, 0.0, ground=4)
+    for body, height in enumerate((0.3, 1.0, 1.4), 1):
+        found = shares(first, foot(body, height, UNCLEAR - 0.6, ground=4), *bundles, size=np.full(4, 50))
+        assert found == pytest.approx([1, AGAIN, 1, 1, 1])
 
 
 def test_the_heaviest_bundle_says_how_bodies_hang_together():
