@@ -183,10 +183,7 @@ def _with_planes_joined(found: Components, graph: LineGraph, placed: Placed) -> 
 def _drawn(
     framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight, of_person: Bool
 ) -> FramedLines:
-    """The lines with their ends where they stop, and what each is drawn for, by the faces of planes.
-
-    Lines (N,) of which a person said something may end below the ground.
-    """
+    """The lines with their ends where they stop, below the ground too those `of_person` (N,), and their roles."""
     outlines, meets = outlines_of(planes), ends_that_meet_others(framed, sight)
     grounds = grounds_of(planes, sight)
 
@@ -195,8 +192,7 @@ def _drawn(
         own = planes_in(planes, frame, framed.turns)
         rows = framed.of(frame)
         ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, meets[rows])
-        stays = meets[rows] | of_person[rows, None]
-        ends_there = ending_on_ground(ends_there, grounds, own_sight, stays)
+        ends_there = ending_on_ground(ends_there, grounds, own_sight, meets[rows] | of_person[rows, None])
         return with_roles(ends_there, own, own_sight.forward, rectangles_of(openings, own))
 
     return framed.each(draw)

@@ -90,7 +90,7 @@ def mean_of_looks(
 
 
 def with_feet_once(ties: Ties, candidates: Sequence[Candidate]) -> Ties:
-    """The ties, each of one of the candidates, where unclear feet that repeat each other hardly count more than one.
+    """The ties, each of one of the candidates, where unclear feet that repeat each other count little more than one.
 
     What hides the foot of a wall, a hedge or a row of cars, goes on before all bodies of that wall, and looks like a
     foot at the same height of each of them. A clear foot is a witness of its own.
