@@ -147,8 +147,7 @@ def build_scene(
     said = lines_told(cleaned.intersections, of_bodies)
     on_faces = add_lines(framed, planes, view.details, view.camera, sight, said, regions)
     on_faces = follow_map(on_faces, look.mapped, view.camera, sight, said)
-    of_person = np.isin(on_faces.lines.lines.id, said)
-    ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight, of_person), sight)
+    ended = closed_across(_drawn(on_faces.lines, whole, drawn.among(holes.openings)[0], sight, said), sight)
     framed, planes = without_repeats(ended, on_faces.planes, sight)
     pairs = on_faces.renumbered(_renumbered(decision.planar_pairs, found.component, cleaned.row[new_id]))
     lines = framed.in_world()
@@ -181,11 +180,11 @@ def _with_planes_joined(found: Components, graph: LineGraph, placed: Placed) -> 
 
 
 def _drawn(
-    framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight, of_person: Bool
+    framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight, said: Int
 ) -> FramedLines:
-    """The lines with their ends where they stop, below the ground too those `of_person` (N,), and their roles."""
+    """The lines with their ends where they stop, of what is `said` (ids) below the ground too, and with their roles."""
     outlines, meets = outlines_of(planes), ends_that_meet_others(framed, sight)
-    grounds = grounds_of(planes, sight)
+    grounds, of_person = grounds_of(planes, sight), np.isin(framed.lines.id, said)
 
     def draw(lines: Lines, frame: int) -> Lines:
         own_sight = sight_in(sight, frame, framed.turns)
