@@ -182,16 +182,16 @@ def _with_planes_joined(found: Components, graph: LineGraph, placed: Placed) -> 
 def _drawn(
     framed: FramedLines, planes: tuple[Plane, ...], openings: tuple[Opening, ...], sight: Sight, said: Int
 ) -> FramedLines:
-    """The lines with their ends where they stop, of what is `said` (ids) below the ground too, and with their roles."""
+    """The lines with ends where they stop, below the ground what is `said` (ids) or a map placed, and their roles."""
     outlines, meets = outlines_of(planes), ends_that_meet_others(framed, sight)
-    grounds, of_person = grounds_of(planes, sight), np.isin(framed.lines.id, said)
+    grounds, told = grounds_of(planes, sight), np.isin(framed.lines.id, said) | framed.lines.by_depth_map
 
     def draw(lines: Lines, frame: int) -> Lines:
         own_sight = sight_in(sight, frame, framed.turns)
         own = planes_in(planes, frame, framed.turns)
         rows = framed.of(frame)
         ends_there = settled(lines, in_frame(outlines, frame, framed.turns), own_sight, meets[rows])
-        ends_there = ending_on_ground(ends_there, grounds, own_sight, meets[rows] | of_person[rows, None])
+        ends_there = ending_on_ground(ends_there, grounds, own_sight, meets[rows] | told[rows, None])
         return with_roles(ends_there, own, own_sight.forward, rectangles_of(openings, own))
 
     return framed.each(draw)

@@ -55,10 +55,9 @@ def ending_on_ground(lines: Lines, grounds: tuple[Ground, ...], sight: Sight, st
     before = np.isfinite(pixel).all(axis=1)
     upright, pixel = upright[before], pixel[before]
     last_crossing = strokes.reach[upright, 0] + nearest_crossings(strokes, upright, np.zeros_like(upright))[1]
+    (low, high), near = strokes.reach[upright].T, NEAR * np.abs(strokes.end_depth[upright])
     reach = strokes.reach.copy()
     for ground in grounds:
-        low, high = strokes.reach[upright].T
-        near = NEAR * np.abs(strokes.end_depth[upright])
         buried = (low < ground.height - near[:, 0]) & (high > ground.height + near[:, 1])
         buried &= (ground.height - low <= MOST_BURIED * (high - low)) & (last_crossing >= ground.height - near[:, 0])
         reach[upright[buried & shapely.contains_xy(ground.polygon, pixel)], 0] = ground.height
