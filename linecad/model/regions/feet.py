@@ -14,7 +14,7 @@ from linecad.directions import UP, directions_of
 from linecad.geometry import vanishing_points
 from linecad.model.regions import partition
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.labelling import STRAIGHT, Labels
+from linecad.model.regions.labels import STRAIGHT, Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface

@@ -17,7 +17,7 @@ from linecad.directions import partner
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders, expand
 from linecad.model.regions.evidence import sums
-from linecad.model.regions.labelling import UNIT, Labels
+from linecad.model.regions.labels import UNIT, Labels
 from linecad.model.regions.on_roofs import is_on_roof
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster

@@ -18,7 +18,8 @@ from linecad.model.regions.feet import on_ground
 from linecad.model.regions.filling import Filled, fill
 from linecad.model.regions.heaven import Heaven, look_up
 from linecad.model.regions.kerbs import STEPS, on_kerbs
-from linecad.model.regions.labelling import Labels, find_labels, price_per_sample
+from linecad.model.regions.labelling import find_labels, price_per_sample
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.lower import parts_behind
 from linecad.model.regions.mapped import MappedDepths, laid_on, level_of_map, with_mapped
 from linecad.model.regions.opened import with_walls_shown

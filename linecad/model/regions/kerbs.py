@@ -20,7 +20,7 @@ from linecad.directions import UP, components, partner
 from linecad.geometry import world_rays
 from linecad.model.regions import partition
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.lanes import EDGE, NEAREST, ROW, SIDE, Edge, Lane, find_edges, find_lanes, mean_of
 from linecad.model.regions.mapped import is_of_map_at
 from linecad.model.regions.raster import Raster

@@ -1,13 +1,11 @@
 """One label for every cell of the photo: a surface, the sky or clutter.
 
 Labels are found by lines and edges first, then with the colours that this gives each label. A surface that wins less
-than it costs to have one more is left out. Then lines are taken away that only cut off steps, the shortest first, and
-of all answers on the way that one is taken whose labels and corners together cost least. For its cells the labels are
-proven cheapest, or replaced by cheaper ones, or it is told how far from the cheapest they may be.
+than it costs to have one more is left out. Then lines are taken away that only cut off steps. For the cells that are
+left the labels are proven cheapest, or replaced by cheaper ones, or it is told how far from the cheapest they may be.
 """
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -16,13 +14,14 @@ import shapely
 from numpy.typing import NDArray
 
 from linecad.arrays import Bool, Float, Int
-from linecad.geometry import unit_normals
 from linecad.model.regions import partition
 from linecad.model.regions.below import with_feet
 from linecad.model.regions.corners import Known, Side, find_ends, find_sides, with_sides
 from linecad.model.regions.cuts import Borders, energy, expand
 from linecad.model.regions.evidence import CLUTTER, SKY, colour_costs, direction_costs, sample_costs, sums
 from linecad.model.regions.heaven import Heaven
+from linecad.model.regions.labels import UNIT, Labels
+from linecad.model.regions.outlines import Outlined, simplest
 from linecad.model.regions.proof import Program, prove
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import Meets, View, find_meets, find_segments, limit_of_depth
@@ -31,62 +30,13 @@ from linecad.model.regions.surfaces import Surface
 from linecad.model.regions.told import NOTHING, Told
 from linecad.scene import Lines
 
-UNIT = 100  # of whole costs, in one sample
 BORDER = 12.0  # cost of a border of one sample without a line or a change of colour
 ON_LINE, ALIKE = 0.25, 0.25  # what is left of it on a line, and where colours differ much
 COLOUR_STEP = 12.0  # CIE L*a*b*, by which the rest of it falls to 1 / e
 SURFACE = 0.006  # cost of one more surface, in samples of all
 DOUBTFUL = 3.0  # times that; surfaces that win more are kept without a question
 FEWEST_WINS = 6  # surfaces asked in one turn
-# Of the photo's width: lines are left out of which no longer piece is a border.
-RUNS = (0.02, 0.04, 0.06, 0.08, 0.10, 0.14, 0.20)
-CORNER = 0.0025  # cost of one more corner of an outline, in samples of all
 LEAST_SHOWN = 0.5  # share of where a side may be, that must show it
-ON_BORDER = 1e-3  # px
-STRAIGHT = 1e-6  # px; a corner nearer to the straight outline is none
-
-
-@dataclass(frozen=True, eq=False)
-class Labels:
-    """C cells of a photo with what they show, one of K surfaces, sky or clutter."""
-
-    surfaces: list[Surface]  # those that are shown
-    cells: list[shapely.Polygon]  # px
-    cell: Int  # (S,) of each sample
-    label: Int  # (C,) from 0: a surface, then the sky, then clutter
-    of_samples: Float  # (S, K + 2) costs of each sample by itself
-    costs: Int  # (C, K + 2), of the cells as they were labelled: feet of walls cut them further
-    borders: Borders  # of the same cells
-    gap: float = 1.0  # by which other labels may be cheaper, as a share of what is not cheapest; 1: nothing is known
-
-    @property
-    def sky(self) -> int:
-        """The label of the sky."""
-        return len(self.surfaces)
-
-    @property
-    def clutter(self) -> int:
-        """The label of what has no plane."""
-        return len(self.surfaces) + 1
-
-    def is_side(self, label: int) -> bool:
-        """Whether a label is a wall that begins where another one ends: it may be as narrow as that is thick."""
-        return label < self.sky and self.surfaces[label].price < 1
-
-    @cached_property
-    def regions(self) -> list[tuple[int, shapely.Polygon]]:
-        """Every connected union of cells with one label, px, with corners only where its outline turns."""
-        return [
-            (number, region)
-            for number in np.unique(self.label).tolist()
-            for region in united([cell for cell, own in zip(self.cells, self.label, strict=True) if own == number])
-        ]
-
-    @property
-    def price(self) -> float:
-        """What labels and corners cost, in samples."""
-        corners = sum(len(shapely.get_coordinates(region)) for _, region in self.regions)
-        return energy(self.costs, self.borders, self.label) / UNIT + CORNER * corners * len(self.cell)
 
 
 def find_labels(
@@ -137,15 +87,14 @@ def find_labels(
         if len(taken) == len(sides):
             break
         sides = taken
-    answers = [answer]
-    for run in RUNS:
-        used = np.unique(
-            rows[_bordering(answers[-1], border, run * camera.width, RUNS[0] * camera.width) & (rows >= 0)]
-        )
-        every, count = every[used], int((used < count).sum())
-        border, rows = partition.extended(every, camera.width, camera.height, raster.step, count)
-        answers.append(_labels(cells_of(border, steps), forced, drawn, surfaces, raster))
-    best = _proven(min(answers, key=lambda answer: answer.price), raster)
+
+    def draw(used: Int) -> Outlined:
+        inside = int((used < count).sum())
+        border, rows = partition.extended(every[used], camera.width, camera.height, raster.step, inside)
+        found = _labels(cells_of(border, steps), forced, drawn, surfaces, raster)
+        return Outlined(found, border, np.append(used, -1)[rows])  # a border of the photo has the last row, -1
+
+    best = _proven(simplest(Outlined(answer, border, rows), draw), raster)
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
 
@@ -282,26 +231,3 @@ def _without_doubtful(costs: Int, borders: Borders, label: Int, price: Int) -> I
                 break
         else:
             return label
-
-
-def _bordering(found: Labels, lines: Float, least: float, least_of_sides: float) -> Bool:
-    """Which lines (M, 2, 2) have a piece of `least` px or more that separates two labels, or one of a side less."""
-    edges = np.concatenate(
-        [_edges(region, least_of_sides if found.is_side(n) else least) for n, region in found.regions]
-    )
-    across = unit_normals(lines[:, 1] - lines[:, 0])
-    off = np.abs(((edges[:, None] - lines[None, :, :1]) * across[None, :, None]).sum(axis=3)).max(axis=2)
-    return np.asarray((off < ON_BORDER).any(axis=0)) if len(edges) else np.zeros(len(lines), bool)
-
-
-def _edges(region: shapely.Polygon, least: float) -> Float:
-    """(E, 2, 2) the edges of a region, of `least` px or more."""
-    rings = [shapely.get_coordinates(ring) for ring in (region.exterior, *region.interiors)]
-    edges = np.concatenate([np.stack([corners[:-1], corners[1:]], axis=1) for corners in rings])
-    return np.asarray(edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) >= least])
-
-
-def united(cells: list[shapely.Polygon]) -> list[shapely.Polygon]:
-    """The connected unions of cells, px, with corners only where their outlines turn."""
-    union = shapely.simplify(shapely.union_all(np.array(cells, object)), STRAIGHT)
-    return partition.polygons_of(union)

@@ -15,7 +15,7 @@ from linecad.arrays import Float
 from linecad.directions import UP, components
 from linecad.geometry import vanishing_points, world_rays
 from linecad.model.regions.feet import UPRIGHT, beyond_photo, borders_between
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.partition import polygons_of, positive_part
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface

@@ -5,7 +5,7 @@ import numpy as np
 import shapely
 
 from linecad.arrays import Bool
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.raster import Raster
 
 MOST_PLANTS = 0.3  # of its samples

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from linecad.arrays import Bool, Float, Int
 from linecad.directions import MAIN, UP, directions_of, is_first, partner
 from linecad.geometry import rotation_about, world_rays
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 

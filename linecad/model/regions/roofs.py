@@ -18,7 +18,7 @@ from linecad.model.regions import partition
 from linecad.model.regions.bearings import Bearing, bearing_of
 from linecad.model.regions.columns import FOOT, look_over
 from linecad.model.regions.heaven import Heaven
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.profiles import Profile, Shown, Wall, walls_of
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.roof_ends import RoofEnd, find_end

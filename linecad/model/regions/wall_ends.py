@@ -10,7 +10,7 @@ from linecad.directions import UP, components, partner
 from linecad.geometry import directions_to, vanishing_points, world_rays
 from linecad.model.regions import partition
 from linecad.model.regions.corners import LEAST_HEIGHT, walls_beside
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.raster import Raster
 from linecad.model.regions.segments import View
 

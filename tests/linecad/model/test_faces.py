@@ -14,7 +14,7 @@ from linecad.model.faces import FURTHEST, LEAST_AREA, LEAST_HIDDEN, faces_that_g
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.surfaces import Surface
 from linecad.scene import Camera, Face, Lines, Plane
 

@@ -10,7 +10,7 @@ from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.feet import REACH, image_line, on_ground
 from linecad.model.regions.filling import Filled
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface

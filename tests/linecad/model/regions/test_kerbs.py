@@ -14,7 +14,7 @@ from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.kerbs import find_kerbs, on_kerbs
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.lanes import ROW
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.segments import View

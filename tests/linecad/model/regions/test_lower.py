@@ -12,7 +12,7 @@ from linecad.directions import directions_of, partner
 from linecad.geometry import central_camera, project
 from linecad.model.regions import partition
 from linecad.model.regions.cuts import Borders
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.lower import WITHIN, parts_behind
 from linecad.model.regions.segments import View
 from linecad.model.regions.surfaces import Surface

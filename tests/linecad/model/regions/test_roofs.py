@@ -17,7 +17,7 @@ from linecad.model.regions.bearings import Bearing
 from linecad.model.regions.cuts import Borders
 from linecad.model.regions.filling import Filled
 from linecad.model.regions.heaven import Heaven
-from linecad.model.regions.labelling import Labels
+from linecad.model.regions.labels import Labels
 from linecad.model.regions.profiles import Shown, Wall, about_upright
 from linecad.model.regions.raster import take_raster
 from linecad.model.regions.roofs import Sketch, find_roofs, notes_on

@@ -1,0 +1,119 @@
+"""Outlines with few corners: lines are taken away that only cut off steps.
+
+All short ones go first, then longer ones, and of all answers on the way that one is taken whose labels and corners
+together cost least. A wall that this gave up to clutter is asked back with the lines around it: together with it, lines
+went that had nothing to do with it. Last, lines go one by one.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+
+from linecad.arrays import Bool, Float, Int
+from linecad.geometry import unit_normals
+from linecad.model.regions.labels import Labels
+
+# Of the photo's width: lines are left out of which no longer piece is a border.
+RUNS = (0.02, 0.04, 0.06, 0.08, 0.10, 0.14, 0.20)
+LONGEST = 0.3  # of the photo's width: lines with more border than that are no steps
+MOST_LOST = 0.2  # of what any label shows, that may go with steps: they are parts of something larger
+LEAST_GIVEN_UP = 0.01  # of the photo, of a wall that is asked back
+ON_BORDER = 1e-3  # px
+
+
+@dataclass(frozen=True, eq=False)
+class Outlined:
+    """Labels of cells, with the lines that cut them out of the photo."""
+
+    labels: Labels
+    lines: Float  # (M, 2, 2) px, drawn out to each other, the photo's borders among them
+    rows: Int  # (M,) of each line among those that there were to begin with; -1 for the photo's borders
+
+    @property
+    def used(self) -> Int:
+        """The rows of the lines, ascending."""
+        return np.unique(self.rows[self.rows >= 0])
+
+    @property
+    def width(self) -> float:
+        """Of the photo, px."""
+        return float(np.ptp(self.lines[self.rows < 0, :, 0]))
+
+    def shows(self) -> Float:
+        """Share of the photo that shows each label (K + 2,)."""
+        found = self.labels
+        return np.bincount(found.label[found.cell], minlength=found.clutter + 1) / len(found.cell)
+
+    def bordering(self, edges: Float) -> Int:
+        """The rows of the lines on which edges (E, 2, 2) of regions lie."""
+        return self.rows[self._on(edges).any(axis=0) & (self.rows >= 0)]
+
+    def border(self) -> Float:
+        """Length (M,) of the part of each line that separates two labels, px."""
+        edges = np.concatenate([_edges(region, 0.0) for _, region in self.labels.regions])
+        length: Float = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
+        return length @ self._on(edges) / 2  # each is an edge of both
+
+    def _on(self, edges: Float) -> Bool:
+        """Which edges (E, 2, 2) lie on which lines (E, M)."""
+        across = unit_normals(self.lines[:, 1] - self.lines[:, 0])
+        off = np.abs(((edges[:, None] - self.lines[None, :, :1]) * across[None, :, None]).sum(axis=3)).max(axis=2)
+        return np.asarray(off < ON_BORDER)
+
+
+def simplest(first: Outlined, draw: Callable[[Int], Outlined]) -> Labels:
+    """The cheapest labels on the way from `first` to fewer lines; `draw` labels what lines of some rows cut out."""
+    found = [first]
+    for run in RUNS:
+        found.append(draw(np.unique(_with_long_border(found[-1], run))))
+    best = min(found, key=lambda each: each.labels.price)
+    return _without_steps(_with_walls_given_up(best, found, draw), draw).labels
+
+
+def _with_long_border(found: Outlined, run: float) -> Int:
+    """Rows of lines with a border of `run` of the photo's width or more in one piece, of a side of the shortest run."""
+    labels, width = found.labels, found.width
+    least = [(RUNS[0] if labels.is_side(number) else run) * width for number, _ in labels.regions]
+    edges = [_edges(region, shortest) for (_, region), shortest in zip(labels.regions, least, strict=True)]
+    return found.bordering(np.concatenate(edges))
+
+
+def _with_walls_given_up(best: Outlined, found: list[Outlined], draw: Callable[[Int], Outlined]) -> Outlined:
+    """The best answer with the surfaces that it gave up to clutter or sky, each where faces cost less with it."""
+    for number in range(best.labels.sky):
+        last = next((each for each in reversed(found) if _is_given_up(number, each, best)), None)
+        if last is None:
+            continue
+        edges = [_edges(region, RUNS[0] * best.width) for n, region in last.labels.regions if n == number]
+        more = draw(np.union1d(best.used, last.bordering(np.concatenate(edges))))
+        if more.labels.price_of_faces < best.labels.price_of_faces:
+            best = more
+    return best
+
+
+def _is_given_up(number: int, found: Outlined, best: Outlined) -> bool:
+    """Whether an answer has a surface where the best one has less than half of it, and mostly no surface."""
+    own = found.labels.label[found.labels.cell] == number
+    now = best.labels.label[best.labels.cell]
+    least = max(LEAST_GIVEN_UP, own.mean() / 2)
+    return bool(own.mean() - (now == number).mean() > least and (now[own] >= best.labels.sky).mean() > 1 / 2)
+
+
+def _without_steps(best: Outlined, draw: Callable[[Int], Outlined]) -> Outlined:
+    """The answer without the lines that cut off steps, each asked once, those with the least border first."""
+    least, length = (1 - MOST_LOST) * best.shows(), best.border()
+    is_short = (best.rows >= 0) & (length < LONGEST * best.width)
+    for row in best.rows[is_short][np.argsort(length[is_short], kind="stable")].tolist():
+        fewer = draw(best.used[best.used != row])
+        if fewer.labels.price < best.labels.price and (fewer.shows() >= least).all():
+            best = fewer
+    return best
+
+
+def _edges(region: shapely.Polygon, least: float) -> Float:
+    """(E, 2, 2) the edges of a region, of `least` px or more."""
+    rings = [shapely.get_coordinates(ring) for ring in (region.exterior, *region.interiors)]
+    edges = np.concatenate([np.stack([corners[:-1], corners[1:]], axis=1) for corners in rings])
+    return np.asarray(edges[np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1) >= least])
