@@ -94,7 +94,7 @@ def find_labels(
         found = _labels(cells_of(border, steps), forced, drawn, surfaces, raster)
         return Outlined(found, border, np.append(used, -1)[rows])  # a border of the photo has the last row, -1
 
-    best = _proven(simplest(Outlined(answer, border, rows), draw), raster)
+    best = _proven(simplest(Outlined(answer, border, rows), draw, count), raster)
     return replace(best, of_samples=told.over(all_costs, surfaces, raster, with_clutter=False))
 
 

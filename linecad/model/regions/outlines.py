@@ -63,13 +63,16 @@ class Outlined:
         return np.asarray(off < ON_BORDER)
 
 
-def simplest(first: Outlined, draw: Callable[[Int], Outlined]) -> Labels:
-    """The cheapest labels on the way from `first` to fewer lines; `draw` labels what lines of some rows cut out."""
+def simplest(first: Outlined, draw: Callable[[Int], Outlined], meets: int) -> Labels:
+    """The cheapest labels on the way from `first` to fewer lines; `draw` labels what lines of some rows cut out.
+
+    In the first `meets` rows surfaces meet: these are no steps.
+    """
     found = [first]
     for run in RUNS:
         found.append(draw(np.unique(_with_long_border(found[-1], run))))
     best = min(found, key=lambda each: each.labels.price)
-    return _without_steps(_with_walls_given_up(best, found, draw), draw).labels
+    return _without_steps(_with_walls_given_up(best, found, draw), draw, meets).labels
 
 
 def _with_long_border(found: Outlined, run: float) -> Int:
@@ -101,10 +104,13 @@ def _is_given_up(number: int, found: Outlined, best: Outlined) -> bool:
     return bool(own.mean() - (now == number).mean() > least and (now[own] >= best.labels.sky).mean() > 1 / 2)
 
 
-def _without_steps(best: Outlined, draw: Callable[[Int], Outlined]) -> Outlined:
-    """The answer without the lines that cut off steps, each asked once, those with the least border first."""
+def _without_steps(best: Outlined, draw: Callable[[Int], Outlined], meets: int) -> Outlined:
+    """The answer without the lines that cut off steps, each asked once, those with the least border first.
+
+    The first `meets` rows are none.
+    """
     least, length = (1 - MOST_LOST) * best.shows(), best.border()
-    is_short = (best.rows >= 0) & (length < LONGEST * best.width)
+    is_short = (best.rows >= meets) & (length < LONGEST * best.width)
     for row in best.rows[is_short][np.argsort(length[is_short], kind="stable")].tolist():
         fewer = draw(best.used[best.used != row])
         if fewer.labels.price < best.labels.price and (fewer.shows() >= least).all():

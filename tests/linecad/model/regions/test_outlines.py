@@ -50,10 +50,10 @@ def drawing(costs, segments):
     return draw
 
 
-def simplified(costs, segments):
+def simplified(costs, segments, meets=0):
     draw = drawing(costs, segments)
     first = draw(np.arange(len(segments)))
-    return first, simplest(first, draw)
+    return first, simplest(first, draw, meets)
 
 
 def share(labels, number):
@@ -83,6 +83,13 @@ def test_a_step_stays_where_it_is_worth_its_corners(own, is_step):
     costs = painted(FRONT, (WALL, own, 1.0, 120, 0, 162, 42))
     _, found = simplified(costs, [upright(120), upright(162, 0, 42), level(42, 120, 162)])
     assert corners(found) == (8 if is_step else 12)
+
+
+def test_where_surfaces_meet_is_no_step():
+    costs = painted(FRONT, (WALL, 0.45, 1.0, 120, 0, 162, 42))
+    segments = [upright(162, 0, 42), upright(120), level(42, 120, 162)]
+    assert corners(simplified(costs, segments)[1]) == 8
+    assert corners(simplified(costs, segments, meets=3)[1]) == 12
 
 
 def test_more_than_a_fifth_of_what_a_label_shows_is_no_step():
@@ -124,6 +131,6 @@ def test_a_wall_is_asked_back_from_clutter_but_not_from_another_wall(taken_by):
     taken = replace(back.labels, label=np.where(back.labels.label == SIDE, taken_by, back.labels.label))
     dear = replace(back, labels=replace(back.labels, costs=back.labels.costs + 10**6))
     answers = [replace(back, labels=taken)] * len(RUNS)
-    found = simplest(dear, lambda _: answers.pop() if answers else back)
+    found = simplest(dear, lambda _: answers.pop() if answers else back, 0)
     assert taken.price > back.labels.price
     assert share(found, SIDE) == (share(back.labels, SIDE) if taken_by == CLUTTER else 0)
