@@ -7,6 +7,7 @@ went that had nothing to do with it. Last, lines go one by one.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import shapely
@@ -41,10 +42,16 @@ class Outlined:
         """Of the photo, px."""
         return float(np.ptp(self.lines[self.rows < 0, :, 0]))
 
-    def shows(self) -> Float:
+    @cached_property
+    def shown(self) -> Int:
+        """The label of each sample (S,)."""
+        found: Int = self.labels.label[self.labels.cell]
+        return found
+
+    @cached_property
+    def shares(self) -> Float:
         """Share of the photo that shows each label (K + 2,)."""
-        found = self.labels
-        return np.bincount(found.label[found.cell], minlength=found.clutter + 1) / len(found.cell)
+        return np.bincount(self.shown, minlength=self.labels.clutter + 1) / len(self.shown)
 
     def bordering(self, edges: Float) -> Int:
         """The rows of the lines on which edges (E, 2, 2) of regions lie."""
@@ -98,10 +105,10 @@ def _with_walls_given_up(best: Outlined, found: list[Outlined], draw: Callable[[
 
 def _is_given_up(number: int, found: Outlined, best: Outlined) -> bool:
     """Whether an answer has a surface where the best one has less than half of it, and mostly no surface."""
-    own = found.labels.label[found.labels.cell] == number
-    now = best.labels.label[best.labels.cell]
-    least = max(LEAST_GIVEN_UP, own.mean() / 2)
-    return bool(own.mean() - (now == number).mean() > least and (now[own] >= best.labels.sky).mean() > 1 / 2)
+    before, now = found.shares[number], best.shares[number]
+    if before - now <= max(LEAST_GIVEN_UP, before / 2):
+        return False
+    return bool((best.shown[found.shown == number] >= best.labels.sky).mean() > 1 / 2)
 
 
 def _without_steps(best: Outlined, draw: Callable[[Int], Outlined], meets: int) -> Outlined:
@@ -109,11 +116,11 @@ def _without_steps(best: Outlined, draw: Callable[[Int], Outlined], meets: int) 
 
     The first `meets` rows are none.
     """
-    least, length = (1 - MOST_LOST) * best.shows(), best.border()
+    least, length = (1 - MOST_LOST) * best.shares, best.border()
     is_short = (best.rows >= meets) & (length < LONGEST * best.width)
     for row in best.rows[is_short][np.argsort(length[is_short], kind="stable")].tolist():
         fewer = draw(best.used[best.used != row])
-        if fewer.labels.price < best.labels.price and (fewer.shows() >= least).all():
+        if fewer.labels.price < best.labels.price and (fewer.shares >= least).all():
             best = fewer
     return best
 
