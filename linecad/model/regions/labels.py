@@ -54,7 +54,7 @@ class Labels:
 
     @property
     def price(self) -> float:
-        """What labels and corners cost, in samples."""
+        """What labels and corners cost, in samples; that of having a surface is not among it."""
         return energy(self.costs, self.borders, self.label) / UNIT + self._price_of_corners(0)
 
     @property

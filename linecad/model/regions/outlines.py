@@ -1,8 +1,9 @@
 """Outlines with few corners: lines are taken away that only cut off steps.
 
 All short ones go first, then longer ones, and of all answers on the way that one is taken whose labels and corners
-together cost least. A wall that this gave up to clutter is asked back with the lines around it: together with it, lines
-went that had nothing to do with it. Last, lines go one by one.
+together cost least. A surface that it gave up to clutter or sky is asked back with its outline, where that makes faces
+cheaper: lines went with it that had nothing to do with it. Last, lines are asked one by one. What it costs to have one
+more surface counts in none of this: the labels of each answer were asked for that.
 """
 
 from collections.abc import Callable
@@ -20,7 +21,7 @@ from linecad.model.regions.labels import Labels
 RUNS = (0.02, 0.04, 0.06, 0.08, 0.10, 0.14, 0.20)
 LONGEST = 0.3  # of the photo's width: lines with more border than that are no steps
 MOST_LOST = 0.2  # of what any label shows, that may go with steps: they are parts of something larger
-LEAST_GIVEN_UP = 0.01  # of the photo, of a wall that is asked back
+LEAST_GIVEN_UP = 0.01  # of the photo, that a surface lost which is asked back
 ON_BORDER = 1e-3  # px
 
 
@@ -54,24 +55,29 @@ class Outlined:
         return np.bincount(self.shown, minlength=self.labels.clutter + 1) / len(self.shown)
 
     def bordering(self, edges: Float) -> Int:
-        """The rows of the lines on which edges (E, 2, 2) of regions lie."""
-        return self.rows[self._on(edges).any(axis=0) & (self.rows >= 0)]
+        """The rows of the lines on which edges (E, 2, 2) of regions lie, or beyond them."""
+        return self.rows[self._in_line(edges).any(axis=0) & (self.rows >= 0)]
 
     def border(self) -> Float:
-        """Length (M,) of the part of each line that separates two labels, px."""
+        """Length (M,) of the part of each line that separates two labels, whole px."""
         edges = np.concatenate([_edges(region, 0.0) for _, region in self.labels.regions])
-        length: Float = np.linalg.norm(edges[:, 1] - edges[:, 0], axis=1)
-        return length @ self._on(edges) / 2  # each is an edge of both
+        start, direction = self.lines[:, 0], self.lines[:, 1] - self.lines[:, 0]
+        length = np.linalg.norm(direction, axis=1)
+        along = ((edges[:, None] - start[None, :, None]) * (direction / length[:, None])[None, :, None]).sum(axis=3)
+        shared = np.minimum(along.max(axis=2), length) - np.maximum(along.min(axis=2), 0.0)
+        of_both = np.where(self._in_line(edges), np.maximum(shared, 0.0), 0.0)  # regions on both sides have each edge
+        border: Float = np.rint(of_both.sum(axis=0) / 2)
+        return border
 
-    def _on(self, edges: Float) -> Bool:
-        """Which edges (E, 2, 2) lie on which lines (E, M)."""
+    def _in_line(self, edges: Float) -> Bool:
+        """Which edges (E, 2, 2) lie on which lines (E, M), however far these are drawn out."""
         across = unit_normals(self.lines[:, 1] - self.lines[:, 0])
         off = np.abs(((edges[:, None] - self.lines[None, :, :1]) * across[None, :, None]).sum(axis=3)).max(axis=2)
         return np.asarray(off < ON_BORDER)
 
 
 def simplest(first: Outlined, draw: Callable[[Int], Outlined], meets: int) -> Labels:
-    """The cheapest labels on the way from `first` to fewer lines; `draw` labels what lines of some rows cut out.
+    """Labels with few corners, from `first` to fewer lines; `draw` labels what lines of some rows cut out.
 
     In the first `meets` rows surfaces meet: these are no steps.
     """
@@ -79,7 +85,7 @@ def simplest(first: Outlined, draw: Callable[[Int], Outlined], meets: int) -> La
     for run in RUNS:
         found.append(draw(np.unique(_with_long_border(found[-1], run))))
     best = min(found, key=lambda each: each.labels.price)
-    return _without_steps(_with_walls_given_up(best, found, draw), draw, meets).labels
+    return _without_steps(_with_surfaces_given_up(best, found, draw), draw, meets).labels
 
 
 def _with_long_border(found: Outlined, run: float) -> Int:
@@ -90,21 +96,26 @@ def _with_long_border(found: Outlined, run: float) -> Int:
     return found.bordering(np.concatenate(edges))
 
 
-def _with_walls_given_up(best: Outlined, found: list[Outlined], draw: Callable[[Int], Outlined]) -> Outlined:
-    """The best answer with the surfaces that it gave up to clutter or sky, each where faces cost less with it."""
+def _with_surfaces_given_up(best: Outlined, found: list[Outlined], draw: Callable[[Int], Outlined]) -> Outlined:
+    """The best answer with the surfaces that it gave up, each with its outline in the last answer that shows it.
+
+    A surface comes back where it makes faces cheaper and none of the others loses more than a step.
+    """
     for number in range(best.labels.sky):
         last = next((each for each in reversed(found) if _is_given_up(number, each, best)), None)
         if last is None:
             continue
         edges = [_edges(region, RUNS[0] * best.width) for n, region in last.labels.regions if n == number]
         more = draw(np.union1d(best.used, last.bordering(np.concatenate(edges))))
-        if more.labels.price_of_faces < best.labels.price_of_faces:
+        loses_none = (more.shares >= (1 - MOST_LOST) * best.shares)[: best.labels.sky].all()
+        is_cheaper = more.labels.price_of_faces < best.labels.price_of_faces
+        if loses_none and is_cheaper and not _is_given_up(number, last, more):
             best = more
     return best
 
 
 def _is_given_up(number: int, found: Outlined, best: Outlined) -> bool:
-    """Whether an answer has a surface where the best one has less than half of it, and mostly no surface."""
+    """Whether the best answer shows less than half of a surface, by LEAST_GIVEN_UP, and mostly no surface there."""
     before, now = found.shares[number], best.shares[number]
     if before - now <= max(LEAST_GIVEN_UP, before / 2):
         return False
@@ -114,11 +125,11 @@ def _is_given_up(number: int, found: Outlined, best: Outlined) -> bool:
 def _without_steps(best: Outlined, draw: Callable[[Int], Outlined], meets: int) -> Outlined:
     """The answer without the lines that cut off steps, each asked once, those with the least border first.
 
-    The first `meets` rows are none.
+    The first `meets` rows are none, nor are lines with LONGEST border or without which a label loses MOST_LOST.
     """
     least, length = (1 - MOST_LOST) * best.shares, best.border()
-    is_short = (best.rows >= meets) & (length < LONGEST * best.width)
-    for row in best.rows[is_short][np.argsort(length[is_short], kind="stable")].tolist():
+    may_be = (best.rows >= meets) & (length > 0) & (length < LONGEST * best.width)
+    for row in best.rows[may_be][np.argsort(length[may_be], kind="stable")].tolist():
         fewer = draw(best.used[best.used != row])
         if fewer.labels.price < best.labels.price and (fewer.shares >= least).all():
             best = fewer
