@@ -31,23 +31,26 @@ REACH = 250.0  # m, to which windows have frames
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--scenes", type=int, default=40)
-    parser.add_argument("--seed", type=int, default=18000)
-    parser.add_argument("--size", default="640x480", help="of the photos (640x480)")
-    parser.add_argument("--samples", type=int, default=4, help="rays a pixel (4)")
-    chosen = parser.parse_args()
-    width, height = map(int, chosen.size.split("x"))
-    options = DatasetOptions(chosen.scenes, chosen.seed, width, height, chosen.samples)
+    folder, options = chosen_options(__doc__, scenes=40, seed=18000, size="640x480", samples=4)
     choice.CROSSINGS["street"], choice.LARGEST_WALL["street"] = (100, 100_000), 0.45
     facades.LEAST_FLANK = LEAST_FLANK
     houses.DETAIL_REACH = REACH
     with mock.patch.object(scenes, "_street", draw_blocks), mock.patch.object(houses, "draw_style", draw_tall_style):
-        made = make_dataset(
-            chosen.folder, options, lambda stage: print(stage, flush=True), plan_scenes(options, "street")
-        )
-    print(f"{made.new} scenes made, {made.kept} were there already, in {chosen.folder}")
+        made = make_dataset(folder, options, lambda stage: print(stage, flush=True), plan_scenes(options, "street"))
+    print(f"{made.new} scenes made, {made.kept} were there already, in {folder}")
+
+
+def chosen_options(doc: str | None, scenes: int, seed: int, size: str, samples: int) -> tuple[Path, DatasetOptions]:
+    """The folder and the options that the command line chose, whose help is `doc`, or these."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--scenes", type=int, default=scenes)
+    parser.add_argument("--seed", type=int, default=seed)
+    parser.add_argument("--size", default=size, help=f"of the photos ({size})")
+    parser.add_argument("--samples", type=int, default=samples, help=f"rays a pixel ({samples})")
+    chosen = parser.parse_args()
+    width, height = map(int, chosen.size.split("x"))
+    return chosen.folder, DatasetOptions(chosen.scenes, chosen.seed, width, height, chosen.samples)
 
 
 def draw_blocks(rng: Generator) -> tuple[Model, Float, float]:
@@ -77,7 +80,7 @@ def draw_tall_style(rng: Generator) -> Style:
     bay, storey = float(rng.uniform(*BAY)), float(rng.uniform(*STOREY))
     window = bay * float(rng.uniform(*WIDE)), storey * float(rng.uniform(*HIGH))
     if rng.random() < BARE:
-        own = replace(own, sill_course=0.0, head_course=0.0, surround=0.0, lintel=0.0, quoin=0.0)
+        own = without_trim(own)
     return replace(
         own,
         bay=bay,
@@ -90,6 +93,11 @@ def draw_tall_style(rng: Generator) -> Style:
         balconies=0.0 if rng.random() < 0.8 else own.balconies,
         course=own.course if rng.random() < 0.4 else 0.0,
     )
+
+
+def without_trim(style: Style) -> Style:
+    """The style without what stands off the wall around windows and at corners."""
+    return replace(style, sill_course=0.0, head_course=0.0, surround=0.0, lintel=0.0, quoin=0.0)
 
 
 if __name__ == "__main__":

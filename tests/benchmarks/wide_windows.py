@@ -4,16 +4,15 @@ Windows of `linecad dataset` are 1.7 m wide at most, and of two or three panes a
 most of a bay, in three to six lights between posts, which finding windows otherwise takes for as many windows.
 """
 
-import argparse
 from dataclasses import replace
-from pathlib import Path
 from unittest import mock
 
+from high_rises import chosen_options, without_trim
 from numpy.random import Generator
 
 from linecad.dataset import houses
 from linecad.dataset.facades import Style, draw_style
-from linecad.dataset.make import DatasetOptions, make_dataset, plan_scenes
+from linecad.dataset.make import make_dataset, plan_scenes
 
 BAY, STOREY = (3.2, 6.5), (3.3, 4.6)  # m
 WIDE, HIGH = (0.55, 0.88), (0.42, 0.72)  # share of bay and storey that is window
@@ -24,19 +23,11 @@ BARE = 0.5  # share of the houses without trim
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--scenes", type=int, default=24)
-    parser.add_argument("--seed", type=int, default=19500)
-    parser.add_argument("--size", default="1280x720", help="of the photos (1280x720)")
-    parser.add_argument("--samples", type=int, default=3, help="rays a pixel (3)")
-    chosen = parser.parse_args()
-    width, height = map(int, chosen.size.split("x"))
-    options = DatasetOptions(chosen.scenes, chosen.seed, width, height, chosen.samples)
+    folder, options = chosen_options(__doc__, scenes=24, seed=19500, size="1280x720", samples=3)
     with mock.patch.object(houses, "draw_style", draw_wide_style):
         plans = plan_scenes(options, "street")
-        made = make_dataset(chosen.folder, options, lambda stage: print(stage, flush=True), plans)
-    print(f"{made.new} scenes made, {made.kept} were there already, in {chosen.folder}")
+        made = make_dataset(folder, options, lambda stage: print(stage, flush=True), plans)
+    print(f"{made.new} scenes made, {made.kept} were there already, in {folder}")
 
 
 def draw_wide_style(rng: Generator) -> Style:
@@ -44,7 +35,7 @@ def draw_wide_style(rng: Generator) -> Style:
     own = draw_style(rng)
     bay, storey = float(rng.uniform(*BAY)), float(rng.uniform(*STOREY))
     if rng.random() < BARE:
-        own = replace(own, sill_course=0.0, head_course=0.0, surround=0.0, lintel=0.0, quoin=0.0)
+        own = without_trim(own)
     return replace(
         own,
         bay=bay,

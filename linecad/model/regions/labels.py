@@ -52,7 +52,7 @@ class Labels:
             for region in united([cell for cell, own in zip(self.cells, self.label, strict=True) if own == number])
         ]
 
-    @property
+    @cached_property
     def price(self) -> float:
         """What labels and corners cost, in samples; that of having a surface is not among it."""
         return energy(self.costs, self.borders, self.label) / UNIT + self._price_of_corners(0)
