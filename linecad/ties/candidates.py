@@ -2,9 +2,9 @@
 
 A ratio is of one kind. Where crossings ask for it, it is of kind *bundle*; else, where planes would become one, of kind
 *plane*; else, where levels match, of kind *level*. Planes and levels that match at the ratio of a bundle are then
-features of the bundle; sizes that match are a feature of whatever asks for a ratio. Only planes may repeat a ratio,
-each pair of planes for itself. Kind *ground* ties a body to the ground, which counts as one more body, of which the log
-scale is that of the camera's height above it.
+features of the bundle; sizes that match are a feature of whatever asks for a ratio, ends of uprights that match one of
+levels. Only planes may repeat a ratio, each pair of planes for itself. Kind *ground* ties a body to the ground, which
+counts as one more body, of which the log scale is that of the camera's height above it.
 """
 
 from dataclasses import dataclass
@@ -16,11 +16,13 @@ from linecad.geometry import lengths
 from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.colours import find_colours, likeness
 from linecad.ties.feet import MOST_LOG_ODDS, Foot, find_feet
+from linecad.ties.frequencies import Correlation, Frequencies
 from linecad.ties.levels import LEAST_MATCHES, MOST, LevelPair, Match, find_levels
 from linecad.ties.looks import Looks
 from linecad.ties.planes import SharedPlane, find_shared_planes, is_induced
 from linecad.ties.setting import Setting
-from linecad.ties.sizes import SizePair, find_sizes
+from linecad.ties.sizes import find_sizes
+from linecad.ties.upright_ends import find_upright_ends
 from linecad.ties.walls import reach_below
 
 Kind = Literal["bundle", "plane", "level", "ground"]
@@ -31,7 +33,7 @@ SAME_RATIO = 0.015  # log ratio within which two pieces of evidence ask for the 
 NEAR, FAR = 100.0, 800.0  # px at the reference width, over which nearness of bodies fades
 NEAR_PLANES, FAR_PLANES = 150.0, 600.0
 GAP_UNIT = 37.5  # px
-MOST_EXCESS, FARTHEST, MOST_RANK = 8.0, 1.0, 4.0  # of features that would else run away
+MOST_EXCESS, MOST_LEAD, FARTHEST, MOST_RANK = 8.0, 4.0, 1.0, 4.0  # of features that would else run away
 BELOW = 1.04  # times the height of a foot; a line that reaches lower contradicts it
 MOST_BELOW = 0.05  # of a wall's lines by length, that may be a lamp before it
 
@@ -53,7 +55,7 @@ class Pair:
     """What candidates of one pair of bodies share."""
 
     def __init__(
-        self, setting: Setting, bodies: tuple[int, int], levels: LevelPair, sizes: SizePair, like: float
+        self, setting: Setting, bodies: tuple[int, int], levels: LevelPair, sizes: Correlation, like: float
     ) -> None:
         lines = np.sort(setting.bodies.size[list(bodies)])
         distance = setting.distance(*bodies)
@@ -119,9 +121,13 @@ class Pair:
         }
         return self._candidate("plane", plane.log_ratio, own, plane.normal)
 
-    def of_level(self, peak: Match) -> Candidate:
-        """The ratio at which most levels match."""
-        own = {"matches": float(np.log(peak.matches)), "by chance": float(np.log(peak.by_chance + 0.5))}
+    def of_level(self, peak: Match, ends: Correlation) -> Candidate:
+        """The ratio at which most levels match, with the ends of uprights of both bodies."""
+        own = {
+            "matches": float(np.log(peak.matches)),
+            "by chance": float(np.log(peak.by_chance + 0.5)),
+            "ends lead": float(np.clip(ends.lead(peak.log_ratio), -MOST_LEAD, MOST_LEAD)),
+        }
         return self._candidate("level", peak.log_ratio, own)
 
 
@@ -136,16 +142,18 @@ def find_candidates(setting: Setting, looks: Looks) -> list[Candidate]:
         bundles.setdefault(bundle.bodies, []).append(bundle)
     for plane in find_shared_planes(setting):
         planes.setdefault(plane.bodies, []).append(plane)
-    levels, sizes, colours = find_levels(setting), find_sizes(setting), find_colours(setting, looks.beside)
+    levels, colours = find_levels(setting), find_colours(setting, looks.beside)
+    sizes, ends = find_sizes(setting), find_upright_ends(setting)
     found = find_ground(setting, looks)
     for first in range(setting.bodies.count):
         for second in range(first + 1, setting.bodies.count):
             bodies = (first, second)
             pair = LevelPair(levels[first], levels[second])
             if bodies in bundles or bodies in planes or pair.peaks:
-                of_sizes = SizePair(sizes[first], sizes[second])
+                of_sizes = Correlation(sizes[first], sizes[second])
                 known = Pair(setting, bodies, pair, of_sizes, likeness(colours, first, second))
-                found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []))
+                of_ends = ends[first], ends[second]
+                found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []), of_ends)
     return found
 
 
@@ -154,7 +162,9 @@ def find_ground(setting: Setting, looks: Looks) -> list[Candidate]:
     return [_of_foot(setting, foot) for foot in find_feet(setting, looks.feet)]
 
 
-def _of_pair(pair: Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> list[Candidate]:
+def _of_pair(
+    pair: Pair, bundles: list[Bundle], planes: list[SharedPlane], ends: tuple[Frequencies, Frequencies]
+) -> list[Candidate]:
     found = [pair.of_bundle(bundle, planes) for bundle in bundles]
     taken = [bundle.log_ratio for bundle in bundles]
     for plane in planes:
@@ -162,9 +172,11 @@ def _of_pair(pair: Pair, bundles: list[Bundle], planes: list[SharedPlane]) -> li
         if _is_new(plane.log_ratio, taken) and not is_induced(plane, connected):
             found.append(pair.of_plane(plane, supported, connected))
     taken += [plane.log_ratio for plane in planes]
-    for peak in pair.levels.peaks[:MOST]:
-        if peak.matches >= LEAST_MATCHES and _is_new(peak.log_ratio, taken):
-            found.append(pair.of_level(peak))
+    peaks = [peak for peak in pair.levels.peaks[:MOST] if peak.matches >= LEAST_MATCHES]
+    peaks = [peak for peak in peaks if _is_new(peak.log_ratio, taken)]
+    if peaks:
+        of_ends = Correlation(*ends)
+        found += [pair.of_level(peak, of_ends) for peak in peaks]
     return found
 
 

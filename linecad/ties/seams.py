@@ -19,11 +19,12 @@ from linecad.ties.bodies import RigidBodies
 from linecad.ties.bundles import Bundle, find_bundles
 from linecad.ties.candidates import SAME_RATIO, Features, Pair
 from linecad.ties.colours import TYPICAL, Seen, in_common, shades
+from linecad.ties.frequencies import Correlation
 from linecad.ties.levels import LevelPair, find_levels
 from linecad.ties.looks import Looks
 from linecad.ties.planes import find_shared_planes
 from linecad.ties.setting import Setting
-from linecad.ties.sizes import SizePair, find_sizes
+from linecad.ties.sizes import find_sizes
 
 LEAST_SIDE = 8  # lines
 WEAKEST = 0.2  # conductance of a cut, from which a body holds without doubt
@@ -146,7 +147,7 @@ def _seam(setting: Setting, beside: Seen | None, larger: Int, smaller: Int) -> S
 
 def _of_bundle(sides: Setting, bundle: Bundle) -> Features:
     levels, sizes = find_levels(sides), find_sizes(sides)
-    pair = Pair(sides, (0, 1), LevelPair(*levels), SizePair(*sizes), TYPICAL)
+    pair = Pair(sides, (0, 1), LevelPair(*levels), Correlation(*sizes), TYPICAL)
     known = pair.of_bundle(bundle, find_shared_planes(sides)).features
     return {name: known[name] for name in OF_BUNDLE}
 

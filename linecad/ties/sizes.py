@@ -2,19 +2,16 @@
 
 A size is the distance of two parallel lines that stand beside each other in one Manhattan plane. Heights above the
 ground (`linecad.ties.levels`) ask that two bodies stand on one ground; sizes ask for nothing but the same windows.
-Two bodies are compared at all ratios at once, by the correlation of how often each log size occurs in them.
 """
 
-from dataclasses import dataclass
 from itertools import permutations
-from typing import Self
 
 import numpy as np
-from numpy.typing import NDArray
 
 from linecad.arrays import Float, true_places
 from linecad.directions import UP, across, count_of, level_axes
 from linecad.geometry import depths_beside
+from linecad.ties.frequencies import Frequencies, spectrum
 from linecad.ties.setting import Setting
 
 ONE_PLANE = 0.004  # of the depth: lines that lie off a plane by less are in it
@@ -23,57 +20,27 @@ BESIDE = 0.5  # of the shorter line that must stand beside the other
 LIKE = 0.25  # of the longer line that the shorter one must measure
 NEAREST = 8  # neighbours of a line
 LEAST_SIZES = 25  # of a body, for frequencies to tell anything
-STEP = 0.004  # log size, between two samples of a frequency
-LARGEST = 4.0  # log size over the body's median depth, in magnitude
 ALIKE = 0.003  # log size: standard deviation of how well one is known
 AROUND = 0.12  # log size to both sides, over which frequencies are counted against their mean
-WIDEST = 1.2  # log ratio beyond which no scale is looked for
-SAME = 0.012  # log ratio within which a correlation counts for a ratio: bodies are not known better
-
-Spectrum = NDArray[np.complex128]
-
-_SAMPLES = round(2 * LARGEST / STEP)
 
 
-@dataclass(frozen=True, eq=False)
-class Sizes:
-    """How often each size occurs in one body."""
+def sizes_of(level: Float, upright: Float, middle: float) -> Frequencies:
+    """How often each size occurs in a body, from the log distances (M,) of level lines and (M',) of its uprights.
 
-    middle: float  # log of the body's median depth, which sizes are counted from
-    # Of the frequencies of distances of level lines and of uprights; None where these are too few to tell.
-    spectra: tuple[Spectrum | None, Spectrum | None]
-
-    @classmethod
-    def of(cls, level: Float, upright: Float, middle: float) -> Self:
-        """From the log distances (M,) of level lines and (M',) of uprights of a body."""
-        is_told = len(level) + len(upright) >= LEAST_SIZES
-        spectra = [_spectrum(sizes - middle) if is_told and len(sizes) else None for sizes in (level, upright)]
-        return cls(middle, (spectra[0], spectra[1]))
-
-
-class SizePair:
-    """The sizes of two bodies against each other, at log ratios of the scale of the first to that of the second."""
-
-    def __init__(self, first: Sizes, second: Sizes) -> None:
-        between = second.middle - first.middle  # the log ratio at which equal frequencies would be one upon the other
-        most = round(WIDEST / STEP)
-        shift = np.arange(-most, most + 1) - round(between / STEP)
-        shift = shift[np.abs(shift) < _SAMPLES]
-        self._places = shift * STEP + between
-        total = np.zeros(len(shift))
-        for own, other in zip(first.spectra, second.spectra, strict=True):
-            if own is not None and other is not None:
-                total += np.fft.irfft(np.conj(own) * other, 2 * _SAMPLES)[shift]
-        spread = float(total.std()) if len(total) else 0.0
-        self._excess = total / spread if spread > 0 else total
-
-    def at(self, log_ratio: float) -> float:
-        """Correlation at a ratio, in standard deviations of that at all ratios; 0 where nothing tells."""
-        near = np.abs(self._places - log_ratio) <= SAME
-        return float(self._excess[near].max()) if near.any() else 0.0
+    `middle` is the log of the body's median depth. Too few sizes tell nothing.
+    """
+    is_told = len(level) + len(upright) >= LEAST_SIZES
+    told = [is_told and len(sizes) > 0 for sizes in (level, upright)]
+    return Frequencies(
+        middle,
+        tuple(
+            spectrum(sizes - middle, ALIKE, AROUND) if tells else None
+            for sizes, tells in zip((level, upright), told, strict=True)
+        ),
+    )
 
 
-def find_sizes(setting: Setting) -> list[Sizes]:
+def find_sizes(setting: Setting) -> list[Frequencies]:
     """The sizes of each body."""
     graph = setting.graph
     depth = np.exp(setting.log_depth)
@@ -96,7 +63,7 @@ def find_sizes(setting: Setting) -> list[Sizes]:
                     sizes = _distances(points[own], reach[own], depth[own], beside, normal)
                     (upright if axis == UP else level).append(sizes)
         middle = float(np.median(setting.log_depth[lines]))
-        found.append(Sizes.of(np.concatenate(level), np.concatenate(upright), middle))
+        found.append(sizes_of(np.concatenate(level), np.concatenate(upright), middle))
     return found
 
 
@@ -118,16 +85,3 @@ def _distances(points: Float, reach: Float, depth: Float, across: int, normal: i
     # Pairs stand line by line, each line's next ones first.
     is_next = np.arange(len(first)) - np.searchsorted(first, first) < NEAREST
     return np.asarray(np.log(apart[is_next]))
-
-
-def _spectrum(sizes: Float) -> Spectrum | None:
-    """Of the frequency of log sizes less its mean round about, of unit energy; None where it is the same all over."""
-    place = np.floor((sizes + LARGEST) / STEP).astype(np.int64)
-    count = np.bincount(place[(place >= 0) & (place < _SAMPLES)], minlength=_SAMPLES).astype(np.float64)
-    reach = int(np.ceil(3 * ALIKE / STEP))
-    known = np.exp(-0.5 * (np.arange(-reach, reach + 1) * STEP / ALIKE) ** 2)
-    frequency = np.convolve(count, known, "same")
-    wide = 2 * round(AROUND / STEP) + 1
-    frequency = frequency - np.convolve(frequency, np.full(wide, 1 / wide), "same")
-    energy = float(np.linalg.norm(frequency))
-    return np.fft.rfft(frequency / energy, 2 * _SAMPLES) if energy > 0 else None

@@ -2,7 +2,7 @@
 
 Logistic regression with a small ridge, by tests/benchmarks/ties.py (docs/results/ties.md). Do not edit by hand. The
 ground was fitted last, by its `--refit` (docs/decisions/0129), and one of its features after that (0135), as were the
-overlaps of planes and bundles (0152).
+overlaps of planes and bundles (0152) and the lead of ends of uprights (0159).
 """
 
 from linecad.ties.candidates import Kind
@@ -10,7 +10,7 @@ from linecad.ties.candidates import Kind
 AT_ONCE: dict[Kind, float] = {
     "bundle": -2.1675,
     "plane": -6.0867,
-    "level": -6.8117,
+    "level": -5.8717,
     "ground": -0.7205,
 }
 LOG_ODDS: dict[Kind, dict[str, float]] = {
@@ -79,6 +79,7 @@ LOG_ODDS: dict[Kind, dict[str, float]] = {
         "apart": -4.5385,
         "matches": 0.1092,
         "by chance": 0.1010,
+        "ends lead": 0.5700,
     },
     "ground": {
         "clear": 0.7187,

@@ -15,7 +15,7 @@ CHANCE = float(np.log(BY_CHANCE / (1 - BY_CHANCE)))  # the same as log-odds
 TOLERANCE = 0.02  # log ratio within which a tie holds
 LEAST_WEIGHT = 2.0  # of a tie: weaker ones are so many that some always agree with a wrong place
 REPEATING: tuple[Kind, ...] = ("plane", "level")
-REPEATED = 0.6  # of the weight of planes and levels, which repeat each other more than crossings do
+REPEATED = 0.6  # of the weight of planes, which repeat each other more than crossings do
 OF_PIECES = 1 / 3  # of a tie's weight, that the look at pieces has
 LEAST_OF_PIECES = 0.5  # what that must come to of a tie that pieces alone ask for: many of crumbs make the search long
 FULL_SIZE = 30.0  # lines of the smaller body, from which a tie has its full weight: crumbs must not move walls
@@ -46,7 +46,7 @@ def weigh_candidates(candidates: Sequence[Candidate], size: Int) -> Ties:
     chosen = worth_a_tie(candidates)
     with_ground = np.append(size, size.sum())  # the ground is no crumb
     smaller = np.array([with_ground[list(candidate.bodies)].min() for candidate in chosen], np.float64)
-    repeated = np.array([REPEATED if candidate.kind in REPEATING else 1.0 for candidate in chosen])
+    repeated = np.array([REPEATED if candidate.kind == "plane" else 1.0 for candidate in chosen])
     gain = np.array([above_chance(candidate) for candidate in chosen])
     weight: Float = gain * np.minimum(1.0, smaller / FULL_SIZE) * repeated
     return Ties(

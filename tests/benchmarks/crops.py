@@ -1,9 +1,10 @@
-"""Crops of real photos through the whole program: python tests/benchmarks/crops.py DATASET ... [--scenes DIR]
+"""Crops of real photos through the whole program: python tests/benchmarks/crops.py DATASET ... [--views] [--scenes DIR]
 
-Who frames a photo otherwise cuts off other walls, eaves and feet, and what one more tie kept right is wrong. So
-each crop (CROPS of parts.py) is one more photo of a known place, which no fit has seen. Prints recall and
-precision of lines, and of all depths where depths are known off the edges too, within 5 %, everything in the file: the
-means of each dataset, then a row a crop. With --scenes, the scene files and the crops are left in DIR.
+Who frames a photo otherwise cuts off other walls, eaves and feet, and what one more tie kept right is wrong. So each
+crop (CROPS of parts.py) is one more photo of a known place, which no fit has seen. With --views it is what views.py
+shows instead: mirrored photos, turned cameras, less light; one fit has seen these (docs/decisions/0159). Prints recall
+and precision of lines, and of all depths where depths are known off the edges too, within 5 %, everything in the file:
+the means of each dataset, then a row a crop. With --scenes, the scene files and the crops are left in DIR.
 """
 
 import argparse
@@ -13,7 +14,8 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from parts import CROPS, part_of
+from parts import CROPS
+from views import VIEWS, changed
 
 from linecad.evaluation.datasets import Case, find_dataset
 from linecad.evaluation.references import open_case
@@ -36,7 +38,7 @@ class Scored:
 
 def try_crop(dataset: str, case: Case, crop: str, scenes: Path | None) -> Scored | None:
     """The scores of a crop of a photo; None where no depth of it is known."""
-    photo, reference = part_of(*open_case(case), crop)
+    photo, reference = changed(*open_case(case), crop)
     if reference.edges is None or len(reference.edges.depth) == 0:
         return None
     name = f"{case.name}-{crop.replace(' ', '-')}"
@@ -53,6 +55,7 @@ def try_crop(dataset: str, case: Case, crop: str, scenes: Path | None) -> Scored
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("datasets", type=Path, nargs="+", metavar="DATASET")
+    parser.add_argument("--views", action="store_true", help="mirrored photos and turned cameras, not crops")
     parser.add_argument("--scenes", type=Path, metavar="DIR")
     parser.add_argument("--workers", type=int, default=2, help="processes")
     chosen = parser.parse_args()
@@ -63,14 +66,14 @@ def main() -> None:
             pool.submit(try_crop, folder.name, case, crop, chosen.scenes)
             for folder in chosen.datasets
             for case in find_dataset(folder).cases
-            for crop in CROPS
+            for crop in (VIEWS if chosen.views else CROPS)
         ]
         found = [scored for job in jobs if (scored := job.result()) is not None]
     print("| | lines | all depths |\n| --- | --- | --- |")
     for dataset in dict.fromkeys(scored.dataset for scored in found):
         own = [scored for scored in found if scored.dataset == dataset]
         shares = np.mean([scored.shares for scored in own], axis=0).tolist()
-        print(_row(f"{dataset}, {len(own)} crops", shares, 3))
+        print(_row(f"{dataset}, {len(own)} {'views' if chosen.views else 'crops'}", shares, 3))
         for scored in own:
             print(_row(scored.name, list(scored.shares), 2))
 

@@ -7,10 +7,12 @@ others; the photos of one real dataset are one scene, and so are their parts (pa
 ties_tables.py judges by many, and writes the mean of them; probability.py fits how sure the places are.
 
 `--refit KIND` instead fits one kind to whole photos, near what it is in the table of the project, and writes it there;
-with `--only FEATURE` that feature alone.
+with `--only FEATURE` that feature alone, and what the kind has at once: to parts and views (views.py) of real photos
+too, each dataset as heavy as any other.
 """
 
 import argparse
+from collections.abc import Iterable
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,6 +23,7 @@ import logistic
 import numpy as np
 from parts import PARTS
 from ties_truth import PARTED, Judged, judge
+from views import VIEWS
 
 import linecad.ties.placing
 import linecad.ties.table
@@ -70,13 +73,13 @@ class Rows:
         return logistic.fit(self.features[chosen], self.right[chosen], RIDGE, used=used)
 
 
-def judge_all(folders: list[Path], pool: ProcessPoolExecutor, with_parts: bool = True) -> list[Judged]:
-    """The photos of datasets, and the parts of real ones."""
+def judge_all(folders: list[Path], pool: ProcessPoolExecutor, parts: Iterable[str] = tuple(PARTS)) -> list[Judged]:
+    """The photos of datasets, and these parts of real ones."""
     jobs = [
         pool.submit(judge, folder.name, case, part)
         for folder in folders
         for case in find_dataset(folder).cases
-        for part in ([None] if case.kind == "made" or not with_parts else [None, *PARTS])
+        for part in ([None] if case.kind == "made" else [None, *parts])
     ]
     photos = [photo for job in jobs if (photo := job.result()) is not None]
     print(f"{len(photos)} of {len(jobs)} photos and parts", flush=True)
@@ -232,7 +235,8 @@ def main() -> None:
     if chosen.only is not None and chosen.only not in linecad.ties.table.LOG_ODDS.get(chosen.refit, {}):
         parser.error("--only names a feature of the kind of --refit, as linecad/ties/table.py has it")
     with ProcessPoolExecutor(chosen.workers) as pool:
-        photos = judge_all(chosen.datasets, pool, with_parts=chosen.refit is None)
+        seen = tuple(PARTS) if chosen.refit is None else (*PARTS, *VIEWS) if chosen.only is not None else ()
+        photos = judge_all(chosen.datasets, pool, seen)
         if chosen.refit is not None:
             write_table(refitted(rows_of(photos, chosen.refit), chosen.refit, chosen.only))
             return
@@ -257,13 +261,20 @@ def refitted(rows: Rows, kind: Kind, only: str | None) -> Table:
 
 
 def with_one_anew(known: logistic.Logistic, rows: Rows, column: int) -> logistic.Logistic:
-    """The same with the likeliest slope of one feature, by Newton's method."""
-    found, own = known, rows.features[:, column]
+    """The same with the likeliest slope of one feature, and what is so at once, by Newton's method.
+
+    Each dataset weighs the same.
+    """
+    found, own = known, np.column_stack([np.ones(len(rows.right)), rows.features[:, column]])
+    names = [name.removesuffix(PARTED) for name in rows.dataset]
+    weight = np.array([1 / names.count(name) for name in names])
     for _ in range(logistic.STEPS):
         p = found.probability(rows.features)
+        curvature = (own.T * (weight * p * (1 - p))) @ own
+        step = np.linalg.solve(curvature, own.T @ (weight * (rows.right - p)))
         slope = found.slope.copy()
-        slope[column] += (own * (rows.right - p)).sum() / (own**2 * p * (1 - p)).sum()
-        found = logistic.Logistic(known.at_once, slope)
+        slope[column] += step[1]
+        found = logistic.Logistic(found.at_once + float(step[0]), slope)
     return found
 
 

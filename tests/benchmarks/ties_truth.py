@@ -7,7 +7,7 @@ import numpy as np
 from bare_scene import scene_of_lines
 from depth_truth import TrueDepth, true_depth
 from feet_truth import examples_of
-from parts import part_of
+from views import changed
 
 from linecad.arrays import Float, Int
 from linecad.decide.stability import resample
@@ -93,10 +93,10 @@ class Seen:
 
 
 def look_at(case: Case, part: str | None = None) -> Seen | None:
-    """The photo of a case, or a part of it; None where it has no lines in space, or its truth no depths."""
+    """The photo of a case, or a part or view of it; None where it has no lines in space, or its truth no depths."""
     photo, reference = open_case(case)
     if part is not None:
-        photo, reference = part_of(photo, reference, part)
+        photo, reference = changed(photo, reference, part)
     if reference.edges is None:
         return None
     try:

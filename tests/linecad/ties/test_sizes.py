@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from linecad.ties.sizes import LEAST_SIZES, NEAREST, SAME, STEP, WIDEST, SizePair, Sizes, find_sizes
+from linecad.ties.frequencies import SAME, STEP, WIDEST, Correlation
+from linecad.ties.sizes import LEAST_SIZES, NEAREST, find_sizes, sizes_of
 
 random = np.random.default_rng(5)
 WINDOWS = np.log(np.concatenate([random.uniform(0.4, 3.0, 40).repeat(3), random.uniform(0.4, 3.0, 20)]))
@@ -15,7 +16,7 @@ PLACES = np.arange(-1.1, 1.1, 0.01)
 
 
 def sizes(level, upright=NONE, middle=0.0):
-    return Sizes.of(level, upright, middle)
+    return sizes_of(level, upright, middle)
 
 
 def best(pair):
@@ -26,37 +27,37 @@ def best(pair):
 @pytest.mark.parametrize("middle", [0.0, 0.5])
 def test_equal_windows_match_best_at_the_true_ratio(by, middle):
     """Whatever the depths of the bodies are: frequencies are counted from there, ratios are not."""
-    pair = SizePair(sizes(WINDOWS, WINDOWS), sizes(WINDOWS + by, WINDOWS + by, middle))
+    pair = Correlation(sizes(WINDOWS, WINDOWS), sizes(WINDOWS + by, WINDOWS + by, middle))
     assert best(pair) == pytest.approx(by, abs=SAME + STEP)
     assert pair.at(by) > 8
 
 
 def test_the_ratio_is_that_of_the_first_to_the_second():
     """Scales that make sizes equal: the body whose sizes are smaller must grow."""
-    pair = SizePair(sizes(WINDOWS), sizes(WINDOWS + 0.3))
+    pair = Correlation(sizes(WINDOWS), sizes(WINDOWS + 0.3))
     assert pair.at(0.3) > 5 > abs(pair.at(-0.3))
-    turned = SizePair(sizes(WINDOWS + 0.3), sizes(WINDOWS))
+    turned = Correlation(sizes(WINDOWS + 0.3), sizes(WINDOWS))
     assert turned.at(-0.3) == pytest.approx(pair.at(0.3), rel=0.05)
 
 
 def test_level_lines_are_not_held_against_uprights():
-    assert SizePair(sizes(WINDOWS), sizes(NONE, WINDOWS)).at(0.0) == 0.0
+    assert Correlation(sizes(WINDOWS), sizes(NONE, WINDOWS)).at(0.0) == 0.0
 
 
 def test_windows_of_other_sizes_match_nowhere():
-    pair = SizePair(sizes(WINDOWS), sizes(OTHERS))
-    assert max(pair.at(place) for place in PLACES) < SizePair(sizes(WINDOWS), sizes(WINDOWS)).at(0.0) / 2
+    pair = Correlation(sizes(WINDOWS), sizes(OTHERS))
+    assert max(pair.at(place) for place in PLACES) < Correlation(sizes(WINDOWS), sizes(WINDOWS)).at(0.0) / 2
 
 
 def test_too_few_sizes_tell_nothing():
     few = sizes(WINDOWS[: LEAST_SIZES - 1])
     assert few.spectra == (None, None)
-    assert SizePair(few, sizes(WINDOWS)).at(0.0) == 0.0
+    assert Correlation(few, sizes(WINDOWS)).at(0.0) == 0.0
     assert sizes(WINDOWS[:LEAST_SIZES]).spectra[0] is not None
 
 
 def test_beyond_the_widest_ratio_nothing_is_told():
-    pair = SizePair(sizes(WINDOWS), sizes(WINDOWS + WIDEST + 0.2))
+    pair = Correlation(sizes(WINDOWS), sizes(WINDOWS + WIDEST + 0.2))
     assert pair.at(WIDEST + 0.2) == 0.0
 
 
@@ -67,7 +68,7 @@ def test_bodies_of_which_one_has_moved_match_where_they_were(build_setting, buil
     setting = build_setting(build_town(*pieces), moved=(0.2,))
     first, second = find_sizes(setting)
     assert first.spectra[0] is not None
-    pair = SizePair(first, second)
+    pair = Correlation(first, second)
     assert pair.at(-0.2) == pytest.approx(max(pair.at(place) for place in PLACES))
     assert pair.at(-0.2) > 3
 

@@ -54,9 +54,9 @@ def test_weak_candidates_are_no_ties():
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_planes_and_levels_are_worth_less_since_they_repeat_each_other(kind):
+def test_planes_are_worth_less_since_they_repeat_each_other(kind):
     (weight,) = weigh_candidates([worth(5.0, kind)], LARGE).weight
-    assert weight == pytest.approx(5.0 * REPEATED if kind in ("plane", "level") else 5.0)
+    assert weight == pytest.approx(5.0 * REPEATED if kind == "plane" else 5.0)
 
 
 @pytest.mark.parametrize(("lines", "share"), [(6, 6 / FULL_SIZE), (15, 0.5), (30, 1.0), (300, 1.0)])
