@@ -152,8 +152,8 @@ def find_candidates(setting: Setting, looks: Looks) -> list[Candidate]:
             if bodies in bundles or bodies in planes or pair.peaks:
                 of_sizes = Correlation(sizes[first], sizes[second])
                 known = Pair(setting, bodies, pair, of_sizes, likeness(colours, first, second))
-                of_ends = ends[first], ends[second]
-                found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []), of_ends)
+                on_both = ends[first], ends[second]
+                found += _of_pair(known, bundles.get(bodies, []), planes.get(bodies, []), on_both)
     return found
 
 
@@ -172,8 +172,8 @@ def _of_pair(
         if _is_new(plane.log_ratio, taken) and not is_induced(plane, connected):
             found.append(pair.of_plane(plane, supported, connected))
     taken += [plane.log_ratio for plane in planes]
-    peaks = [peak for peak in pair.levels.peaks[:MOST] if peak.matches >= LEAST_MATCHES]
-    peaks = [peak for peak in peaks if _is_new(peak.log_ratio, taken)]
+    strong = (peak for peak in pair.levels.peaks[:MOST] if peak.matches >= LEAST_MATCHES)
+    peaks = [peak for peak in strong if _is_new(peak.log_ratio, taken)]
     if peaks:
         of_ends = Correlation(*ends)
         found += [pair.of_level(peak, of_ends) for peak in peaks]

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 from linecad.arrays import Bool, Float, Int
 from linecad.decide.stability import SAME_DEPTH, Fits
 from linecad.depth.depth_map import DepthMap
-from linecad.geometry import REFERENCE_WIDTH
+from linecad.geometry import REFERENCE_WIDTH, depths_beside
 from linecad.line_graph import LineGraph
 from linecad.ties.bodies import RigidBodies
 
@@ -65,6 +65,18 @@ class Setting:
     def distance(self, first: int, second: int) -> float:
         """Between the segments of two bodies in the photo, px."""
         return float(self.trees[first].query(self.points[second])[0].min())
+
+    @cached_property
+    def reach(self) -> Float:
+        """(N, 2) from where to where along its own axis each line is seen, at its depth."""
+        graph = self.graph
+        points = graph.components * np.exp(self.log_depth)[:, None]
+        reach = np.empty((len(points), 2))
+        for end in range(2):
+            along = np.take_along_axis(graph.end_components[:, end], graph.axis[:, None], 1)[:, 0]
+            reach[:, end] = along * depths_beside(graph.end_components[:, end], points, graph.axis)
+        reach.sort(axis=1)
+        return reach
 
     @cached_property
     def _moved(self) -> tuple[Float, Int]:

@@ -10,7 +10,6 @@ import numpy as np
 
 from linecad.arrays import Float, true_places
 from linecad.directions import UP, across, count_of, level_axes
-from linecad.geometry import depths_beside
 from linecad.ties.frequencies import Frequencies, spectrum
 from linecad.ties.setting import Setting
 
@@ -30,14 +29,10 @@ def sizes_of(level: Float, upright: Float, middle: float) -> Frequencies:
     `middle` is the log of the body's median depth. Too few sizes tell nothing.
     """
     is_told = len(level) + len(upright) >= LEAST_SIZES
-    told = [is_told and len(sizes) > 0 for sizes in (level, upright)]
-    return Frequencies(
-        middle,
-        tuple(
-            spectrum(sizes - middle, ALIKE, AROUND) if tells else None
-            for sizes, tells in zip((level, upright), told, strict=True)
-        ),
-    )
+    spectra = [
+        spectrum(sizes - middle, ALIKE, AROUND) if is_told and len(sizes) else None for sizes in (level, upright)
+    ]
+    return Frequencies(middle, tuple(spectra))
 
 
 def find_sizes(setting: Setting) -> list[Frequencies]:
@@ -45,12 +40,6 @@ def find_sizes(setting: Setting) -> list[Frequencies]:
     graph = setting.graph
     depth = np.exp(setting.log_depth)
     points = graph.components * depth[:, None]
-    reach = np.empty((len(depth), 2))
-    for end in range(2):
-        along = np.take_along_axis(graph.end_components[:, end], graph.axis[:, None], 1)[:, 0]
-        beside = depths_beside(graph.end_components[:, end], points, graph.axis)
-        reach[:, end] = along * beside
-    reach.sort(axis=1)
     found = []
     for lines in setting.lines:
         level: list[Float] = []
@@ -60,7 +49,7 @@ def find_sizes(setting: Setting) -> list[Frequencies]:
             for frame in range(len(graph.turns) + 1 if axis == UP else 1):
                 sides = level_axes(frame) if axis == UP else np.sort(across(np.array(axis))).tolist()
                 for beside, normal in permutations(sides):
-                    sizes = _distances(points[own], reach[own], depth[own], beside, normal)
+                    sizes = _distances(points[own], setting.reach[own], depth[own], beside, normal)
                     (upright if axis == UP else level).append(sizes)
         middle = float(np.median(setting.log_depth[lines]))
         found.append(sizes_of(np.concatenate(level), np.concatenate(upright), middle))

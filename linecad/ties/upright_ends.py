@@ -8,7 +8,6 @@ import numpy as np
 
 from linecad.arrays import Float
 from linecad.directions import UP
-from linecad.geometry import depths_beside
 from linecad.ties.frequencies import Frequencies, Spectrum, spectrum
 from linecad.ties.setting import Setting
 
@@ -24,19 +23,10 @@ def find_upright_ends(setting: Setting) -> list[Frequencies]:
     By the roots of the counts, which are as uncertain in tall heaps as in low ones: a wall has dozens of ends at one
     height.
     """
-    graph = setting.graph
-    points = graph.components * np.exp(setting.log_depth)[:, None]
-    heights = np.stack(
-        [
-            graph.end_components[:, end, UP] * depths_beside(graph.end_components[:, end], points, graph.axis)
-            for end in range(2)
-        ],
-        axis=1,
-    )
     found = []
     for lines in setting.lines:
         middle = float(np.median(setting.log_depth[lines]))
-        ends = heights[lines[graph.axis[lines] == UP]].ravel()
+        ends = setting.reach[lines[setting.graph.axis[lines] == UP]].ravel()
         found.append(Frequencies(middle, tuple(_spectrum(sign * ends, middle) for sign in (-1, 1))))
     return found
 

@@ -267,7 +267,8 @@ def with_one_anew(known: logistic.Logistic, rows: Rows, column: int) -> logistic
     """
     found, own = known, np.column_stack([np.ones(len(rows.right)), rows.features[:, column]])
     names = [name.removesuffix(PARTED) for name in rows.dataset]
-    weight = np.array([1 / names.count(name) for name in names])
+    _, number, size = np.unique(names, return_inverse=True, return_counts=True)
+    weight = 1 / size[number]
     for _ in range(logistic.STEPS):
         p = found.probability(rows.features)
         curvature = (own.T * (weight * p * (1 - p))) @ own

@@ -15,9 +15,10 @@ from parts import CROPS, PARTS, part_of
 from linecad.arrays import Float
 from linecad.camera.photo import Photo
 from linecad.evaluation.references import Points, Reference
-from linecad.geometry import homogeneous, resized_camera
+from linecad.geometry import homogeneous, resized_camera, rotation_about
 from linecad.scene import Camera
 
+MIRROR = np.diag([-1.0, 1.0, 1.0])
 CLOSER = 1.22  # times the focal length of a turned camera, so that it sees nothing that the photo does not show
 GAMMA, DIMMER, NOISE, QUALITY = 1.5, 0.9, 4.0, 70  # of a dim photo: noise in values of 255, quality of its JPEG
 
@@ -55,39 +56,29 @@ def changed(photo: Photo, reference: Reference, name: str) -> tuple[Photo, Refer
 def view_of(photo: Photo, reference: Reference, view: View) -> tuple[Photo, Reference]:
     """A view of a photo, with the points of known depth that it shows; no more is known about it."""
     assert photo.camera is not None
-    turn, matrix = _turn(view), photo.camera.matrix.copy()
+    back, matrix = np.linalg.inv(photo.camera.matrix), photo.camera.matrix.copy()
+    turn = rotation_about(np.radians([-view.up, 0.0, 0.0])) @ rotation_about(np.radians([0.0, -view.right, 0.0]))
     is_turned = bool(view.right or view.up)
     if is_turned:
         matrix[:2, :2] *= CLOSER
-    pixels, camera = _pixels(photo, view, matrix @ turn @ np.linalg.inv(photo.camera.matrix) if is_turned else None)
-    seen = matrix.copy()
+    pixels, size = _pixels(photo, view, matrix @ turn @ back if is_turned else None)
     if view.is_mirrored:
-        seen[0] = (photo.width - 1) * seen[2] - seen[0]
         matrix[0, 2] = photo.width - 1 - matrix[0, 2]
-    matrix = resized_camera(matrix, np.full(2, view.scale))
-    scale = np.array(camera) / [photo.width, photo.height]
-    back = np.linalg.inv(photo.camera.matrix)
+        turn = MIRROR @ turn
+    scale = np.array(size) / [photo.width, photo.height]
 
     def shown(points: Points | None) -> Points | None:
         if points is None:
             return None
         rays = homogeneous(points.pixels) @ back.T @ turn.T
-        at = rays @ seen.T
+        at = rays @ matrix.T
         at = (at[:, :2] / at[:, 2:] + 0.5) * scale - 0.5
-        inside = ((at > 0) & (at < np.array(camera) - 1)).all(axis=1)
+        inside = ((at > 0) & (at < np.array(size) - 1)).all(axis=1)
         return Points(at[inside], (points.depth * rays[:, 2])[inside])
 
+    camera = Camera(*size, resized_camera(matrix, np.full(2, view.scale)), photo.camera.source)
     known = Reference(edges=shown(reference.edges), dense=shown(reference.dense))
-    return replace(photo, pixels=pixels, camera=Camera(*camera, matrix, photo.camera.source)), known
-
-
-def _turn(view: View) -> Float:
-    """(3, 3) from the photo's camera to the view's."""
-    right, up = np.radians([view.right, view.up])
-    about_y = np.array([[np.cos(right), 0, -np.sin(right)], [0, 1, 0], [np.sin(right), 0, np.cos(right)]])
-    about_x = np.array([[1, 0, 0], [0, np.cos(up), np.sin(up)], [0, -np.sin(up), np.cos(up)]])
-    turned: Float = about_x @ about_y
-    return turned
+    return replace(photo, pixels=pixels, camera=camera), known
 
 
 def _pixels(photo: Photo, view: View, warp: Float | None) -> tuple[NDArray[np.uint8], tuple[int, int]]:
