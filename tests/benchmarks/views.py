@@ -5,7 +5,6 @@ chosen while looking at that photo, or was right by luck. Like parts (parts.py),
 """
 
 from dataclasses import dataclass, replace
-from typing import Any
 
 import cv2
 import numpy as np
@@ -19,7 +18,7 @@ from linecad.geometry import homogeneous, resized_camera, rotation_about
 from linecad.scene import Camera
 
 MIRROR = np.diag([-1.0, 1.0, 1.0])
-CLOSER = 1.22  # times the focal length of a turned camera, so that it sees nothing that the photo does not show
+CLOSER = 1.22  # times the focal length of a turned camera, so that less of what it sees is cut off
 GAMMA, DIMMER, NOISE, QUALITY = 1.5, 0.9, 4.0, 70  # of a dim photo: noise in values of 255, quality of its JPEG
 
 
@@ -58,14 +57,21 @@ def view_of(photo: Photo, reference: Reference, view: View) -> tuple[Photo, Refe
     assert photo.camera is not None
     back, matrix = np.linalg.inv(photo.camera.matrix), photo.camera.matrix.copy()
     turn = rotation_about(np.radians([-view.up, 0.0, 0.0])) @ rotation_about(np.radians([0.0, -view.right, 0.0]))
-    is_turned = bool(view.right or view.up)
-    if is_turned:
+    pixels = photo.pixels
+    if view.right or view.up:
         matrix[:2, :2] *= CLOSER
-    pixels, size = _pixels(photo, view, matrix @ turn @ back if is_turned else None)
+        warp = matrix @ turn @ back
+        left, upper, right, lower = _seen_of(photo, warp)
+        pixels = np.asarray(cv2.warpPerspective(pixels, warp, (right, lower), flags=cv2.INTER_CUBIC), np.uint8)
+        pixels = pixels[upper:, left:]
+        matrix[:2, 2] -= left, upper
     if view.is_mirrored:
-        matrix[0, 2] = photo.width - 1 - matrix[0, 2]
+        matrix[0, 2] = pixels.shape[1] - 1 - matrix[0, 2]
         turn = MIRROR @ turn
-    scale = np.array(size) / [photo.width, photo.height]
+    whole = pixels.shape[1::-1]
+    pixels = _taken(pixels, view)
+    size = pixels.shape[1], pixels.shape[0]
+    scale = np.array(size) / whole
 
     def shown(points: Points | None) -> Points | None:
         if points is None:
@@ -81,20 +87,32 @@ def view_of(photo: Photo, reference: Reference, view: View) -> tuple[Photo, Refe
     return replace(photo, pixels=pixels, camera=camera), known
 
 
-def _pixels(photo: Photo, view: View, warp: Float | None) -> tuple[NDArray[np.uint8], tuple[int, int]]:
-    """The pixels of a view, and their width and height; `warp` (3, 3) from pixels of the photo, None for the same."""
-    pixels: NDArray[Any] = photo.pixels
-    if warp is not None:
-        size = photo.width, photo.height
-        pixels = cv2.warpPerspective(pixels, warp, size, flags=cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+def _seen_of(photo: Photo, warp: Float) -> tuple[int, int, int, int]:
+    """The largest upright part of a view that shows the photo alone: left, upper, right, lower in px, the latter out.
+
+    `warp` (3, 3) is from pixels of the photo. What lies beyond its border would be streaks or a wedge, whose lines are
+    stronger than those of the scene.
+    """
+    width, height = photo.width, photo.height
+    corners = homogeneous(np.array([[0, 0], [width - 1, 0], [0, height - 1], [width - 1, height - 1]], np.float64))
+    at = corners @ warp.T
+    (a, b, c, d) = at[:, :2] / at[:, 2:]
+    left, upper = np.ceil(np.maximum([max(a[0], c[0]), max(a[1], b[1])], 0)).astype(int).tolist()
+    last = np.floor(np.minimum([min(b[0], d[0]), min(c[1], d[1])], [width - 1, height - 1])).astype(int)
+    right, lower = (last + 1).tolist()
+    return left, upper, right, lower
+
+
+def _taken(pixels: NDArray[np.uint8], view: View) -> NDArray[np.uint8]:
+    """The pixels of a view, once it is turned: mirrored, smaller, dim."""
     if view.is_mirrored:
         pixels = np.ascontiguousarray(pixels[:, ::-1])
-    size = round(photo.width * view.scale), round(photo.height * view.scale)
     if view.scale != 1:
-        pixels = cv2.resize(pixels, size, interpolation=cv2.INTER_AREA)
+        size = round(pixels.shape[1] * view.scale), round(pixels.shape[0] * view.scale)
+        pixels = np.asarray(cv2.resize(pixels, size, interpolation=cv2.INTER_AREA), np.uint8)
     if view.is_dim:
         noise = np.random.default_rng(0).normal(0, NOISE, pixels.shape)
         darker = np.clip((pixels / 255.0) ** GAMMA * 255 * DIMMER + noise, 0, 255).astype(np.uint8)
         written = cv2.imencode(".jpg", darker, [cv2.IMWRITE_JPEG_QUALITY, QUALITY])[1]
-        pixels = np.asarray(cv2.imdecode(written, cv2.IMREAD_COLOR))
-    return np.asarray(pixels, np.uint8), size
+        pixels = np.asarray(cv2.imdecode(written, cv2.IMREAD_COLOR), np.uint8)
+    return pixels

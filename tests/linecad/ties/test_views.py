@@ -53,9 +53,9 @@ def test_what_is_seen_is_where_its_point_is(photo, name):
 def test_a_camera_turned_to_the_right_sees_things_further_left(photo):
     ways = (("turned right", 0, -1), ("turned left", 0, 1), ("turned up", 1, 1), ("turned down", 1, -1))
     for name, axis, sign in ways:
-        _, known = changed(photo, Reference(edges=Points(POINTS, DEPTH)), name)
+        view, known = changed(photo, Reference(edges=Points(POINTS, DEPTH)), name)
         middle = np.array([WIDTH - 1, HEIGHT - 1]) / 2
-        moved = known.edges.pixels - middle - CLOSER * (POINTS - middle)
+        moved = known.edges.pixels - view.camera.matrix[:2, 2] - CLOSER * (POINTS - middle)
         assert (sign * moved[:, axis] > 20).all()
 
 
@@ -64,6 +64,21 @@ def test_points_outside_a_view_are_left_out(photo):
     _, known = changed(photo, Reference(edges=at_border), "turned right")
     assert known.edges.pixels[:, 0].tolist() == pytest.approx([known.edges.pixels[0, 0]])
     assert known.dense is None
+
+
+@pytest.mark.parametrize("name", [name for name, view in VIEWS.items() if view.right or view.up])
+def test_a_turned_view_ends_where_the_photo_ends(photo, name):
+    rng = np.random.default_rng(3)
+    noisy = Photo("noise.jpg", rng.integers(60, 200, (HEIGHT, WIDTH, 3), np.uint8), photo.camera)
+    view, _ = changed(noisy, Reference(), name)
+    assert view.pixels.shape[:2] == (view.camera.height, view.camera.width)
+    assert view.pixels.size > 0.7 * noisy.pixels.size
+    spread = view.pixels.astype(float)
+    for border in (spread[0], spread[-1], spread[:, 0], spread[:, -1]):
+        assert border.mean() == pytest.approx(130, abs=12)
+    # Streaks would be even along their own way.
+    assert np.abs(np.diff(spread, axis=1)).mean(axis=(1, 2)).min() > 5
+    assert np.abs(np.diff(spread, axis=1)).mean(axis=(0, 2)).min() > 5
 
 
 def test_a_dim_view_is_darker_and_noisy(photo):
