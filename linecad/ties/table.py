@@ -10,7 +10,7 @@ from linecad.ties.candidates import Kind
 AT_ONCE: dict[Kind, float] = {
     "bundle": -2.1675,
     "plane": -6.0867,
-    "level": -6.0343,
+    "level": -5.8717,
     "ground": -0.7205,
 }
 LOG_ODDS: dict[Kind, dict[str, float]] = {
@@ -79,7 +79,7 @@ LOG_ODDS: dict[Kind, dict[str, float]] = {
         "apart": -4.5385,
         "matches": 0.1092,
         "by chance": 0.1010,
-        "ends lead": 0.5939,
+        "ends lead": 0.5700,
     },
     "ground": {
         "clear": 0.7187,
