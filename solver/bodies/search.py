@@ -15,7 +15,7 @@ from solver.least_squares import shortest_solution
 from solver.options import LONGEST_TIME_S, OnProgress, SolveOptions, relative_gap
 from solver.progress import Reporter, catch_interrupt
 
-MOST_NODES = 20_000  # where the options name no limit: about a minute; a photo takes up to some hundred
+MOST_NODES = 4_000  # where the options name no limit: half a minute at worst; most photos take up to some hundred
 
 
 def place(

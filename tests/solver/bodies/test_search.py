@@ -325,6 +325,18 @@ def test_progress_is_told_and_a_node_limit_ends_the_search() -> None:
     assert (found.gap > 0) == (found.status == "node limit")
 
 
+def test_the_search_ends_after_so_many_nodes_where_no_limit_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    ties = some_ties(np.random.default_rng(3), 12, 60)
+    proven = place(ties, 12, 0, SolveOptions())
+    assert proven.status == "optimal"
+    assert proven.nodes > 1
+    monkeypatch.setattr("solver.bodies.search.MOST_NODES", 1)
+    found = place(ties, 12, 0, SolveOptions())
+    assert (found.status, found.nodes) == ("node limit", 1)
+    assert found.objective <= proven.objective <= found.bound
+    assert place(ties, 12, 0, SolveOptions(node_limit=1)).objective == found.objective
+
+
 @pytest.mark.parametrize(
     ("field", "value"),
     [
